@@ -1,0 +1,130 @@
+# Impakt. `make help` lists what there is to make.
+#
+# Every make first checks the set-up (.setup/: Debian packages, PETSc, Python; a fraction of a second when all is there),
+# then runs itself again with what it found: PETSC_ROOT, the directory of PETSc's libraries, and PYTHON, an interpreter.
+#   PETSC_DIR, PETSC_ARCH   your own PETSc, 3.21 or newer, instead of the private build
+#   DEBUG=1                 unoptimised, in build/debug          ASAN=1   address and undefined-behaviour checks, in build/asan
+#   TESTS="tests/unit -k x" what `make test` hands to pytest     V=1      show whole commands
+
+cores := $(shell nproc)
+
+ifneq ($(origin PETSC_ROOT),command line)
+
+goals := $(if $(MAKECMDGOALS),$(filter-out help clean,$(MAKECMDGOALS)),all)
+without_petsc := format lint
+
+.PHONY: made help clean $(goals)
+$(goals): made ; @:
+
+made: $(filter clean,$(MAKECMDGOALS))
+	@.setup/debian
+	@petsc=$(if $(filter-out $(without_petsc),$(goals)),$$(.setup/petsc),none) && python=$$(.setup/python) && \
+	$(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(cores)) PETSC_ROOT="$$petsc" PYTHON="$$python" $(goals)
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
+	@sed -n 's/^#   /  /p' Makefile
+
+clean: ## remove build/; what runs wrote to out/ stays
+	rm -rf build
+
+else
+
+# PETSc's own account of itself: CC, MPIEXEC, PETSC_CC_INCLUDES, PETSC_LIB, with HDF5's among them
+ifneq ($(PETSC_ROOT),none)
+include $(PETSC_ROOT)/lib/petsc/conf/petscvariables
+endif
+
+BUILD    := build
+OPTIMISE := -O3 -fno-math-errno
+ifeq ($(DEBUG),1)
+BUILD    := build/debug
+OPTIMISE := -O0 -g3
+endif
+ifeq ($(ASAN),1)
+BUILD    := build/asan
+OPTIMISE := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+export ASAN_OPTIONS := detect_leaks=1:fast_unwind_on_malloc=0
+export LSAN_OPTIONS := suppressions=$(CURDIR)/tests/asan-suppressions.txt:print_suppressions=0
+export UBSAN_OPTIONS := print_stacktrace=1
+endif
+
+WARNINGS := -Wall -Wextra -Werror
+CFLAGS   := -std=c11 $(WARNINGS) $(OPTIMISE)
+# Other people's headers are system headers: their warnings are not ours to mend.
+CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(PETSC_CC_INCLUDES) $(shell pkg-config --cflags jansson)))
+LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson) -lm
+
+members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c'))))
+units     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/unit/*.c)))
+c_files    = $(shell find src include tests -name '*.[ch]')
+sh_files  := .setup/common .setup/debian .setup/petsc .setup/python .ci/run
+TESTS     ?= tests
+bin       := $(dir $(PYTHON))
+say        = $(if $(V),,@echo "  $(1) $@";)
+
+# Runs on one machine, also as root in a container, and with more ranks than cores. Parallelism is MPI's.
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+export OMPI_MCA_hwloc_base_binding_policy := none
+export OMPI_MCA_mpi_yield_when_idle := 1
+export OMPI_MCA_btl_vader_single_copy_mechanism := none
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export MPLBACKEND := Agg
+
+.PHONY: all run test bench format lint force
+.DELETE_ON_ERROR:
+.SECONDARY: $(addsuffix .o,$(units))
+
+all: $(BUILD)/impakt ## the program, build/impakt (the default)
+
+run: $(BUILD)/impakt ## the paper's high-speed impact: results table, history, summary and plot in out/
+	@mkdir -p out
+	$(BUILD)/impakt -options_file options/impact-high-speed.opts
+	@$(PYTHON) plots/impact.py out/impact-high-speed.h5 out/impact-high-speed.png
+	@printf '%s\n' 'history  out/impact-high-speed.h5' 'summary  out/impact-high-speed.json' 'plot     out/impact-high-speed.png'
+
+test: $(BUILD)/impakt $(units) ## unit tests on 1 to 3 ranks and regression tests
+	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
+	$(PYTHON) -m pytest -q -n $(cores) -p no:cacheprovider --rootdir=. $(TESTS)
+
+bench: $(BUILD)/impakt $(BUILD)/yardstick ## time and scaling, beside a plain C yardstick
+	$(PYTHON) tests/scaling/bench.py --build $(BUILD)
+
+format: ## clang-format over all C
+	$(bin)clang-format -i $(c_files)
+
+lint: ## clang-format, ruff, and shellcheck where there is one
+	$(bin)clang-format --dry-run -Werror $(c_files)
+	$(bin)ruff check --no-cache plots tests
+	@if [ -x $(bin)shellcheck ]; then set -x; $(bin)shellcheck -x $(sh_files); fi
+
+$(BUILD)/impakt: $(BUILD)/src/main.o $(BUILD)/libimpakt.a
+	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(LIBS)
+
+$(BUILD)/libimpakt.a: $(members) $(BUILD)/members
+	@rm -f $@
+	$(call say,AR) ar rcs $@ $(members)
+
+$(BUILD)/tests/unit/%: $(BUILD)/tests/unit/%.o $(BUILD)/libimpakt.a
+	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
+
+$(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
+	@mkdir -p $(@D)
+	$(call say,CC) $(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(BUILD)/yardstick: tests/scaling/yardstick.c
+	@mkdir -p $(@D)
+	$(call say,CC) gcc -O2 -std=c11 $(WARNINGS) -o $@ $< -lm
+
+# What the objects and the library were made with: rewritten only when that changes
+$(BUILD)/flags: text = $(CC) $(CPPFLAGS) $(CFLAGS) $(LIBS)
+$(BUILD)/members: text = $(members)
+$(BUILD)/flags $(BUILD)/members: force
+	@mkdir -p $(@D); echo '$(text)' | cmp -s - $@ || echo '$(text)' >$@
+
+-include $(members:.o=.d) $(BUILD)/src/main.d $(addsuffix .d,$(units))
+
+endif

@@ -1,0 +1,86 @@
+/* Contact between bodies: pairs, active set, and the methods that advance all bodies through a controller step. */
+#pragma once
+#include <body.h>
+#include <transfer.h>
+
+/*S
+   Contact - the contact pairs among some bodies and the method that enforces contact
+
+   Level: beginner
+
+.seealso: `ContactCreate()`, `ContactSetType()`, `ContactStep()`, `ContactRegister()`
+S*/
+typedef struct _p_Contact *Contact;
+
+/*J
+   ContactType - name of a contact method
+
+   Values:
++ `CONTACT_SCHWARZ`  - Schwarz alternating method
+. `CONTACT_PENALTY`  - penalty method
+- `CONTACT_LAGRANGE` - forward-increment Lagrange multipliers
+
+   Level: beginner
+
+.seealso: `ContactSetType()`
+J*/
+typedef const char *ContactType;
+#define CONTACT_SCHWARZ  "schwarz"
+#define CONTACT_PENALTY  "penalty"
+#define CONTACT_LAGRANGE "lagrange"
+
+PETSC_EXTERN PetscClassId CONTACT_CLASSID;
+
+/*S
+   ContactPairState - what a contact pair does at the end of a controller step
+
+   Level: intermediate
+
+.seealso: `ContactGetPairState()`
+S*/
+typedef struct {
+  PetscReal force;  /* resultant of the normal contact forces, compression positive [N] */
+  PetscReal gap;    /* smallest normal gap [m] */
+  PetscInt  active; /* nodes in contact */
+  PetscReal tension; /* largest tensile force of an active node, 0 if there is none [N] */
+} ContactPairState;
+
+/*S
+   ContactCounts - how much work the steps so far took
+
+   Level: intermediate
+
+.seealso: `ContactGetCounts()`
+S*/
+typedef struct {
+  PetscInt       sweeps;            /* of the last step: each body integrated once; 0 without contact */
+  PetscInt64     total_sweeps;
+  PetscInt       unconverged_steps; /* accepted by -schwarz_unconverged accept */
+  PetscInt       set_changes;       /* rounds of the active set beyond the first, all steps */
+  PetscInt       set_cycles;        /* steps in which a set came up twice and a rule ended the alternation */
+  PetscLogDouble seconds;           /* in sweeps */
+} ContactCounts;
+
+PETSC_EXTERN PetscErrorCode ContactRegisterAll(void);
+PETSC_EXTERN PetscErrorCode ContactFinalizePackage(void);
+PETSC_EXTERN PetscErrorCode ContactRegister(const char[], PetscErrorCode (*)(Contact));
+PETSC_EXTERN PetscErrorCode ContactCreate(MPI_Comm, Contact *);
+PETSC_EXTERN PetscErrorCode ContactSetBodies(Contact, PetscInt, const Body[]);
+PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
+PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
+PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
+PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
+PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
+PETSC_EXTERN PetscErrorCode ContactStep(Contact);
+PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
+PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
+PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
+
+PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);
+PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Body *, Body *);
+PETSC_EXTERN PetscErrorCode ContactGetPairNormal(Contact, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairState *);
+PETSC_EXTERN PetscErrorCode ContactGetPenaltyEnergy(Contact, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
+PETSC_EXTERN PetscErrorCode ContactGetBodyTrace(Contact, PetscInt, PetscReal[], PetscReal[]);

@@ -1,0 +1,12 @@
+/* Time integrators for second-order systems beside PETSc's own TSALPHA2, and what is needed to drive either in sweeps. */
+#pragma once
+#include <petscts.h>
+
+#define TSCENTRALDIFFERENCE "centraldifference"
+
+typedef PetscErrorCode TSCentralDifferenceFn(TS, PetscReal, Vec, Vec, Vec, void *);
+
+PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, void *);
+PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS, Vec);
+PETSC_EXTERN PetscErrorCode TSSecondOrderRegisterAll(void);
+PETSC_EXTERN PetscErrorCode TSSecondOrderSetState(TS, PetscReal, PetscReal, PetscInt);

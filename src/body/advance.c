@@ -1,0 +1,209 @@
+/* Save, restore, and integrate over one controller step. */
+#include "bodyimpl.h"
+
+/*@
+  BodySave - takes the current state as the start of the next controller step
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+.seealso: `Body`, `BodyRestore()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodySave(Body body)
+{
+  PetscScalar *start, *end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(VecCopy(body->state.u, body->saved.u));
+  PetscCall(VecCopy(body->state.v, body->saved.v));
+  PetscCall(VecCopy(body->state.a, body->saved.a));
+  if (body->rows.local && body->step != body->saved_step) {
+    const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+
+    for (PetscInt i = 0; i < 4; i++) {
+      PetscCall(TraceGetLevel(traces[i], 0, &start));
+      PetscCall(TraceGetLevel(traces[i], body->substeps, &end));
+      PetscCall(PetscArraycpy(start, end, body->rows.local));
+    }
+  }
+  body->saved_time = body->time;
+  body->saved_step = body->step;
+  body->swept      = PETSC_FALSE;
+  PetscCall(BodyInvalidateWindow(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyRestore - goes back to the state of the last `BodySave()`, bit for bit
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+.seealso: `Body`, `BodySave()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyRestore(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(VecCopy(body->saved.u, body->state.u));
+  PetscCall(VecCopy(body->saved.v, body->state.v));
+  PetscCall(VecCopy(body->saved.a, body->state.a));
+  body->time = body->saved_time;
+  body->step = body->saved_step;
+  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NaN or infinity in the solution, told with body, time and step */
+static PetscErrorCode CheckFinite(Body body)
+{
+  PetscReal norm;
+
+  PetscFunctionBegin;
+  PetscCall(VecNorm(body->state.u, NORM_INFINITY, &norm));
+  PetscCheck(!PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)body), PETSC_ERR_FP, "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT "); is a time step too large, or a penalty too stiff for it?", body->hdr.name, (double)body->time, body->step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All substeps, by the TS */
+PetscErrorCode BodyIntegrateWindow(Body body)
+{
+  const PetscBool keep_start = (PetscBool)(!body->is_explicit || body->layer_scatter);
+
+  PetscFunctionBegin;
+  if (body->step != body->saved_step) PetscCall(BodyRestore(body));
+  for (body->substep = 0; body->substep < body->substeps; body->substep++) {
+    if (keep_start) {
+      PetscCall(VecCopy(body->state.u, body->substep_start.u));
+      PetscCall(VecCopy(body->state.v, body->substep_start.v));
+    }
+    PetscCall(TSStep(body->ts));
+    body->step++;
+    body->time = body->saved_time + (body->substep + 1) * body->time_step;
+    if (body->is_explicit) PetscCall(BodyFinishSubstepExplicit(body));
+    else PetscCall(BodyFinishSubstepImplicit(body));
+    PetscCall(BodyWriteTraces(body, body->substep + 1));
+  }
+  PetscCall(CheckFinite(body));
+  body->total_substeps += body->substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIntegrate - integrates from the saved state to the end of the controller step, under the conditions and input traces as
+  they are
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+  Notes:
+  May be called any number of times for the same controller step: each call begins at the saved state.
+
+  Where the body is linear and makes one substep, a repeated call with other input traces adds the response to their change
+  instead of solving again; the result is the same up to round-off.
+
+.seealso: `Body`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodyIntegrate(Body body)
+{
+  PetscBool      done = PETSC_FALSE;
+  PetscLogDouble begin, end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
+  PetscCall(PetscTime(&begin));
+  PetscCall(BodyIntegrateByResponse(body, &done));
+  if (!done) {
+    PetscCall(BodyIntegrateWindow(body));
+    PetscCall(BodyNoteWindow(body));
+  }
+  PetscCall(PetscTime(&end));
+  body->seconds += end - begin;
+  PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetPositionChange - how far the positions at the end of the controller step have moved since the last call for it
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, integrated
+
+  Output Parameters:
++ change   - 2-norm over all nodes [m]; infinity at the first call in a controller step, where there is nothing to compare with
+- position - 2-norm of the positions [m]
+
+  Level: developer
+
+  Note:
+  The convergence criterion of Hoy, Tezaur, Mota, section 4.4.
+
+.seealso: `Body`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *position)
+{
+  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscScalar *u, *x;
+  PetscScalar       *previous;
+  PetscReal          sums[2] = {0, 0};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(VecGetArrayRead(body->state.u, &u));
+  PetscCall(VecGetArrayRead(body->positions, &x));
+  PetscCall(VecGetArray(body->previous_u, &previous));
+  for (PetscInt i = 0; i < n; i++) {
+    sums[0] += PetscSqr(u[i] - previous[i]);
+    sums[1] += PetscSqr(x[i] + u[i]);
+    previous[i] = u[i];
+  }
+  PetscCall(VecRestoreArray(body->previous_u, &previous));
+  PetscCall(VecRestoreArrayRead(body->positions, &x));
+  PetscCall(VecRestoreArrayRead(body->state.u, &u));
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *change     = body->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
+  *position   = PetscSqrtReal(sums[1]);
+  body->swept = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetTotalSubsteps - how many substeps the body has made in all sweeps, and in what time
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameters:
++ substeps - substeps integrated, repeated ones counted each time
+- seconds  - wall time of `BodyIntegrate()` [s]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyGetTotalSubsteps(Body body, PetscInt64 *substeps, PetscLogDouble *seconds)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (substeps) *substeps = body->total_substeps;
+  if (seconds) *seconds = body->seconds;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,117 @@
+#pragma once
+#include <body.h>
+#include <tssecondorder.h>
+#include <petsc/private/petscimpl.h>
+#include "element/element.h"
+#include "constrainedsolver.h"
+
+/* Displacement, velocity and acceleration of a body: what a restore brings back. */
+typedef struct {
+  Vec u, v, a;
+} BodyState;
+
+/* Rows of this rank within all rows, and how to have all of them on every rank. */
+typedef struct {
+  PetscMPIInt  size;
+  PetscInt     local, global, begin;
+  PetscMPIInt *counts, *offsets;
+} BodyRows;
+
+struct _p_Body {
+  PETSCHEADER(int);
+  /* mesh and numbering: nodes of this rank are numbered owned first, then ghosts */
+  DM         dm;
+  PetscInt   dim;
+  PetscInt   owned_nodes, local_nodes;
+  PetscInt   vertex_start;
+  PetscInt  *node_of_vertex;
+  PetscInt  *connectivity;
+  PetscReal *coordinates; /* local_nodes x dim */
+  PetscInt  *ghost_dofs;  /* global numbers */
+  Vec        positions;   /* reference positions of owned nodes [m] */
+  Element    element;
+  Material   material;
+  /* mass */
+  BodyMassType mass_type;
+  PetscBool    mass_redistribute;
+  PetscBool   *in_layer;      /* per local node: belongs to a contact surface */
+  PetscInt     n_layer_dofs;  /* owned */
+  PetscInt    *layer_dofs;    /* owned dof (rank numbering) of massless nodes; empty unless redistributed */
+  Vec          mass_row_sum;  /* M 1: the lumped mass */
+  Vec          mass_diagonal; /* the mass matrix where it is diagonal, else NULL */
+  Mat          mass_matrix;   /* the mass matrix where it is not diagonal, else NULL */
+  Vec          inverse_mass;  /* diagonal: 1/m, 0 on massless nodes */
+  ConstrainedSolver mass_solver; /* not diagonal: made when first needed */
+  PetscReal    total_mass;
+  /* stiffness */
+  Mat stiffness;
+  /* time */
+  TS        ts;
+  PetscBool is_explicit;
+  PetscReal requested_step; /* 0: the controller step; < 0: automatic */
+  PetscReal controller_step, time_step, time_start;
+  PetscInt  substeps;
+  PetscReal alpha_m, alpha_f, gamma, beta;
+  PetscReal stable_step;
+  /* state */
+  PetscReal initial_velocity[3], initial_displacement[3];
+  BodyState state, saved, substep_start;
+  PetscReal time, saved_time;
+  PetscInt  step, saved_step;
+  Vec       internal_force; /* at state.u */
+  Vec       previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
+  PetscBool swept;          /* previous_u holds such a state */
+  PetscReal change, position_norm;
+  Vec       work[3];
+  /* interface rows */
+  Mat               interface;
+  BodyRows          rows;
+  BodyCondition    *conditions; /* local rows */
+  PetscInt          n_prescribed, n_forced; /* over all ranks */
+  PetscBool         prescribed_mass; /* prescribed nodes carry mass */
+  BodyTractionType  traction;
+  BodyTraces        traces;
+  PetscReal         window_position; /* how far the current substep has come in the controller step, 0 to 1 */
+  PetscInt          substep;         /* 0 to substeps - 1 */
+  Vec               row_vec[2];
+  Mat               shifted;         /* implicit: stiffness + shift mass */
+  ConstrainedSolver solver;          /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
+  IS                layer_is;
+  Vec               layer_rhs, layer_solution;
+  VecScatter        layer_scatter;
+  struct _BodyResponse *response;
+  PetscInt64     total_substeps;
+  PetscLogDouble seconds;
+  PetscBool      setup;
+};
+
+PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response;
+
+PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
+PETSC_INTERN PetscErrorCode BodyCreateVec(Body, Vec *);
+PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
+PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodySetUpStiffness(Body);
+PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
+PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
+PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
+PETSC_INTERN PetscErrorCode BodySetUpImplicit(Body);
+PETSC_INTERN PetscErrorCode BodySetUpExplicit(Body);
+PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
+PETSC_INTERN PetscErrorCode BodySetUpInitialState(Body);
+PETSC_INTERN PetscErrorCode BodyFinishSubstepImplicit(Body);
+PETSC_INTERN PetscErrorCode BodyFinishSubstepExplicit(Body);
+PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, PetscReal, PetscBool, Vec);
+PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
+PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
+PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec);
+PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
+PETSC_INTERN PetscErrorCode BodyIntegrateWindow(Body);
+PETSC_INTERN PetscErrorCode BodyIntegrateByResponse(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyNoteWindow(Body);
+PETSC_INTERN PetscErrorCode BodyInvalidateWindow(Body);
+PETSC_INTERN PetscBool      BodyMatchResponse(Body);
+PETSC_INTERN PetscErrorCode BodyValidateResponse(Body, PetscBool);
+PETSC_INTERN PetscErrorCode BodyDestroyResponse(Body);

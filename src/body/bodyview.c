@@ -1,0 +1,246 @@
+/* What a body tells about itself. */
+#include "bodyimpl.h"
+
+/*@
+  BodyView - prints a body
+
+  Collective
+
+  Input Parameters:
++ body   - the `Body`
+- viewer - an ASCII viewer
+
+  Level: beginner
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyView(Body body, PetscViewer viewer)
+{
+  TSType   type;
+  PetscInt dofs;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  PetscCall(VecGetSize(body->positions, &dofs));
+  PetscCall(TSGetType(body->ts, &type));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name, dofs, (double)body->total_mass, BodyMassTypes[body->mass_type], body->mass_redistribute ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s", (double)body->time_step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetDM - the mesh
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. dm - its `DMPLEX`, owned by the body
+
+  Level: intermediate
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetDM(Body body, DM *dm)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *dm = body->dm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetTS - the time integrator
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. ts - its `TS`, owned by the body
+
+  Level: intermediate
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetTS(Body body, TS *ts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *ts = body->ts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetMaterial - the material
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. material - its `Material`, owned by the body
+
+  Level: intermediate
+
+.seealso: `Body`, `Material`
+@*/
+PetscErrorCode BodyGetMaterial(Body body, Material *material)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *material = body->material;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetSubsteps - number of substeps to a controller step
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. substeps - at least 1
+
+  Level: intermediate
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetSubsteps(Body body, PetscInt *substeps)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *substeps = body->substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetStableStep - the largest step for which central differences are stable, from below
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. step - [s]
+
+  Level: intermediate
+
+  Note:
+  2 / omega_max with the largest eigenvalue of any element in place of that of the body (Irons and Treharne 1971).
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetStableStep(Body body, PetscReal *step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *step = body->stable_step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetSolution - displacement, velocity and acceleration at the current time
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ u - displacement [m], or `NULL`
+. v - velocity [m/s], or `NULL`
+- a - acceleration [m/s^2], or `NULL`
+
+  Level: intermediate
+
+  Note:
+  The vectors are the body's own; they have the layout of the global vectors of its `DM`.
+
+.seealso: `Body`, `BodyGetReferencePositions()`
+@*/
+PetscErrorCode BodyGetSolution(Body body, Vec *u, Vec *v, Vec *a)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (u) *u = body->state.u;
+  if (v) *v = body->state.v;
+  if (a) *a = body->state.a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetReferencePositions - positions of the nodes in the undeformed body
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. positions - [m], owned by the body, laid out as its displacements
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetSolution()`
+@*/
+PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *positions = body->positions;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsExplicit - whether the body is integrated by central differences
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. is_explicit - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Body`, `TSCENTRALDIFFERENCE`
+@*/
+PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *is_explicit = body->is_explicit;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsRedistributed - whether the contact nodes of the body are massless
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. redistributed - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetFromOptions()`
+@*/
+PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *redistributed = body->mass_redistribute;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

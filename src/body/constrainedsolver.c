@@ -1,0 +1,169 @@
+/*
+   A x = b subject to B_m x = 0 for the constrained rows m, with the factors of the unconstrained A: the constraint forces s
+   follow from the compliance W = B A^{-1} B^T,
+
+     z = A^{-1} b,   W_mm s = B_m z,   x = z - A^{-1} B_m^T s.
+
+   So a change of the constrained rows never makes A be factored again. The columns C = A^{-1} B^T are made once each, when
+   their row is constrained for the first time.
+*/
+#include "constrainedsolver.h"
+#include <petscblaslapack.h>
+
+struct _n_ConstrainedSolver {
+  KSP          ksp;
+  Mat          B;
+  PetscInt     local, global, begin; /* rows of B */
+  PetscMPIInt *counts, *offsets;
+  int         *mine, *constrained; /* 1 where a row is held: this rank's rows, and all rows */
+  PetscInt     n;           /* how many of them */
+  PetscInt    *rows;        /* which */
+  Vec         *columns;     /* per row: A^{-1} B^T e, or NULL until needed */
+  PetscScalar *compliance;  /* global x global, by columns; column j valid where columns[j] is */
+  PetscScalar *factor;      /* n x n, LU of the constrained part */
+  PetscBLASInt *pivots;
+  PetscScalar *gathered, *force;
+  Vec         *active_columns; /* those of the constrained rows */
+  Vec          row, rhs;
+};
+
+PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], ConstrainedSolver *solver)
+{
+  ConstrainedSolver s;
+  MPI_Comm          comm = PetscObjectComm((PetscObject)A);
+  PetscMPIInt       size;
+  PC                pc;
+  PetscInt          n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&s));
+  PetscCall(KSPCreate(comm, &s->ksp));
+  PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
+  PetscCall(KSPSetOperators(s->ksp, A, A));
+  PetscCall(KSPSetType(s->ksp, KSPPREONLY));
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
+  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(MatGetSize(A, &n, NULL));
+  /* PETSc's own factorisation is an order of magnitude faster for small bodies on one rank */
+  if (size > 1 || n > 50000) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  else PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(KSPSetUp(s->ksp));
+
+  PetscCall(PetscObjectReference((PetscObject)B));
+  s->B = B;
+  PetscCall(MatCreateVecs(B, NULL, &s->row));
+  PetscCall(MatCreateVecs(A, NULL, &s->rhs));
+  PetscCall(MatGetLocalSize(B, &s->local, NULL));
+  PetscCall(MatGetSize(B, &s->global, NULL));
+  PetscCall(MatGetOwnershipRange(B, &s->begin, NULL));
+  PetscCall(PetscMalloc2(size, &s->counts, size, &s->offsets));
+  {
+    PetscMPIInt local, total = 0;
+
+    PetscCall(PetscMPIIntCast(s->local, &local));
+    PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
+    for (PetscMPIInt r = 0; r < size; total += s->counts[r++]) s->offsets[r] = total;
+  }
+  PetscCall(PetscCalloc6(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->active_columns, s->global * s->global, &s->compliance));
+  PetscCall(PetscMalloc4(s->global * s->global, &s->factor, s->global, &s->pivots, s->global, &s->gathered, s->global, &s->force));
+  *solver = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *solver)
+{
+  ConstrainedSolver s = *solver;
+
+  PetscFunctionBegin;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
+  PetscCall(PetscFree6(s->mine, s->constrained, s->rows, s->columns, s->active_columns, s->compliance));
+  PetscCall(PetscFree4(s->factor, s->pivots, s->gathered, s->force));
+  PetscCall(PetscFree2(s->counts, s->offsets));
+  PetscCall(VecDestroy(&s->row));
+  PetscCall(VecDestroy(&s->rhs));
+  PetscCall(MatDestroy(&s->B));
+  PetscCall(KSPDestroy(&s->ksp));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver solver, KSP *ksp)
+{
+  PetscFunctionBegin;
+  *ksp = solver->ksp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* B z on every rank, in solver->gathered */
+static PetscErrorCode GatherRows(ConstrainedSolver s, Vec z)
+{
+  const PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(s->B, z, s->row));
+  PetscCall(VecGetArrayRead(s->row, &row));
+  if (s->local == s->global && s->counts[0] == s->global) PetscCall(PetscArraycpy(s->gathered, row, s->global));
+  else PetscCallMPI(MPI_Allgatherv(row, (PetscMPIInt)s->local, MPIU_SCALAR, s->gathered, s->counts, s->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)s->ksp)));
+  PetscCall(VecRestoreArrayRead(s->row, &row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* C_j = A^{-1} B^T e_j and column j of W */
+static PetscErrorCode MakeColumn(ConstrainedSolver s, PetscInt j)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+  PetscCall(VecZeroEntries(s->row));
+  if (j >= s->begin && j < s->begin + s->local) PetscCall(VecSetValue(s->row, j, 1.0, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(s->row));
+  PetscCall(VecAssemblyEnd(s->row));
+  PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
+  PetscCall(KSPSolve(s->ksp, s->rhs, s->columns[j]));
+  PetscCall(GatherRows(s, s->columns[j]));
+  PetscCall(PetscArraycpy(s->compliance + j * s->global, s->gathered, s->global));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which of this rank's rows are held from now on. Collective; cheap where nothing changes. */
+PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[])
+{
+  PetscBLASInt n, info;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? 1 : 0;
+  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPI_INT, s->constrained, s->counts, s->offsets, MPI_INT, PetscObjectComm((PetscObject)s->ksp)));
+  s->n = 0;
+  for (PetscInt j = 0; j < s->global; j++) {
+    if (!s->constrained[j]) continue;
+    if (!s->columns[j]) PetscCall(MakeColumn(s, j));
+    s->active_columns[s->n] = s->columns[j];
+    s->rows[s->n++]         = j;
+  }
+  if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < s->n; j++)
+    for (PetscInt i = 0; i < s->n; i++) s->factor[j * s->n + i] = s->compliance[s->rows[j] * s->global + s->rows[i]];
+  PetscCall(PetscBLASIntCast(s->n, &n));
+  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, s->factor, &n, s->pivots, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "The prescribed contact rows of a body are not independent (LAPACK getrf info %d); is a node in two contact pairs?", (int)info);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
+{
+  PetscBLASInt n, one = 1, info;
+
+  PetscFunctionBegin;
+  PetscCall(KSPSolve(s->ksp, b, x));
+  if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GatherRows(s, x));
+  for (PetscInt i = 0; i < s->n; i++) s->force[i] = -s->gathered[s->rows[i]];
+  PetscCall(PetscBLASIntCast(s->n, &n));
+  if (n == 1) s->force[0] /= s->factor[0];
+  else PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &n, &one, s->factor, &n, s->pivots, s->force, &n, &info));
+  PetscCall(VecMAXPY(x, s->n, s->force, s->active_columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

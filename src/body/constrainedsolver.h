@@ -1,0 +1,11 @@
+/* Solves A x = b with some rows of B x held at zero, by the factors of A alone. Private to src/body. */
+#pragma once
+#include <petscksp.h>
+
+typedef struct _n_ConstrainedSolver *ConstrainedSolver;
+
+PETSC_INTERN PetscErrorCode ConstrainedSolverCreate(Mat, Mat, const char[], ConstrainedSolver *);
+PETSC_INTERN PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *);
+PETSC_INTERN PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
+PETSC_INTERN PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[]);
+PETSC_INTERN PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);

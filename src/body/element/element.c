@@ -1,0 +1,59 @@
+#include "element.h"
+
+static PetscFunctionList ElementList = NULL;
+
+/* Elements are found by the shape of a mesh cell. */
+PetscErrorCode ElementRegister(DMPolytopeType cell, PetscErrorCode (*create)(Element))
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListAdd(&ElementList, DMPolytopeTypes[cell], create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ElementRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementRegister(DM_POLYTOPE_SEGMENT, ElementCreate_Bar2));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ElementFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListDestroy(&ElementList));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The element for a shape of cell, with its own options (prefix of the body) read. */
+PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType cell, Material material, Element *element)
+{
+  PetscErrorCode (*create)(Element);
+
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListFind(ElementList, DMPolytopeTypes[cell], &create));
+  PetscCheck(create, comm, PETSC_ERR_SUP, "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar)", prefix, DMPolytopeTypes[cell]);
+  PetscCall(PetscNew(element));
+  (*element)->material = material;
+  PetscCall((*create)(*element));
+  if ((*element)->ops.setfromoptions) PetscCall((*(*element)->ops.setfromoptions)(*element, comm, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the element its cells (count x nodes local node numbers, kept by reference) and the coordinates of the rank's nodes. */
+PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt connectivity[], const PetscReal coordinates[])
+{
+  PetscFunctionBegin;
+  element->count        = count;
+  element->connectivity = connectivity;
+  PetscCall((*element->ops.setup)(element, coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ElementDestroy(Element *element)
+{
+  PetscFunctionBegin;
+  if (!*element) PetscFunctionReturn(PETSC_SUCCESS);
+  if ((*element)->ops.destroy) PetscCall((*(*element)->ops.destroy)(*element));
+  PetscCall(PetscFree(*element));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

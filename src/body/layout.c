@@ -1,0 +1,148 @@
+/* Mesh and numbering: what the element loops and vectors of a body run over. */
+#include "bodyimpl.h"
+
+/* One node at each vertex, `dim` displacements at each node */
+static PetscErrorCode SetUpSection(Body body)
+{
+  PetscSection section;
+  PetscInt     start, end, vstart, vend;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetChart(body->dm, &start, &end));
+  PetscCall(DMPlexGetDepthStratum(body->dm, 0, &vstart, &vend));
+  PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)body), &section));
+  PetscCall(PetscSectionSetChart(section, start, end));
+  for (PetscInt v = vstart; v < vend; v++) PetscCall(PetscSectionSetDof(section, v, body->dim));
+  PetscCall(PetscSectionSetUp(section));
+  PetscCall(DMSetLocalSection(body->dm, section));
+  PetscCall(PetscSectionDestroy(&section));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* node_of_vertex[v - vstart]: owned nodes in the order of the global vector, then ghosts */
+static PetscErrorCode NumberNodes(Body body, PetscInt vstart, PetscInt vend, PetscInt node_of_vertex[])
+{
+  PetscSection global;
+  PetscInt     rstart = -1, ghosts = 0;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetGlobalSection(body->dm, &global));
+  body->local_nodes = vend - vstart;
+  body->owned_nodes = 0;
+  for (PetscInt v = vstart; v < vend; v++) {
+    PetscInt offset;
+
+    PetscCall(PetscSectionGetOffset(global, v, &offset));
+    if (offset < 0) continue;
+    if (rstart < 0 || offset < rstart) rstart = offset;
+    body->owned_nodes++;
+  }
+  PetscCall(PetscMalloc1((body->local_nodes - body->owned_nodes) * body->dim, &body->ghost_dofs));
+  for (PetscInt v = vstart; v < vend; v++) {
+    PetscInt offset;
+
+    PetscCall(PetscSectionGetOffset(global, v, &offset));
+    if (offset >= 0) {
+      node_of_vertex[v - vstart] = (offset - rstart) / body->dim;
+    } else {
+      for (PetscInt d = 0; d < body->dim; d++) body->ghost_dofs[ghosts * body->dim + d] = -(offset + 1) + d;
+      node_of_vertex[v - vstart] = body->owned_nodes + ghosts++;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUpCoordinates(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+{
+  PetscSection       section;
+  Vec                local;
+  const PetscScalar *x;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(body->local_nodes * body->dim, &body->coordinates));
+  PetscCall(DMGetCoordinateSection(body->dm, &section));
+  PetscCall(DMGetCoordinatesLocal(body->dm, &local));
+  PetscCall(VecGetArrayRead(local, &x));
+  for (PetscInt v = vstart; v < vend; v++) {
+    PetscInt offset;
+
+    PetscCall(PetscSectionGetOffset(section, v, &offset));
+    for (PetscInt d = 0; d < body->dim; d++) body->coordinates[node_of_vertex[v - vstart] * body->dim + d] = PetscRealPart(x[offset + d]);
+  }
+  PetscCall(VecRestoreArrayRead(local, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+{
+  PetscInt       cstart, cend;
+  int            shape[2] = {DM_NUM_POLYTOPES, -1};
+  DMPolytopeType cell     = DM_POLYTOPE_UNKNOWN;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetHeightStratum(body->dm, 0, &cstart, &cend));
+  for (PetscInt c = cstart; c < cend; c++) {
+    DMPolytopeType type;
+
+    PetscCall(DMPlexGetCellType(body->dm, c, &type));
+    shape[0] = PetscMin(shape[0], (int)type);
+    shape[1] = PetscMax(shape[1], (int)type);
+  }
+  /* a rank may have no cells at all */
+  shape[0] = -shape[0];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shape, 2, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
+  PetscCheck(shape[1] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s' has no cells: check -%s_dm_plex_box_faces or the mesh file", body->hdr.name, body->hdr.name);
+  cell = (DMPolytopeType)shape[1];
+  PetscCheck(-shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported", body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
+  PetscCall(ElementCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, cell, body->material, &body->element));
+  PetscCheck(body->element->dim == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s': cells of shape '%s' in %" PetscInt_FMT " dimensions are not supported", body->hdr.name, DMPolytopeTypes[cell], body->dim);
+  PetscCall(PetscMalloc1((cend - cstart) * body->element->nodes, &body->connectivity));
+  for (PetscInt c = cstart; c < cend; c++) {
+    PetscInt *closure = NULL, n_points, nodes = 0;
+
+    PetscCall(DMPlexGetTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
+    for (PetscInt p = 0; p < n_points; p++)
+      if (closure[2 * p] >= vstart && closure[2 * p] < vend) body->connectivity[(c - cstart) * body->element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
+    PetscCall(DMPlexRestoreTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
+  }
+  PetscCall(ElementSetUp(body->element, cend - cstart, body->connectivity, body->coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbering, coordinates, connectivity and elements from the DMPlex */
+PetscErrorCode BodySetUpLayout(Body body)
+{
+  PetscInt     vstart, vend, *node_of_vertex;
+  PetscScalar *x;
+
+  PetscFunctionBegin;
+  PetscCall(SetUpSection(body));
+  PetscCall(DMPlexGetDepthStratum(body->dm, 0, &vstart, &vend));
+  PetscCall(PetscMalloc1(vend - vstart, &node_of_vertex));
+  PetscCall(NumberNodes(body, vstart, vend, node_of_vertex));
+  PetscCall(SetUpCoordinates(body, vstart, vend, node_of_vertex));
+  PetscCall(SetUpElements(body, vstart, vend, node_of_vertex));
+  body->vertex_start   = vstart;
+  body->node_of_vertex = node_of_vertex;
+  PetscCall(PetscCalloc1(body->local_nodes, &body->in_layer));
+  PetscCall(BodyCreateVec(body, &body->positions));
+  PetscCall(VecGetArrayWrite(body->positions, &x));
+  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) x[i] = body->coordinates[i];
+  PetscCall(VecRestoreArrayWrite(body->positions, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A vector with the layout of the DM's global vector and, on several ranks, room for the ghosts behind the owned values, so
+   that element loops read and write it in place */
+PetscErrorCode BodyCreateVec(Body body, Vec *vec)
+{
+  MPI_Comm       comm  = PetscObjectComm((PetscObject)body);
+  const PetscInt owned = body->owned_nodes * body->dim, ghosts = (body->local_nodes - body->owned_nodes) * body->dim;
+  PetscMPIInt    size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (size == 1) PetscCall(VecCreateSeq(comm, owned, vec));
+  else PetscCall(VecCreateGhost(comm, owned, PETSC_DETERMINE, ghosts, body->ghost_dofs, vec));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,170 @@
+/* Mass: lumped, consistent or averaged, with the mass of the contact layer moved inside where asked. */
+#include "bodyimpl.h"
+
+const char *const BodyMassTypes[] = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
+
+/* The mass matrix of one element as the body uses it, row by row */
+PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
+{
+  const PetscInt *nodes   = body->connectivity + e * body->element->nodes;
+  const PetscInt  n_nodes = body->element->nodes, dim = body->dim, n = n_nodes * dim;
+  PetscInt        inner   = 0;
+
+  PetscFunctionBegin;
+  PetscCall((*body->element->ops.mass)(body->element, e, M));
+  if (body->mass_type != BODY_MASS_CONSISTENT) {
+    const PetscReal lumped = body->mass_type == BODY_MASS_LUMPED ? 1.0 : 0.5;
+
+    for (PetscInt i = 0; i < n; i++) {
+      PetscScalar sum = 0;
+
+      for (PetscInt j = 0; j < n; j++) {
+        sum += M[i * n + j];
+        M[i * n + j] *= 1 - lumped;
+      }
+      M[i * n + i] += lumped * sum;
+    }
+  }
+  if (!body->mass_redistribute) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt a = 0; a < n_nodes; a++) inner += !body->in_layer[nodes[a]];
+  if (inner == n_nodes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(inner, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Body '%s': all nodes of an element lie on contact surfaces, so its mass has no inner node to go to; refine the mesh or set -%smass_redistribute false", body->hdr.name, ((PetscObject)body)->prefix);
+  for (PetscInt d = 0; d < dim; d++) {
+    PetscScalar moved = 0;
+
+    for (PetscInt a = 0; a < n_nodes; a++)
+      for (PetscInt b = 0; b < n_nodes; b++)
+        if (body->in_layer[nodes[a]] || body->in_layer[nodes[b]]) {
+          moved += M[(a * dim + d) * n + b * dim + d];
+          M[(a * dim + d) * n + b * dim + d] = 0;
+        }
+    for (PetscInt a = 0; a < n_nodes; a++)
+      if (!body->in_layer[nodes[a]]) M[(a * dim + d) * n + a * dim + d] += moved / inner;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AssembleMass(Body body)
+{
+  const PetscInt n = body->element->nodes * body->dim;
+  PetscInt       dofs[ELEMENT_MAX_DOFS];
+  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], diagonal[ELEMENT_MAX_DOFS];
+
+  PetscFunctionBegin;
+  if (body->mass_type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass_diagonal));
+  else PetscCall(DMCreateMatrix(body->dm, &body->mass_matrix));
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    PetscCall(BodyGetElementMass(body, e, M));
+    PetscCall(BodyGetElementDofs(body, e, dofs));
+    for (PetscInt i = 0; i < n; i++) diagonal[i] = M[i * n + i];
+    if (body->mass_diagonal) PetscCall(VecSetValues(body->mass_diagonal, n, dofs, diagonal, ADD_VALUES));
+    else PetscCall(MatSetValues(body->mass_matrix, n, dofs, n, dofs, M, ADD_VALUES));
+  }
+  if (body->mass_diagonal) {
+    PetscCall(VecAssemblyBegin(body->mass_diagonal));
+    PetscCall(VecAssemblyEnd(body->mass_diagonal));
+  } else {
+    PetscCall(MatAssemblyBegin(body->mass_matrix, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(body->mass_matrix, MAT_FINAL_ASSEMBLY));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the massless nodes and their displacements */
+static PetscErrorCode SetUpLayer(Body body)
+{
+  PetscFunctionBegin;
+  body->n_layer_dofs = 0;
+  PetscCall(PetscMalloc1(body->owned_nodes * body->dim, &body->layer_dofs));
+  if (!body->mass_redistribute) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt node = 0; node < body->owned_nodes; node++)
+    for (PetscInt d = 0; d < body->dim; d++)
+      if (body->in_layer[node]) body->layer_dofs[body->n_layer_dofs++] = node * body->dim + d;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Assembles the mass, and what the explicit integrator needs to divide by it */
+PetscErrorCode BodySetUpMass(Body body)
+{
+  Vec       ones;
+  PetscReal sum;
+
+  PetscFunctionBegin;
+  PetscCall(SetUpLayer(body));
+  PetscCall(AssembleMass(body));
+  PetscCall(BodyCreateVec(body, &body->mass_row_sum));
+  PetscCall(BodyCreateVec(body, &ones));
+  PetscCall(VecSet(ones, 1));
+  PetscCall(BodyMultiplyMass(body, ones, body->mass_row_sum));
+  PetscCall(VecDestroy(&ones));
+  PetscCall(VecSum(body->mass_row_sum, &sum));
+  body->total_mass = sum / body->dim;
+  if (body->mass_diagonal) {
+    PetscScalar       *inverse;
+    const PetscScalar *mass;
+
+    PetscCall(BodyCreateVec(body, &body->inverse_mass));
+    PetscCall(VecGetArrayRead(body->mass_diagonal, &mass));
+    PetscCall(VecGetArrayWrite(body->inverse_mass, &inverse));
+    for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) inverse[i] = mass[i] > 0 ? 1 / mass[i] : 0;
+    PetscCall(VecRestoreArrayWrite(body->inverse_mass, &inverse));
+    PetscCall(VecRestoreArrayRead(body->mass_diagonal, &mass));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The factors of a mass matrix that is not diagonal, with ones in place of the massless nodes. Explicit bodies keep them;
+   an implicit one needs them at most once, for its first acceleration. */
+static PetscErrorCode SetUpMassSolver(Body body)
+{
+  Mat      solvable;
+  char     prefix[128];
+  PetscInt rstart;
+
+  PetscFunctionBegin;
+  PetscCall(MatDuplicate(body->mass_matrix, MAT_COPY_VALUES, &solvable));
+  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
+  for (PetscInt i = 0; i < body->n_layer_dofs; i++) PetscCall(MatSetValue(solvable, rstart + body->layer_dofs[i], rstart + body->layer_dofs[i], 1, ADD_VALUES));
+  PetscCall(MatAssemblyBegin(solvable, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
+  PetscCall(ConstrainedSolverCreate(solvable, body->interface, prefix, &body->mass_solver));
+  PetscCall(MatDestroy(&solvable));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = M x */
+PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
+{
+  PetscFunctionBegin;
+  if (body->mass_diagonal) PetscCall(VecPointwiseMult(y, body->mass_diagonal, x));
+  else PetscCall(MatMult(body->mass_matrix, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* a = M^{-1} f, zero on massless nodes; where `prescribed` is given, with the acceleration of prescribed rows at that
+   position of the controller step. f is used as work space. */
+PetscErrorCode BodySolveMass(Body body, Vec f, PetscReal position, PetscBool prescribed, Vec a)
+{
+  PetscFunctionBegin;
+  if (body->inverse_mass) {
+    PetscCall(VecPointwiseMult(a, body->inverse_mass, f));
+    if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, a));
+  } else {
+    PetscScalar *array;
+
+    if (!body->mass_solver) PetscCall(SetUpMassSolver(body));
+    if (prescribed) {
+      PetscCall(VecZeroEntries(body->work[1]));
+      PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->work[1]));
+      PetscCall(MatMult(body->mass_matrix, body->work[1], a));
+      PetscCall(VecAXPY(f, -1, a));
+    }
+    PetscCall(ConstrainedSolverSolve(body->mass_solver, f, a));
+    if (prescribed) PetscCall(VecAXPY(a, 1, body->work[1]));
+    PetscCall(VecGetArray(a, &array));
+    for (PetscInt i = 0; i < body->n_layer_dofs; i++) array[body->layer_dofs[i]] = 0;
+    PetscCall(VecRestoreArray(a, &array));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,441 @@
+/*
+   The response of a linear body, over one controller step, to what comes in at its interface rows.
+
+   It serves twice: its values on the rows are the interface compliance that the outer Newton iteration wants, and with one
+   substep the whole end state is affine in the inputs, so that repeated sweeps of a controller step add columns instead of
+   solving again.
+
+   The inputs of a row rise linearly from zero to one over the controller step.
+*/
+#include "bodyimpl.h"
+
+/* Above this many rows the columns of whole states would cost more memory and time than they save. */
+#define MAX_CONDENSED_ROWS 16
+
+typedef enum {
+  INPUT_DISPLACEMENT,
+  INPUT_VELOCITY,
+  INPUT_ACCELERATION,
+  INPUT_FORCE
+} InputKind;
+
+typedef struct {
+  PetscInt     row; /* global */
+  InputKind    kind;
+  BodyState    state;
+  Vec          internal_force;
+  PetscScalar *rows; /* displacement, velocity, acceleration, reaction: 4 x local rows */
+} Column;
+
+struct _BodyResponse {
+  PetscBool    made;         /* there is a matrix, for `conditions` */
+  PetscBool    valid;        /* these are the present conditions */
+  BodyCondition *conditions;
+  PetscBool    window_valid; /* the present end state came from `inputs` */
+  PetscBool    condensed;    /* columns hold states */
+  PetscScalar *matrix;       /* global x global by columns: reaction of prescribed, displacement of other rows */
+  PetscInt     n_columns;
+  Column      *columns;      /* at most 3 for each row */
+  PetscScalar *inputs, *new_inputs; /* of all rows on every rank, 4 kinds each */
+  PetscScalar *mine;
+};
+
+static PetscErrorCode DestroyColumns(struct _BodyResponse *response)
+{
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < response->n_columns; c++) {
+    Column *column = &response->columns[c];
+
+    PetscCall(VecDestroy(&column->state.u));
+    PetscCall(VecDestroy(&column->state.v));
+    PetscCall(VecDestroy(&column->state.a));
+    PetscCall(VecDestroy(&column->internal_force));
+    PetscCall(PetscFree(column->rows));
+  }
+  response->n_columns = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyDestroyResponse(Body body)
+{
+  struct _BodyResponse *response = body->response;
+
+  PetscFunctionBegin;
+  if (!response) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DestroyColumns(response));
+  PetscCall(PetscFree6(response->matrix, response->columns, response->inputs, response->new_inputs, response->mine, response->conditions));
+  PetscCall(PetscFree(body->response));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the response was made for the present conditions, as far as this rank can tell */
+PetscBool BodyMatchResponse(Body body)
+{
+  const struct _BodyResponse *response = body->response;
+
+  if (!response || !response->made) return PETSC_FALSE;
+  for (PetscInt i = 0; i < body->rows.local; i++)
+    if (response->conditions[i] != body->conditions[i]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* The conditions have changed, to some that the response was made for, or others */
+PetscErrorCode BodyValidateResponse(Body body, PetscBool valid)
+{
+  PetscFunctionBegin;
+  if (!body->response) PetscFunctionReturn(PETSC_SUCCESS);
+  body->response->valid        = valid;
+  body->response->window_valid = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The saved state has changed */
+PetscErrorCode BodyInvalidateWindow(Body body)
+{
+  PetscFunctionBegin;
+  if (body->response) body->response->window_valid = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All inputs at the end of the controller step, on every rank */
+static PetscErrorCode GatherInputs(Body body, PetscScalar all[])
+{
+  const Trace traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
+  BodyRows   *rows     = &body->rows;
+  PetscScalar *values, *mine = body->response->mine;
+
+  PetscFunctionBegin;
+  for (PetscInt kind = 0; kind < 4; kind++) {
+    PetscCall(TraceGetLevel(traces[kind], body->substeps, &values));
+    for (PetscInt i = 0; i < rows->local; i++) mine[4 * i + kind] = values[i];
+  }
+  if (rows->size > 1) PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, all, rows->counts, rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
+  else PetscCall(PetscArraycpy(all, mine, 4 * rows->local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A whole integration has just been done: remember what came in */
+PetscErrorCode BodyNoteWindow(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->response || !body->response->valid || !body->response->condensed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GatherInputs(body, body->response->inputs));
+  body->response->window_valid = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddColumn(Body body, const Column *column, PetscScalar change)
+{
+  const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(VecAXPY(body->state.u, change, column->state.u));
+  PetscCall(VecAXPY(body->state.v, change, column->state.v));
+  PetscCall(VecAXPY(body->state.a, change, column->state.a));
+  PetscCall(VecAXPY(body->internal_force, change, column->internal_force));
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], body->substeps, &values));
+    for (PetscInt i = 0; i < body->rows.local; i++) values[i] += change * column->rows[t * body->rows.local + i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the end state of this controller step to the inputs as they are now, if it can be done by adding columns */
+PetscErrorCode BodyIntegrateByResponse(Body body, PetscBool *done)
+{
+  struct _BodyResponse *response = body->response;
+
+  PetscFunctionBegin;
+  *done = PETSC_FALSE;
+  if (!response || !response->window_valid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GatherInputs(body, response->new_inputs));
+  for (PetscInt c = 0; c < response->n_columns; c++) {
+    const PetscInt  input  = 4 * response->columns[c].row + response->columns[c].kind;
+    const PetscReal change = response->new_inputs[input] - response->inputs[input];
+
+    if (change != 0) PetscCall(AddColumn(body, &response->columns[c], change));
+  }
+  PetscCall(PetscArraycpy(response->inputs, response->new_inputs, 4 * body->rows.global));
+  body->total_substeps += body->substeps;
+  *done = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUnitInput(Body body, PetscInt row, InputKind kind)
+{
+  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
+  const PetscInt local    = row - body->rows.begin;
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 4; t++) PetscCall(TraceZero(traces[t]));
+  if (local < 0 || local >= body->rows.local) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt level = 1; level <= body->substeps; level++) {
+    PetscScalar *values;
+
+    PetscCall(TraceGetLevel(traces[kind], level, &values));
+    values[local] = (PetscReal)level / body->substeps;
+    if (kind == INPUT_DISPLACEMENT && body->substeps > 1) {
+      PetscCall(TraceGetLevel(body->traces.velocity_in, level, &values));
+      values[local] = 1 / body->controller_step;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One column: integrates a body at rest under one unit input */
+static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
+{
+  struct _BodyResponse *response = body->response;
+  const Trace           traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  PetscScalar          *outputs[4], *rows;
+
+  PetscFunctionBegin;
+  PetscCall(SetUnitInput(body, row, kind));
+  PetscCall(BodyRestore(body));
+  PetscCall(BodyIntegrateWindow(body));
+  body->total_substeps -= body->substeps;
+  PetscCall(PetscMalloc1(4 * body->rows.local, &rows));
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], body->substeps, &outputs[t]));
+    PetscCall(PetscArraycpy(rows + t * body->rows.local, outputs[t], body->rows.local));
+  }
+  if (kind == INPUT_DISPLACEMENT || kind == INPUT_FORCE) {
+    PetscScalar *mine = response->mine;
+
+    for (PetscInt i = 0; i < body->rows.local; i++) mine[i] = body->conditions[i] == BODY_PRESCRIBED ? outputs[3][i] : outputs[0][i];
+    /* offsets and counts are for four numbers a row */
+    for (PetscInt i = body->rows.local - 1; i >= 0; i--) {
+      mine[4 * i] = mine[i];
+      if (i) mine[4 * i + 1] = mine[4 * i + 2] = mine[4 * i + 3] = 0;
+    }
+    if (body->rows.size > 1) PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)(4 * body->rows.local), MPIU_SCALAR, response->new_inputs, body->rows.counts, body->rows.offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
+    else PetscCall(PetscArraycpy(response->new_inputs, mine, 4 * body->rows.local));
+    for (PetscInt i = 0; i < body->rows.global; i++) response->matrix[row * body->rows.global + i] = response->new_inputs[4 * i];
+  }
+  if (response->condensed) {
+    Column *column = &response->columns[response->n_columns++];
+
+    column->row  = row;
+    column->kind = kind;
+    column->rows = rows;
+    PetscCall(VecDuplicate(body->state.u, &column->state.u));
+    PetscCall(VecDuplicate(body->state.u, &column->state.v));
+    PetscCall(VecDuplicate(body->state.u, &column->state.a));
+    PetscCall(VecDuplicate(body->state.u, &column->internal_force));
+    PetscCall(VecCopy(body->state.u, column->state.u));
+    PetscCall(VecCopy(body->state.v, column->state.v));
+    PetscCall(VecCopy(body->state.a, column->state.a));
+    PetscCall(VecCopy(body->internal_force, column->internal_force));
+  } else PetscCall(PetscFree(rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateResponse(Body body)
+{
+  struct _BodyResponse *response;
+  BodyRows             *rows = &body->rows;
+  PetscBool             linear;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&body->response));
+  response = body->response;
+  PetscCall(MaterialIsLinear(body->material, &linear));
+  response->condensed = (PetscBool)(linear && body->substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
+  PetscCall(PetscCalloc6(rows->global * rows->global, &response->matrix, 3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs, 4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Everything that probing overwrites */
+typedef struct {
+  BodyState    state, saved;
+  Vec          internal_force;
+  PetscReal    time, saved_time;
+  PetscInt     step, saved_step;
+  PetscScalar *traces;
+} Backup;
+
+static PetscErrorCode CopyTraces(Body body, PetscScalar buffer[], PetscBool store)
+{
+  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in, body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  const PetscInt n        = (body->substeps + 1) * body->rows.local;
+  PetscScalar   *values;
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 8; t++) {
+    PetscCall(TraceGetLevel(traces[t], 0, &values));
+    if (store) PetscCall(PetscArraycpy(buffer + t * n, values, n));
+    else PetscCall(PetscArraycpy(values, buffer + t * n, n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BeginProbing(Body body, Backup *backup)
+{
+  const Vec from[] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
+  Vec      *to[]   = {&backup->state.u, &backup->state.v, &backup->state.a, &backup->saved.u, &backup->saved.v, &backup->saved.a, &backup->internal_force};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 7; i++) {
+    PetscCall(VecDuplicate(from[i], to[i]));
+    PetscCall(VecCopy(from[i], *to[i]));
+    PetscCall(VecZeroEntries(from[i]));
+  }
+  PetscCall(PetscMalloc1(8 * (body->substeps + 1) * body->rows.local, &backup->traces));
+  PetscCall(CopyTraces(body, backup->traces, PETSC_TRUE));
+  backup->time       = body->time;
+  backup->saved_time = body->saved_time;
+  backup->step       = body->step;
+  backup->saved_step = body->saved_step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EndProbing(Body body, Backup *backup)
+{
+  Vec *from[] = {&backup->state.u, &backup->state.v, &backup->state.a, &backup->saved.u, &backup->saved.v, &backup->saved.a, &backup->internal_force};
+  Vec  to[]   = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 7; i++) {
+    PetscCall(VecCopy(*from[i], to[i]));
+    PetscCall(VecDestroy(from[i]));
+  }
+  PetscCall(CopyTraces(body, backup->traces, PETSC_FALSE));
+  PetscCall(PetscFree(backup->traces));
+  body->time       = backup->time;
+  body->saved_time = backup->saved_time;
+  body->step       = backup->step;
+  body->saved_step = backup->saved_step;
+  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeResponse - what comes out of the rows for a unit input on each, under the present conditions
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, linear
+
+  Output Parameter:
+. matrix - all rows by all rows, by columns, on every rank, owned by the body. Inputs rise linearly over the controller step to
+           a displacement of 1 m on prescribed rows and a force of 1 N on forced rows; outputs, at its end, are the reaction on
+           prescribed rows [N] and the displacement on all others [m]
+
+  Level: developer
+
+  Note:
+  The interface compliance of the body. Made again only when the conditions have changed.
+
+.seealso: `Body`, `BodySetConditions()`
+@*/
+PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
+{
+  struct _BodyResponse *response;
+  BodyRows             *rows = &body->rows;
+  Backup                backup;
+  PetscMPIInt           mine, *kinds;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (!body->response) PetscCall(CreateResponse(body));
+  response = body->response;
+  *matrix  = response->matrix;
+  if (response->valid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
+  PetscCall(DestroyColumns(response));
+  PetscCall(PetscArrayzero(response->matrix, rows->global * rows->global));
+  PetscCall(BeginProbing(body, &backup));
+  PetscCall(PetscMalloc1(rows->global, &kinds));
+  for (PetscInt row = 0; row < rows->global; row++) {
+    const PetscInt local = row - rows->begin;
+
+    mine = local >= 0 && local < rows->local ? (PetscMPIInt)body->conditions[local] : 0;
+    PetscCallMPI(MPI_Allreduce(&mine, &kinds[row], 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
+  }
+  for (PetscInt row = 0; row < rows->global; row++) {
+    if (kinds[row] == BODY_FORCED) PetscCall(Probe(body, row, INPUT_FORCE));
+    if (kinds[row] != BODY_PRESCRIBED) continue;
+    PetscCall(Probe(body, row, INPUT_DISPLACEMENT));
+    if (!body->prescribed_mass || !response->condensed) continue;
+    PetscCall(Probe(body, row, INPUT_VELOCITY));
+    PetscCall(Probe(body, row, INPUT_ACCELERATION));
+  }
+  PetscCall(PetscFree(kinds));
+  PetscCall(EndProbing(body, &backup));
+  PetscCall(PetscArraycpy(response->conditions, body->conditions, rows->local));
+  response->made = response->valid = PETSC_TRUE;
+  PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyPrepareSweeps - makes what repeated calls of `BodyIntegrate()` in one controller step profit from, under the present
+  conditions
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+.seealso: `Body`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyPrepareSweeps(Body body)
+{
+  const PetscScalar *matrix;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (!body->response) PetscCall(CreateResponse(body));
+  if (body->response->condensed && !body->response->valid) PetscCall(BodyComputeResponse(body, &matrix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeForwardCompliance - displacement of the rows at the end of the controller step for unit forces at its start
+
+  Collective
+
+  Input Parameter:
+. body - an explicit `Body` without massless nodes and with one substep
+
+  Output Parameter:
+. matrix - dt^2 B M^{-1} B^T [m/N], all rows by all rows, on every rank; free it with `PetscFree()`
+
+  Level: developer
+
+  Note:
+  Carpenter, Taylor, Katona 1991, the matrix of the forward-increment Lagrange multipliers.
+
+.seealso: `Body`, `BodyAddImpulse()`
+@*/
+PetscErrorCode BodyComputeForwardCompliance(Body body, PetscScalar *matrix[])
+{
+  BodyRows          *rows = &body->rows;
+  const PetscScalar *row;
+  PetscScalar       *compliance;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscCalloc1(rows->global * rows->global, &compliance));
+  for (PetscInt j = 0; j < rows->global; j++) {
+    const PetscInt local = j - rows->begin;
+
+    PetscCall(VecZeroEntries(body->row_vec[0]));
+    if (local >= 0 && local < rows->local) PetscCall(VecSetValue(body->row_vec[0], j, 1, INSERT_VALUES));
+    PetscCall(VecAssemblyBegin(body->row_vec[0]));
+    PetscCall(VecAssemblyEnd(body->row_vec[0]));
+    PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
+    PetscCall(BodySolveMass(body, body->work[0], 0, PETSC_FALSE, body->work[2]));
+    PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
+    PetscCall(VecGetArrayRead(body->row_vec[0], &row));
+    for (PetscInt i = 0; i < rows->local; i++) compliance[j * rows->global + rows->begin + i] = PetscSqr(body->time_step) * row[i];
+    PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, compliance, (PetscMPIInt)(rows->global * rows->global), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *matrix = compliance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

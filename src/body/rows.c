@@ -1,0 +1,224 @@
+/* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
+#include "bodyimpl.h"
+
+const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
+
+/*@
+  BodySetInterface - sets the linear combinations of displacements by which the body meets others
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`
+- B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; the rows that
+         may be prescribed must be orthonormal
+
+  Level: developer
+
+.seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodySetInterface(Body body, Mat B)
+{
+  BodyRows *rows = &body->rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidHeaderSpecific(B, MAT_CLASSID, 2);
+  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  PetscCall(PetscObjectReference((PetscObject)B));
+  PetscCall(MatDestroy(&body->interface));
+  body->interface = B;
+  PetscCall(MatGetLocalSize(B, &rows->local, NULL));
+  PetscCall(MatGetSize(B, &rows->global, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetTractionType - chooses the nodal force that is reported for prescribed rows
+
+  Logically Collective
+
+  Input Parameters:
++ body - the `Body`
+- type - with or without the inertia of the nodes
+
+  Options Database Key:
+. -schwarz_traction (internal|reaction) - read by the contact method, for all bodies
+
+  Level: intermediate
+
+  Note:
+  On massless nodes both are the same.
+
+.seealso: `Body`, `BodyTractionType`
+@*/
+PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  body->traction = type;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetConditions - says which rows are prescribed and which are loaded from now on
+
+  Collective
+
+  Input Parameters:
++ body       - the `Body`
+- conditions - one for each row of this rank
+
+  Level: developer
+
+  Note:
+  Never makes a matrix be factored again.
+
+.seealso: `Body`, `BodyCondition`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
+{
+  PetscInt  counts[2] = {0, 0};
+  PetscBool changed = PETSC_FALSE, known;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    if (conditions[i] != body->conditions[i]) changed = PETSC_TRUE;
+    body->conditions[i] = conditions[i];
+    counts[0] += conditions[i] == BODY_PRESCRIBED;
+    counts[1] += conditions[i] == BODY_FORCED;
+  }
+  known = BodyMatchResponse(body);
+  if (body->rows.size > 1) {
+    PetscInt all[4] = {counts[0], counts[1], changed ? 1 : 0, known ? 0 : 1};
+
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+    counts[0] = all[0];
+    counts[1] = all[1];
+    changed   = (PetscBool)(all[2] > 0);
+    known     = (PetscBool)(all[3] == 0);
+  }
+  if (!changed) PetscFunctionReturn(PETSC_SUCCESS);
+  body->n_prescribed = counts[0];
+  body->n_forced     = counts[1];
+  PetscCall(BodyValidateResponse(body, known));
+  PetscCall(BodySetConstraints(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells the solvers which rows they hold */
+PetscErrorCode BodySetConstraints(Body body)
+{
+  PetscBool *held;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(body->rows.local, &held));
+  for (PetscInt i = 0; i < body->rows.local; i++) held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
+  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, held));
+  if (body->mass_solver && body->is_explicit && body->prescribed_mass) PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, held));
+  PetscCall(PetscFree(held));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* vec += B^T (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step, or 0 */
+PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec)
+{
+  PetscScalar *row, *target;
+
+  PetscFunctionBegin;
+  if (!body->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
+  PetscCall(VecGetArray(body->row_vec[0], &row));
+  if (trace) {
+    PetscCall(VecGetArrayWrite(body->row_vec[1], &target));
+    PetscCall(TraceInterpolate(trace, position, 0, body->rows.local, target));
+    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? target[i] - row[i] : 0;
+    PetscCall(VecRestoreArrayWrite(body->row_vec[1], &target));
+  } else {
+    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? -row[i] : 0;
+  }
+  PetscCall(VecRestoreArray(body->row_vec[0], &row));
+  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], vec, vec));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f += scale B^T lambda on forced rows, with lambda from the force trace at that position of the controller step */
+PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar scale, Vec f)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  if (!body->n_forced) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
+  PetscCall(TraceInterpolate(body->traces.force_in, position, 0, body->rows.local, row));
+  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED ? scale * row[i] : 0;
+  PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
+  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], f, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteTrace(Body body, Vec vec, Trace trace, PetscInt level)
+{
+  const PetscScalar *row;
+  PetscScalar       *values;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
+  PetscCall(TraceGetLevel(trace, level, &values));
+  PetscCall(VecGetArrayRead(body->row_vec[0], &row));
+  PetscCall(PetscArraycpy(values, row, body->rows.local));
+  PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacement, velocity and acceleration of all rows, and the reaction of prescribed ones, as they are now */
+PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
+{
+  PetscScalar *reaction;
+
+  PetscFunctionBegin;
+  if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WriteTrace(body, body->state.u, body->traces.displacement, level));
+  PetscCall(WriteTrace(body, body->state.v, body->traces.velocity, level));
+  PetscCall(WriteTrace(body, body->state.a, body->traces.acceleration, level));
+  if (body->n_prescribed) {
+    Vec force = body->internal_force;
+
+    if (body->traction == BODY_TRACTION_REACTION) {
+      force = body->work[0];
+      PetscCall(BodyMultiplyMass(body, body->state.a, force));
+      PetscCall(VecAXPY(force, 1, body->internal_force));
+      /* what is loaded and prescribed at once has the load in its balance */
+      PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, force));
+    }
+    PetscCall(WriteTrace(body, force, body->traces.reaction, level));
+  }
+  PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
+  for (PetscInt i = 0; i < body->rows.local; i++)
+    if (body->conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetTraces - the waveforms through which the body talks with its partners
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. traces - the waveforms, owned by the body; level k is the end of substep k
+
+  Level: developer
+
+.seealso: `Body`, `BodyTraces`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyGetTraces(Body body, BodyTraces *traces)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *traces = body->traces;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

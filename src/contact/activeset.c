@@ -1,0 +1,79 @@
+/* The active set and what is shared by all methods: conditions, gaps, the free step. */
+#include "contactimpl.h"
+
+/* Tells every body what its rows mean */
+PetscErrorCode ContactSetConditions(Contact contact, ContactConditions conditions)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+      BodyCondition      condition = BODY_FREE;
+
+      if (conditions == CONDITIONS_FORCES && (pair->body[0] == b || pair->body[1] == b)) condition = BODY_FORCED;
+      if (conditions == CONDITIONS_SCHWARZ && contact->active[i]) {
+        if (pair->body[0] == b) condition = BODY_PRESCRIBED;
+        if (pair->body[1] == b) condition = BODY_FORCED;
+      }
+      contact->conditions[i] = condition;
+    }
+    PetscCall(BodySetConditions(contact->bodies[b], contact->conditions));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether any row on any rank is active (penetrating = false), or penetrates without being active (true) */
+PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any)
+{
+  int found = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    if (penetrating ? !contact->active[i] && contact->gap[i] < -contact->tolerance : contact->active[i]) found = 1;
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  *any = (PetscBool)(found > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The active set on every rank */
+PetscErrorCode ContactGatherActive(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->mine_active[i] = contact->active[i] ? 1 : 0;
+  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts, contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gaps at the end of the controller step, from the bodies' traces */
+PetscErrorCode ContactComputeGaps(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *end[2];
+
+    for (PetscInt side = 0; side < 2; side++) {
+      const BodyTraces *traces = &contact->traces[pair->body[side]];
+      PetscInt          levels;
+
+      PetscCall(TraceGetSizes(traces->displacement, NULL, &levels));
+      PetscCall(TraceGetLevel(traces->displacement, levels, &end[side]));
+    }
+    for (PetscInt i = pair->begin; i < pair->end; i++) contact->gap[i] = contact->initial_gap[i] + end[1][i] - end[0][i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All bodies through the controller step without contact; the gaps at its end; whether any row penetrates. The active set is
+   empty afterwards. */
+PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(contact->active, contact->n_rows));
+  PetscCall(PetscArrayzero(contact->force, contact->n_rows));
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyIntegrate(contact->bodies[b]));
+  PetscCall(ContactComputeGaps(contact));
+  PetscCall(ContactAny(contact, PETSC_TRUE, penetrating));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

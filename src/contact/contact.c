@@ -1,0 +1,341 @@
+/* The class: creation, options, step, destruction. */
+#include "contactimpl.h"
+
+PetscClassId  CONTACT_CLASSID = 0;
+PetscLogEvent CONTACT_Step, CONTACT_Sweep;
+
+static PetscFunctionList ContactList = NULL;
+
+/*@C
+  ContactRegister - adds a contact method to the registry
+
+  Not Collective
+
+  Input Parameters:
++ name   - its name for `-contact_type`
+- create - function that sets up the type-specific part of a `Contact`
+
+  Level: developer
+
+.seealso: `Contact`, `ContactSetType()`
+@*/
+PetscErrorCode ContactRegister(const char name[], PetscErrorCode (*create)(Contact))
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListAdd(&ContactList, name, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactRegisterAll - registers the class and all methods that Impakt brings
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ContactRegister()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode ContactRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscClassIdRegister("Contact", &CONTACT_CLASSID));
+  PetscCall(PetscLogEventRegister("ContactStep", CONTACT_CLASSID, &CONTACT_Step));
+  PetscCall(PetscLogEventRegister("ContactSweep", CONTACT_CLASSID, &CONTACT_Sweep));
+  PetscCall(ContactRegister(CONTACT_SCHWARZ, ContactCreate_Schwarz));
+  PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
+  PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactFinalizePackage - empties the registry
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ContactRegisterAll()`
+@*/
+PetscErrorCode ContactFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListDestroy(&ContactList));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactCreate - creates a contact problem without bodies
+
+  Collective
+
+  Input Parameter:
+. comm - communicator
+
+  Output Parameter:
+. contact - the `Contact`
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactSetBodies()`, `ContactSetFromOptions()`, `ContactSetUp()`
+@*/
+PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
+  PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetBodies - sets the bodies that may touch
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`
+. n       - their number
+- bodies  - the bodies, with mesh but not yet set up
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactAddPair()`
+@*/
+PetscErrorCode ContactSetBodies(Contact contact, PetscInt n, const Body bodies[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCheck(!contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "The bodies have been set already");
+  contact->n_bodies = n;
+  PetscCall(PetscMalloc1(n, &contact->bodies));
+  for (PetscInt b = 0; b < n; b++) {
+    PetscCall(PetscObjectReference((PetscObject)bodies[b]));
+    contact->bodies[b] = bodies[b];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetType - chooses the contact method
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- type    - its name
+
+  Options Database Key:
+. -contact_type (schwarz|penalty|lagrange) - the contact method
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactRegister()`
+@*/
+PetscErrorCode ContactSetType(Contact contact, ContactType type)
+{
+  PetscErrorCode (*create)(Contact);
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, type, &same));
+  if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "The method cannot be changed after ContactSetUp()");
+  PetscCall(PetscFunctionListFind(ContactList, type, &create));
+  PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange", type);
+  PetscTryTypeMethod(contact, destroy);
+  PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
+  PetscCall((*create)(contact));
+  PetscCall(PetscObjectChangeTypeName((PetscObject)contact, type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetType - the contact method
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. type - its name
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactSetType()`
+@*/
+PetscErrorCode ContactGetType(Contact contact, ContactType *type)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  *type = ((PetscObject)contact)->type_name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetFromOptions - reads pairs and method from the options
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, with its bodies
+
+  Options Database Keys:
++ -contact_pairs a:b,b:c                       - pairs of bodies, Dirichlet side first; a.top:b.bottom for certain surfaces;
+                                                 default: the two bodies, where there are two
+. -contact_type (schwarz|penalty|lagrange)     - the contact method
+- -contact_tolerance g                         - depth that does not yet count as penetration [m]
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`
+@*/
+PetscErrorCode ContactSetFromOptions(Contact contact)
+{
+  char      type[64] = CONTACT_SCHWARZ, *pairs[64];
+  PetscInt  n = 64;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  contact->tolerance = PETSC_DEFAULT;
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
+  PetscCall(PetscOptionsStringArray("-contact_pairs", "Pairs of bodies, Dirichlet side first", "ContactAddPair", pairs, &n, &set));
+  PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetFromOptions", contact->tolerance, &contact->tolerance, NULL));
+  PetscOptionsEnd();
+  if (set) {
+    for (PetscInt p = 0; p < n; p++) {
+      PetscCall(ContactAddPair(contact, pairs[p]));
+      PetscCall(PetscFree(pairs[p]));
+    }
+  } else if (contact->n_bodies == 2) {
+    char pair[256];
+
+    PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[0])->name, ((PetscObject)contact->bodies[1])->name));
+    PetscCall(ContactAddPair(contact, pair));
+  }
+  PetscCheck(contact->n_bodies < 2 || contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c", contact->n_bodies);
+  PetscCall(ContactSetType(contact, type));
+  PetscTryTypeMethod(contact, setfromoptions);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactStep - advances all bodies from their saved states through one controller step, under contact
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Level: developer
+
+  Note:
+  The step becomes final by `ContactAccept()`.
+
+.seealso: `Contact`, `ContactAccept()`, `BodySave()`
+@*/
+PetscErrorCode ContactStep(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
+  contact->counts_made.sweeps = 0;
+  PetscUseTypeMethod(contact, step);
+  contact->counts_made.total_sweeps += contact->counts_made.sweeps;
+  PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactAccept - takes the states at the end of the controller step as the start of the next one
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, after `ContactStep()`
+
+  Level: developer
+
+.seealso: `Contact`, `ContactStep()`, `BodySave()`
+@*/
+PetscErrorCode ContactAccept(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
+  PetscCall(PetscArraycpy(contact->saved_force, contact->force, contact->n_rows));
+  PetscCall(PetscArraycpy(contact->saved_gap, contact->gap, contact->n_rows));
+  PetscCall(PetscArraycpy(contact->saved_active, contact->active, contact->n_rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactView - prints pairs and method
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- viewer  - an ASCII viewer
+
+  Level: beginner
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PetscViewerASCIIPrintf(viewer, " %s", contact->pairs[p].name));
+  PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->n_all_rows, contact->n_all_rows == 1 ? "" : "s"));
+  PetscTryTypeMethod(contact, view, viewer);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactDestroy - frees a contact problem
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set to `NULL`
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactCreate()`
+@*/
+PetscErrorCode ContactDestroy(Contact *contact)
+{
+  Contact c = *contact;
+
+  PetscFunctionBegin;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(c, CONTACT_CLASSID, 1);
+  if (--((PetscObject)c)->refct > 0) {
+    *contact = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscTryTypeMethod(c, destroy);
+  for (PetscInt b = 0; b < c->n_bodies; b++) {
+    PetscCall(BodyDestroy(&c->bodies[b]));
+    if (c->interfaces) PetscCall(MatDestroy(&c->interfaces[b]));
+    if (c->node_dofs) PetscCall(PetscFree(c->node_dofs[b]));
+  }
+  for (PetscInt p = 0; p < c->n_pairs; p++) {
+    PetscCall(PetscFree(c->pairs[p].name));
+    PetscCall(PetscFree(c->pairs[p].surface[0]));
+    PetscCall(PetscFree(c->pairs[p].surface[1]));
+  }
+  PetscCall(PetscFree(c->bodies));
+  PetscCall(PetscFree(c->pairs));
+  PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->node_dofs, c->n_node_dofs, c->n_all_nodes));
+  PetscCall(PetscFree3(c->row_pair, c->initial_gap, c->area));
+  PetscCall(PetscFree7(c->force, c->gap, c->saved_force, c->saved_gap, c->active, c->saved_active, c->conditions));
+  PetscCall(PetscFree5(c->all_row_pair, c->mine_active, c->all_active, c->counts, c->offsets));
+  PetscCall(PetscHeaderDestroy(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

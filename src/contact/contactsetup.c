@@ -1,0 +1,282 @@
+/* Set-up, and what contact tells of itself. */
+#include "contactimpl.h"
+
+/*@
+  ContactSetUp - finds the contact rows, sets up the bodies and the method
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, with bodies, pairs and type
+
+  Level: developer
+
+.seealso: `Contact`, `ContactSetFromOptions()`, `ContactStep()`
+@*/
+PetscErrorCode ContactSetUp(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactSetUpPairs(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodySetUp(contact->bodies[b]));
+    PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
+  }
+  PetscTryTypeMethod(contact, setup);
+  contact->setup = PETSC_TRUE;
+  PetscCall(ContactCheckInitialGap(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactCheckInitialGap - takes the present states as the start, and refuses bodies that overlap
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Level: developer
+
+  Note:
+  To be called again when the initial states have been changed after `ContactSetUp()`.
+
+.seealso: `Contact`, `BodySetInitialState()`
+@*/
+PetscErrorCode ContactCheckInitialGap(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+    PetscScalar       *dirichlet, *neumann;
+
+    PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
+    PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
+    contact->gap[i] = contact->saved_gap[i] = contact->initial_gap[i] + neumann[i] - dirichlet[i];
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    ContactPairState   state;
+
+    PetscCall(ContactGetPairState(contact, p, &state));
+    PetscCheck(state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)", ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetNumPairs - number of contact pairs
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. n - their number
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPair()`
+@*/
+PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  *n = contact->n_pairs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ContactGetPair - name and bodies of a pair
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameters:
++ name      - as it was given, or `NULL`
+. dirichlet - body that takes displacements, or `NULL`
+- neumann   - body that takes tractions, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetNumPairs()`
+@*/
+PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[], Body *dirichlet, Body *neumann)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  if (name) *name = contact->pairs[pair].name;
+  if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[0]];
+  if (neumann) *neumann = contact->bodies[contact->pairs[pair].body[1]];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairNormal - mean outward normal of the Dirichlet side of a pair
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. normal - 3 numbers, zeros beyond the space dimension
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal normal[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairState - force, gap and active nodes of a pair at the end of the last step
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. state - see `ContactPairState`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactStep()`
+@*/
+PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
+{
+  const ContactPair *p = &contact->pairs[pair];
+  PetscReal          sums[2] = {0, 0}, maxima[2] = {-PETSC_MAX_REAL, 0};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  for (PetscInt i = p->begin; i < p->end; i++) {
+    sums[0] += contact->force[i];
+    sums[1] += contact->active[i] ? 1 : 0;
+    maxima[0] = PetscMax(maxima[0], -contact->gap[i]);
+    maxima[1] = PetscMax(maxima[1], -contact->force[i]);
+  }
+  if (contact->size > 1) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  }
+  state->force   = sums[0];
+  state->active  = (PetscInt)sums[1];
+  state->gap     = -maxima[0];
+  state->tension = maxima[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPenaltyEnergy - energy stored in the penalty springs, 0 with other methods
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. energy - [J]
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetPenaltyEnergy(Contact contact, PetscReal *energy)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  *energy = contact->penalty_energy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetCounts - sweeps and changes of the active set
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. counts - see `ContactCounts`
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  *counts = contact->counts_made;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetBodyTrace - mean position and velocity of the contact nodes of a body, in the first pair it takes part in
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- body    - number of the body
+
+  Output Parameters:
++ position - 3 numbers [m]
+- velocity - 3 numbers [m/s]
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal position[], PetscReal velocity[])
+{
+  const PetscScalar *x, *u, *v;
+  Vec                positions, displacements, velocities;
+  PetscReal          sums[6] = {0};
+  PetscInt           dim;
+  DM                 dm;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(BodyGetDM(contact->bodies[body], &dm));
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+  PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
+  PetscCall(VecGetArrayRead(positions, &x));
+  PetscCall(VecGetArrayRead(displacements, &u));
+  PetscCall(VecGetArrayRead(velocities, &v));
+  for (PetscInt i = 0; i < contact->n_node_dofs[body]; i++) {
+    const PetscInt dof = contact->node_dofs[body][i];
+
+    for (PetscInt d = 0; d < dim; d++) {
+      sums[d] += x[dof + d] + u[dof + d];
+      sums[3 + d] += v[dof + d];
+    }
+  }
+  PetscCall(VecRestoreArrayRead(velocities, &v));
+  PetscCall(VecRestoreArrayRead(displacements, &u));
+  PetscCall(VecRestoreArrayRead(positions, &x));
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt d = 0; d < 3; d++) {
+    position[d] = contact->n_all_nodes[body] ? sums[d] / contact->n_all_nodes[body] : 0;
+    velocity[d] = contact->n_all_nodes[body] ? sums[3 + d] / contact->n_all_nodes[body] : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,259 @@
+/*
+   Penalty method. The contact force on row i at the end of a controller step is lambda_i = tau A_i <-gap_i>; during the step it
+   goes linearly from its last value to this one. The outer SNES solves F(lambda) = lambda - tau A <-gap(lambda)> = 0 with both
+   bodies under forces; its Jacobian is I + tau A W on penetrating rows, with the interface compliance W of all bodies.
+
+   With explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: the second
+   evaluation, which finds this out, only adds the change of force to the end state.
+*/
+#include "../outersolver.h"
+
+typedef struct {
+  OuterSolver  outer;
+  PetscReal    penalty;    /* N/m for each unit of area [N/m in one dimension] */
+  PetscReal    atol, rtol; /* on the force [N], and relative to it */
+  Trace        force;      /* of all rows over the controller step */
+  PetscBool   *penetrating;
+  PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
+  PetscBool    have_compliance;
+  PetscReal    residual, magnitude;
+} Penalty;
+
+static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
+{
+  Penalty  *penalty = (Penalty *)contact->data;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "", penalty->penalty, &penalty->penalty, &set));
+  PetscOptionsEnd();
+  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_type penalty needs -contact_penalty, in N/m in one dimension");
+  PetscCheck(penalty->penalty > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive", (double)penalty->penalty);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Advances all bodies under the forces x, and compares these with what the penetration asks for */
+static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
+{
+  Contact            contact = (Contact)ctx;
+  Penalty           *penalty = (Penalty *)contact->data;
+  const PetscScalar *x;
+  PetscScalar       *f, *start, *end;
+  PetscReal          sums[2] = {0, 0};
+  PetscLogDouble     begin, finish;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
+  PetscCall(PetscTime(&begin));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(TraceGetLevel(penalty->force, 0, &start));
+  PetscCall(TraceGetLevel(penalty->force, 1, &end));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    start[i] = contact->saved_force[i];
+    end[i]   = x[i];
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    for (PetscInt p = 0; p < contact->n_pairs; p++) {
+      const ContactPair *pair = &contact->pairs[p];
+
+      for (PetscInt side = 0; side < 2; side++)
+        if (pair->body[side] == b) PetscCall(TraceResample(penalty->force, pair->begin, pair->end, side ? 1 : -1, contact->traces[b].force_in));
+    }
+    PetscCall(BodyIntegrate(contact->bodies[b]));
+  }
+  PetscCall(ContactComputeGaps(contact));
+  PetscCall(VecGetArrayWrite(F, &f));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    penalty->penetrating[i] = (PetscBool)(contact->gap[i] < 0);
+    f[i]                    = x[i] - (penalty->penetrating[i] ? -penalty->penalty * contact->area[i] * contact->gap[i] : 0);
+    sums[0] += PetscSqr(f[i]);
+    sums[1] += PetscSqr(x[i]);
+  }
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  penalty->residual  = PetscSqrtReal(sums[0]);
+  penalty->magnitude = PetscSqrtReal(sums[1]);
+  contact->counts_made.sweeps++;
+  PetscCall(PetscTime(&finish));
+  contact->counts_made.seconds += finish - begin;
+  PetscCall(PetscLogEventEnd(CONTACT_Sweep, contact, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Change of all gaps at the end of the step for unit forces: the sum of what the bodies of each pair do */
+static PetscErrorCode ComputeCompliance(Contact contact)
+{
+  Penalty       *penalty = (Penalty *)contact->data;
+  const PetscInt n       = contact->n_all_rows;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(penalty->compliance, n * n));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const PetscScalar *response;
+
+    PetscCall(BodyComputeResponse(contact->bodies[b], &response));
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = 0; i < n; i++) {
+        const ContactPair *pair_i = &contact->pairs[contact->all_row_pair[i]], *pair_j = &contact->pairs[contact->all_row_pair[j]];
+        const PetscInt     sign_i = (pair_i->body[1] == b) - (pair_i->body[0] == b), sign_j = (pair_j->body[1] == b) - (pair_j->body[0] == b);
+
+        penalty->compliance[j * n + i] += sign_i * sign_j * response[j * n + i];
+      }
+  }
+  penalty->have_compliance = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
+{
+  Contact  contact = (Contact)ctx;
+  Penalty *penalty = (Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)X;
+  (void)P;
+  if (!penalty->have_compliance) PetscCall(ComputeCompliance(contact));
+  for (PetscInt local = 0; local < contact->n_rows; local++) {
+    const PetscInt i = contact->row_begin + local;
+
+    for (PetscInt j = 0; j < contact->n_all_rows; j++) {
+      const PetscScalar value = (i == j ? 1 : 0) + (penalty->penetrating[local] ? penalty->penalty * contact->area[local] * penalty->compliance[j * contact->n_all_rows + i] : 0);
+
+      PetscCall(MatSetValue(J, i, j, value, INSERT_VALUES));
+    }
+  }
+  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+{
+  const Penalty *penalty = (const Penalty *)((Contact)ctx)->data;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)it;
+  (void)xnorm;
+  (void)gnorm;
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FUNCTION_NANORINF;
+  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude) *reason = SNES_CONVERGED_FNORM_ABS;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactSetUp_Penalty(Contact contact)
+{
+  Penalty *penalty = (Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(OuterSolverCreate(contact, "penalty_", contact->n_rows, ComputeResidual, ComputeJacobian, &penalty->outer));
+  PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, 1e-14, 1e-9, 50));
+  PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
+  PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
+  PetscCall(TraceCreate(contact->n_rows, 1, &penalty->force));
+  PetscCall(PetscCalloc2(contact->n_rows, &penalty->penetrating, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckConverged(Contact contact)
+{
+  Penalty            *penalty = (Penalty *)contact->data;
+  SNESConvergedReason reason;
+  PetscReal           time;
+  TS                  ts;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetConvergedReason(penalty->outer.snes, &reason));
+  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetTS(contact->bodies[0], &ts));
+  PetscCall(TSGetTime(ts, &time));
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller -contact_penalty or -time_step", (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
+}
+
+static PetscErrorCode ContactStep_Penalty(Contact contact)
+{
+  Penalty     *penalty = (Penalty *)contact->data;
+  PetscBool    in_contact;
+  PetscScalar *x;
+  PetscReal    energy = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(contact->active, contact->saved_active, contact->n_rows));
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  contact->penalty_energy = 0;
+  if (!in_contact) {
+    PetscCall(ContactIntegrateFree(contact, &in_contact));
+    if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  PetscCall(VecGetArrayWrite(penalty->outer.x, &x));
+  for (PetscInt i = 0; i < contact->n_rows; i++) x[i] = contact->saved_force[i];
+  PetscCall(VecRestoreArrayWrite(penalty->outer.x, &x));
+  PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
+  PetscCall(CheckConverged(contact));
+  PetscCall(VecGetArray(penalty->outer.x, &x));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    contact->force[i]  = x[i];
+    contact->active[i] = (PetscBool)(x[i] > 0);
+    energy += 0.5 * PetscSqr(x[i]) / (penalty->penalty * contact->area[i]);
+  }
+  PetscCall(VecRestoreArray(penalty->outer.x, &x));
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  contact->penalty_energy = energy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactView_Penalty(Contact contact, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g\n", (double)((const Penalty *)contact->data)->penalty));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactDestroy_Penalty(Contact contact)
+{
+  Penalty *penalty = (Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(OuterSolverDestroy(&penalty->outer));
+  PetscCall(TraceDestroy(&penalty->force));
+  PetscCall(PetscFree2(penalty->penetrating, penalty->compliance));
+  PetscCall(PetscFree(contact->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*MC
+   CONTACT_PENALTY - contact forces in proportion to the penetration
+
+   Options Database Keys:
++  -contact_penalty tau                                          - penalty parameter [N/m in one dimension], required
+.  -penalty_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration on the contact forces
+-  -penalty_snes_rtol, -penalty_snes_atol, -penalty_snes_max_it  - its tolerances on the force (1e-9, 1e-14 N) and limit (50)
+
+   Level: beginner
+
+   Note:
+   Implicit or explicit by the integrators of the bodies. The energy in the springs is reported beside that of the bodies.
+
+.seealso: `ContactSetType()`, `CONTACT_SCHWARZ`, `CONTACT_LAGRANGE`
+M*/
+PetscErrorCode ContactCreate_Penalty(Contact contact)
+{
+  Penalty *penalty;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&penalty));
+  contact->data                = penalty;
+  contact->ops->setfromoptions = ContactSetFromOptions_Penalty;
+  contact->ops->setup          = ContactSetUp_Penalty;
+  contact->ops->step           = ContactStep_Penalty;
+  contact->ops->view           = ContactView_Penalty;
+  contact->ops->destroy        = ContactDestroy_Penalty;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,97 @@
+#include "outersolver.h"
+#include <sys/petsccompat.h>
+
+/* A SNES of `local` unknowns on this rank, with a dense Jacobian held as a sparse matrix: its size is that of the interface */
+PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *), PetscErrorCode (*jacobian)(SNES, Vec, Mat, Mat, void *), OuterSolver *solver)
+{
+  MPI_Comm       comm = PetscObjectComm((PetscObject)contact);
+  SNESLineSearch line_search;
+  KSP            ksp;
+  PC             pc;
+  PetscInt       global;
+
+  PetscFunctionBegin;
+  PetscCall(VecCreate(comm, &solver->x));
+  PetscCall(VecSetSizes(solver->x, local, PETSC_DETERMINE));
+  PetscCall(VecSetType(solver->x, VECSTANDARD));
+  PetscCall(VecDuplicate(solver->x, &solver->residual));
+  PetscCall(VecGetSize(solver->x, &global));
+  PetscCall(MatCreate(comm, &solver->jacobian));
+  PetscCall(MatSetSizes(solver->jacobian, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(solver->jacobian, contact->size == 1 ? MATDENSE : MATAIJ));
+  PetscCall(MatSetUp(solver->jacobian));
+  PetscCall(SNESCreate(comm, &solver->snes));
+  PetscCall(SNESSetOptionsPrefix(solver->snes, prefix));
+  PetscCall(SNESSetFunction(solver->snes, solver->residual, function, contact));
+  PetscCall(SNESSetJacobian(solver->snes, solver->jacobian, solver->jacobian, jacobian, contact));
+  PetscCall(SNESSetType(solver->snes, SNESNEWTONLS));
+  PetscCall(SNESGetLineSearch(solver->snes, &line_search));
+  PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHNONE));
+  PetscCall(SNESGetKSP(solver->snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, contact->size == 1 ? PCLU : PCREDUNDANT));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A default for an option that PETSc has no setter for: put in before the options are read, taken out again afterwards */
+static PetscErrorCode InsertDefault(const char prefix[], const char option[], const char value[], PetscBool *inserted)
+{
+  char      full[128];
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, prefix, option, &set));
+  *inserted = (PetscBool)!set;
+  PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", prefix, option + 1));
+  if (!set) PetscCall(PetscOptionsSetValue(NULL, full, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RemoveDefault(const char prefix[], const char option[], PetscBool inserted)
+{
+  char full[128];
+
+  PetscFunctionBegin;
+  if (!inserted) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", prefix, option + 1));
+  PetscCall(PetscOptionsClearValue(NULL, full));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads type and tolerances. The defaults for Anderson (mixing 1/2, eight vectors) suit an iteration with a gain of about -1,
+   which is that of the Dirichlet-Neumann alternation between equal bodies. */
+PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, PetscReal atol, PetscReal rtol, PetscInt max_it)
+{
+  const char *prefix;
+  char        type[64] = SNESNEWTONLS;
+  PetscBool   beta = PETSC_FALSE, size = PETSC_FALSE, anderson;
+  const char *known[] = {SNESNEWTONLS, SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
+  PetscBool   same    = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetOptionsPrefix(solver->snes, &prefix));
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-snes_type", type, sizeof(type), NULL));
+  for (PetscInt i = 0; i < 5 && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
+  PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%ssnes_type '%s'; known: newtonls, anderson, nrichardson, ngmres, qn", prefix, type);
+  PetscCall(PetscStrcmp(type, SNESANDERSON, &anderson));
+  PetscCall(SNESSetTolerances(solver->snes, atol, rtol, 0, max_it, 1000000));
+  if (anderson) {
+    PetscCall(InsertDefault(prefix, "-snes_anderson_beta", "0.5", &beta));
+    PetscCall(InsertDefault(prefix, "-snes_anderson_m", "8", &size));
+  }
+  PetscCall(SNESSetFromOptions(solver->snes));
+  PetscCall(RemoveDefault(prefix, "-snes_anderson_beta", beta));
+  PetscCall(RemoveDefault(prefix, "-snes_anderson_m", size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OuterSolverDestroy(OuterSolver *solver)
+{
+  PetscFunctionBegin;
+  PetscCall(SNESDestroy(&solver->snes));
+  PetscCall(VecDestroy(&solver->x));
+  PetscCall(VecDestroy(&solver->residual));
+  PetscCall(MatDestroy(&solver->jacobian));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

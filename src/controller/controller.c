@@ -1,0 +1,386 @@
+/* The class and its time loop. */
+#include "controllerimpl.h"
+
+PetscClassId CONTROLLER_CLASSID = 0;
+
+/*@
+  ControllerRegisterAll - registers the class
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `Controller`, `ImpaktInitialize()`
+@*/
+PetscErrorCode ControllerRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscClassIdRegister("Controller", &CONTROLLER_CLASSID));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerCreate - creates a simulation; all about it comes from options
+
+  Collective
+
+  Input Parameter:
+. comm - communicator
+
+  Output Parameter:
+. controller - the `Controller`
+
+  Level: beginner
+
+.seealso: `Controller`, `ControllerSetFromOptions()`, `ControllerSetUp()`, `ControllerSolve()`
+@*/
+PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm, ControllerDestroy, ControllerView));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateBodies(Controller controller)
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)controller);
+  char     *names[64];
+  PetscInt  n = 64;
+  PetscBool set, same;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-bodies", names, &n, &set));
+  PetscCheck(set && n, comm, PETSC_ERR_USER_INPUT, "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
+  for (PetscInt b = 0; b < n; b++)
+    for (PetscInt other = 0; other < b; other++) {
+      PetscCall(PetscStrcmp(names[b], names[other], &same));
+      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-bodies names '%s' twice", names[b]);
+    }
+  controller->n_bodies = n;
+  PetscCall(PetscCalloc1(n, &controller->bodies));
+  for (PetscInt b = 0; b < n; b++) {
+    PetscCall(BodyCreate(comm, names[b], &controller->bodies[b]));
+    PetscCall(PetscFree(names[b]));
+    PetscCall(BodySetFromOptions(controller->bodies[b]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerSetFromOptions - reads times, bodies and contact from the options
+
+  Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Options Database Keys:
++ -bodies a,b         - names of the bodies; options of body a begin with -a_
+. -time_start t       - [s], default 0
+. -time_end t         - [s]; the run ends with the first controller step that reaches it
+. -time_step dt       - controller step, at whose ends all bodies are synchronised [s]
+. -monitor_interval n - a line on the terminal every n controller steps, 0 (default) for none
+- -progress           - a progress bar on standard error, default where that is a terminal
+
+  Level: beginner
+
+.seealso: `Controller`, `BodySetFromOptions()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ControllerSetFromOptions(Controller controller)
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)controller);
+  PetscBool set_end, set_step;
+  PetscReal quotient;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscObjectOptionsBegin((PetscObject)controller);
+  PetscCall(PetscOptionsReal("-time_start", "Start time [s]", "", controller->time_start, &controller->time_start, NULL));
+  PetscCall(PetscOptionsReal("-time_end", "End time [s]", "", controller->time_end, &controller->time_end, &set_end));
+  PetscCall(PetscOptionsReal("-time_step", "Controller step [s]", "", controller->time_step, &controller->time_step, &set_step));
+  PetscOptionsEnd();
+  PetscCall(ControllerSetUpTerminal(controller));
+  PetscCall(CreateBodies(controller));
+  PetscCheck(set_end && set_step, comm, PETSC_ERR_USER_INPUT, "-time_end and -time_step are needed, in s");
+  PetscCheck(controller->time_step > 0, comm, PETSC_ERR_USER_INPUT, "-time_step %g s must be positive", (double)controller->time_step);
+  PetscCheck(controller->time_end > controller->time_start, comm, PETSC_ERR_USER_INPUT, "-time_end %g s must be later than -time_start %g s", (double)controller->time_end, (double)controller->time_start);
+  quotient = (controller->time_end - controller->time_start) / controller->time_step;
+  PetscCheck(quotient < 2e9, comm, PETSC_ERR_USER_INPUT, "-time_step %g s is too small for %g s of simulated time", (double)controller->time_step, (double)(controller->time_end - controller->time_start));
+  /* the tolerance keeps a quotient that is a whole number but for round-off from being counted up */
+  controller->steps = (PetscInt)PetscCeilReal(quotient * (1 - 1e-12) - 1e-9);
+  for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
+  PetscCall(ContactCreate(comm, &controller->contact));
+  PetscCall(ContactSetBodies(controller->contact, controller->n_bodies, controller->bodies));
+  PetscCall(ContactSetFromOptions(controller->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerSetUp - sets up bodies and contact
+
+  Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Level: beginner
+
+.seealso: `Controller`, `ControllerSolve()`
+@*/
+PetscErrorCode ControllerSetUp(Controller controller)
+{
+  PetscLogDouble begin, end;
+  PetscInt       n_pairs, n = controller->n_bodies;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  if (controller->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(controller->contact, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE, "Call ControllerSetFromOptions() first");
+  PetscCall(PetscTime(&begin));
+  PetscCall(ContactSetUp(controller->contact));
+  PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
+  PetscCall(PetscCalloc4(n, &controller->measures, 3 * n, &controller->contact_positions, 3 * n, &controller->contact_velocities, n_pairs, &controller->pair_states));
+  PetscCall(PetscTime(&end));
+  controller->setup_seconds = end - begin;
+  controller->setup         = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ControllerMonitorSet - adds an observer, called at the start and after every accepted controller step
+
+  Logically Collective
+
+  Input Parameters:
++ controller - the `Controller`
+. monitor    - function (controller, frame, ctx)
+. ctx        - its context
+- destroy    - frees the context with the controller, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerFrame`
+@*/
+PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *monitor, void *ctx, PetscErrorCode (*destroy)(void **))
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCheck(controller->n_monitors < MAX_MONITORS, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE, "Too many monitors, at most %d", MAX_MONITORS);
+  controller->monitor[controller->n_monitors]           = monitor;
+  controller->monitor_ctx[controller->n_monitors]       = ctx;
+  controller->monitor_destroy[controller->n_monitors++] = destroy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Observe(Controller controller, PetscInt step)
+{
+  ControllerFrame frame = {.step = step, .steps = controller->steps, .n_bodies = controller->n_bodies, .bodies = controller->measures, .contact_positions = controller->contact_positions, .contact_velocities = controller->contact_velocities, .pairs = controller->pair_states};
+  ContactCounts   counts;
+
+  PetscFunctionBegin;
+  /* not summed up, so that round-off does not pile up over many steps */
+  frame.time = controller->time_start + step * controller->time_step;
+  PetscCall(ContactGetNumPairs(controller->contact, &frame.n_pairs));
+  for (PetscInt b = 0; b < controller->n_bodies; b++) {
+    PetscCall(BodyGetMeasures(controller->bodies[b], &controller->measures[b]));
+    PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
+  }
+  for (PetscInt p = 0; p < frame.n_pairs; p++) PetscCall(ContactGetPairState(controller->contact, p, &controller->pair_states[p]));
+  PetscCall(ContactGetCounts(controller->contact, &counts));
+  frame.sweeps = step ? counts.sweeps : 0;
+  PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
+  for (PetscInt i = 0; i < controller->n_monitors; i++) PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerSolve - runs all controller steps
+
+  Collective
+
+  Input Parameter:
+. controller - the `Controller`, set up
+
+  Level: beginner
+
+.seealso: `Controller`, `ControllerMonitorSet()`
+@*/
+PetscErrorCode ControllerSolve(Controller controller)
+{
+  PetscLogDouble wall[2], cpu[2];
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCall(ControllerSetUp(controller));
+  PetscCall(PetscTime(&wall[0]));
+  PetscCall(PetscGetCPUTime(&cpu[0]));
+  PetscCall(Observe(controller, 0));
+  for (PetscInt step = 1; step <= controller->steps; step++) {
+    PetscCall(ContactStep(controller->contact));
+    PetscCall(ContactAccept(controller->contact));
+    PetscCall(Observe(controller, step));
+  }
+  PetscCall(PetscTime(&wall[1]));
+  PetscCall(PetscGetCPUTime(&cpu[1]));
+  controller->wall_seconds = wall[1] - wall[0];
+  controller->cpu_seconds  = cpu[1] - cpu[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerView - prints times, bodies and contact
+
+  Collective
+
+  Input Parameters:
++ controller - the `Controller`, set up
+- viewer     - an ASCII viewer
+
+  Level: beginner
+
+.seealso: `Controller`
+@*/
+PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g s, %" PetscInt_FMT " controller steps of %g s\n", (double)controller->time_start, (double)(controller->time_start + controller->steps * controller->time_step), controller->steps, (double)controller->time_step));
+  for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodyView(controller->bodies[b], viewer));
+  PetscCall(ContactView(controller->contact, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerDestroy - frees a simulation
+
+  Collective
+
+  Input Parameter:
+. controller - the `Controller`, set to `NULL`
+
+  Level: beginner
+
+.seealso: `Controller`, `ControllerCreate()`
+@*/
+PetscErrorCode ControllerDestroy(Controller *controller)
+{
+  Controller c = *controller;
+
+  PetscFunctionBegin;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(c, CONTROLLER_CLASSID, 1);
+  if (--((PetscObject)c)->refct > 0) {
+    *controller = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i < c->n_monitors; i++)
+    if (c->monitor_destroy[i]) PetscCall((*c->monitor_destroy[i])(&c->monitor_ctx[i]));
+  PetscCall(ContactDestroy(&c->contact));
+  for (PetscInt b = 0; b < c->n_bodies; b++) PetscCall(BodyDestroy(&c->bodies[b]));
+  PetscCall(PetscFree(c->bodies));
+  PetscCall(PetscFree4(c->measures, c->contact_positions, c->contact_velocities, c->pair_states));
+  PetscCall(PetscHeaderDestroy(controller));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ControllerGetBodies - the bodies
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameters:
++ n      - their number
+- bodies - the bodies, owned by the controller
+
+  Level: intermediate
+
+.seealso: `Controller`
+@*/
+PetscErrorCode ControllerGetBodies(Controller controller, PetscInt *n, const Body *bodies[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  if (n) *n = controller->n_bodies;
+  if (bodies) *bodies = controller->bodies;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetContact - the contact problem
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameter:
+. contact - the `Contact`, owned by the controller
+
+  Level: intermediate
+
+.seealso: `Controller`
+@*/
+PetscErrorCode ControllerGetContact(Controller controller, Contact *contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  *contact = controller->contact;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetTimes - start, controller step and number of steps
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameters:
++ start - start time [s], or `NULL`
+. step  - controller step [s], or `NULL`
+- steps - number of controller steps, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Controller`
+@*/
+PetscErrorCode ControllerGetTimes(Controller controller, PetscReal *start, PetscReal *step, PetscInt *steps)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  if (start) *start = controller->time_start;
+  if (step) *step = controller->time_step;
+  if (steps) *steps = controller->steps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetTimings - what the run cost
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`, solved
+
+  Output Parameters:
++ setup - wall time of the set-up [s]
+. wall  - wall time of the time loop [s]
+- cpu   - CPU time of this process in the time loop [s]
+
+  Level: intermediate
+
+.seealso: `Controller`
+@*/
+PetscErrorCode ControllerGetTimings(Controller controller, PetscLogDouble *setup, PetscLogDouble *wall, PetscLogDouble *cpu)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  if (setup) *setup = controller->setup_seconds;
+  if (wall) *wall = controller->wall_seconds;
+  if (cpu) *cpu = controller->cpu_seconds;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

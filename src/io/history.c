@@ -1,0 +1,244 @@
+/* Records every controller step: collected in memory, and added to the file now and then. */
+#include "history.h"
+#include "outputfile.h"
+#include "series.h"
+#include <hdf5.h>
+#include <petsctime.h>
+#include <stdio.h>
+
+#define COPY_BYTES        ((size_t)1 << 20)
+#define BUFFER_BYTES      ((size_t)1 << 16) /* to begin with */
+#define BUFFER_BYTES_MOST ((size_t)1 << 26) /* then it is written out whatever the time */
+
+/* At most 2 % of the run goes into writing, and at most this many seconds of it are lost by a kill while writing is quick */
+#define FLUSH_INTERVAL 2.0
+#define FLUSH_SHARE    50.0
+
+struct _n_History {
+  char           path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  PetscBool      writes; /* rank 0; all other fields are its only */
+  char          *options;
+  PetscInt       n_bodies, *dims; /* space dimension of each body */
+  PetscInt       n_series, width;
+  Series        *series;
+  PetscInt       n_records, capacity;
+  PetscReal     *records; /* not in the file yet, `width` numbers each */
+  PetscInt64     written; /* records in the file */
+  char          *copy;
+  PetscLogDouble flushed, flush_seconds; /* when the last flush ended, and how long it took [s] */
+};
+
+/* Adds a series behind the others in the record; its name is "<group><of>/<what>" */
+static PetscErrorCode AddSeries(History history, const char group[], const char of[], const char what[], const char units[], PetscInt components, PetscBool integer)
+{
+  Series *series = &history->series[history->n_series++];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(series->name, sizeof(series->name), "%s%s%s%s", group, of, what[0] ? "/" : "", what));
+  series->units      = units;
+  series->column     = history->width;
+  series->components = components;
+  series->integer    = integer;
+  history->width += components;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The series of a run, in the order in which HistoryMonitor() fills a record */
+static PetscErrorCode AddAllSeries(History history, Controller controller)
+{
+  const Body *bodies;
+  const char *name;
+  Contact     contact;
+  PetscInt    n_pairs;
+  DM          dm;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(controller, &history->n_bodies, &bodies));
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ContactGetNumPairs(contact, &n_pairs));
+  PetscCall(PetscMalloc1(history->n_bodies, &history->dims));
+  PetscCall(PetscCalloc1(2 + 3 * n_pairs + 5 * history->n_bodies, &history->series));
+  PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
+  PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
+  for (PetscInt i = 0; i < n_pairs; i++) {
+    PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
+    PetscCall(AddSeries(history, "/contact/", name, "force", "N", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "gap", "m", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "active", "1", 1, PETSC_TRUE));
+  }
+  for (PetscInt i = 0; i < history->n_bodies; i++) {
+    PetscInt *dim = &history->dims[i];
+
+    PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
+    PetscCall(BodyGetDM(bodies[i], &dm));
+    PetscCall(DMGetCoordinateDim(dm, dim));
+    PetscCall(AddSeries(history, "/body/", name, "kinetic", "J", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "potential", "J", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "contact_position", "m", *dim, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "contact_velocity", "m/s", *dim, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "mean_velocity", "m/s", *dim, PETSC_FALSE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  HistoryCreate - a history of a run, with all options of the run
+
+  Collective
+
+  Input Parameters:
++ controller - the `Controller`, set up
+- path       - the file to write; an error if that cannot be done, on every rank
+
+  Output Parameter:
+. history - the `History`, to be told of every step by `HistoryMonitor()`
+*/
+PetscErrorCode HistoryCreate(Controller controller, const char path[], History *history)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)controller);
+  PetscMPIInt rank;
+  History     h;
+
+  PetscFunctionBegin;
+  PetscCall(OutputFileCheck(comm, "-output_history", path));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscNew(&h));
+  h->writes = rank ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(PetscStrncpy(h->path, path, sizeof(h->path)));
+  PetscCall(OutputFileGetPart(path, sizeof(h->part), h->part));
+  if (h->writes) {
+    PetscCall(PetscOptionsGetAll(NULL, &h->options));
+    PetscCall(AddAllSeries(h, controller));
+    h->capacity = 1 + (PetscInt)(BUFFER_BYTES / (h->width * sizeof(PetscReal)));
+    PetscCall(PetscMalloc1(h->capacity * h->width, &h->records));
+    PetscCall(PetscMalloc1(COPY_BYTES, &h->copy));
+  }
+  *history = h;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The next version of the file, beside the present one */
+static PetscErrorCode WritePart(History history)
+{
+  PetscFunctionBegin;
+  if (history->written) PetscCall(OutputFileCopy(history->path, history->part, COPY_BYTES, history->copy));
+  else PetscCall(SeriesFileCreate(history->part, history->n_series, history->series, history->options));
+  PetscCall(SeriesFileAppend(history->part, history->n_series, history->series, history->written, history->n_records, history->width, history->records));
+  PetscCall(OutputFileReplace(history->part, history->path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  HistoryFlush - adds what was recorded since the last time to the file
+
+  Not Collective
+
+  Input Parameter:
+. history - the `History`
+
+  Note:
+  At every moment the file is either as it was or as it will be, never in between.
+*/
+PetscErrorCode HistoryFlush(History history)
+{
+  PetscErrorCode error;
+  PetscLogDouble begin;
+  H5E_auto2_t    print;
+  void          *data;
+
+  PetscFunctionBegin;
+  if (!history->writes || !history->n_records) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscTime(&begin));
+  /* HDF5's own account of an error would hide ours */
+  H5Eget_auto2(H5E_DEFAULT, &print, &data);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  error = WritePart(history);
+  if (error) remove(history->part); /* HDF5 stays silent: it would complain of the file it could not finish at exit again */
+  PetscCall(error);
+  H5Eset_auto2(H5E_DEFAULT, print, data);
+  history->written += history->n_records;
+  history->n_records = 0;
+  PetscCall(PetscTime(&history->flushed));
+  history->flush_seconds = history->flushed - begin;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for one more record: a larger buffer, or an empty one */
+static PetscErrorCode MakeRoom(History history)
+{
+  const size_t record = (size_t)history->width * sizeof(PetscReal);
+
+  PetscFunctionBegin;
+  if ((size_t)history->capacity * record < BUFFER_BYTES_MOST) {
+    history->capacity *= 2;
+    PetscCall(PetscRealloc((size_t)history->capacity * record, &history->records));
+  } else PetscCall(HistoryFlush(history));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], PetscReal *next)
+{
+  *next++ = frame->time;
+  *next++ = (PetscReal)frame->sweeps;
+  for (PetscInt i = 0; i < frame->n_pairs; i++) {
+    *next++ = frame->pairs[i].force;
+    *next++ = frame->pairs[i].gap;
+    *next++ = (PetscReal)frame->pairs[i].active;
+  }
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    *next++ = frame->bodies[i].kinetic;
+    *next++ = frame->bodies[i].potential;
+    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->contact_positions[3 * i + d];
+    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->contact_velocities[3 * i + d];
+    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].mean_velocity[d];
+  }
+}
+
+/*
+  HistoryMonitor - records a controller step, and writes to the file when it is time
+
+  Logically Collective
+
+  Input Parameters:
++ controller - the `Controller`
+. frame      - the state of everything
+- context    - the `History`
+*/
+PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *frame, void *context)
+{
+  History        history = (History)context;
+  PetscLogDouble now;
+
+  PetscFunctionBegin;
+  (void)controller;
+  if (!history->writes) PetscFunctionReturn(PETSC_SUCCESS);
+  if (history->n_records == history->capacity) PetscCall(MakeRoom(history));
+  FillRecord(frame, history->dims, history->records + history->n_records * history->width);
+  history->n_records++;
+  PetscCall(PetscTime(&now));
+  if (!history->written || now - history->flushed > PetscMax(FLUSH_INTERVAL, FLUSH_SHARE * history->flush_seconds)) PetscCall(HistoryFlush(history));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* HistoryGetPath - where the file is */
+PetscErrorCode HistoryGetPath(History history, const char *path[])
+{
+  PetscFunctionBegin;
+  *path = history->path;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* HistoryDestroy - writes what is left and frees a history */
+PetscErrorCode HistoryDestroy(History *history)
+{
+  PetscFunctionBegin;
+  if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(HistoryFlush(*history));
+  PetscCall(PetscFree((*history)->options));
+  PetscCall(PetscFree((*history)->dims));
+  PetscCall(PetscFree((*history)->series));
+  PetscCall(PetscFree((*history)->records));
+  PetscCall(PetscFree((*history)->copy));
+  PetscCall(PetscFree(*history));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

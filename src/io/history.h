@@ -1,0 +1,11 @@
+/* The HDF5 history of a run. */
+#pragma once
+#include <controller.h>
+
+typedef struct _n_History *History;
+
+PETSC_INTERN PetscErrorCode      HistoryCreate(Controller, const char[], History *);
+PETSC_INTERN ControllerMonitorFn HistoryMonitor;
+PETSC_INTERN PetscErrorCode      HistoryFlush(History);
+PETSC_INTERN PetscErrorCode      HistoryGetPath(History, const char *[]);
+PETSC_INTERN PetscErrorCode      HistoryDestroy(History *);

@@ -1,0 +1,148 @@
+/* Output files are written as `<path>.part` and renamed onto `<path>`, so that whatever stands there is whole. */
+#define _POSIX_C_SOURCE 200809L
+#include "outputfile.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* mkdir -p of the directory of `path`; errno, or 0 */
+static int MakeParents(const char path[])
+{
+  char directory[PETSC_MAX_PATH_LEN];
+
+  if (strlen(path) >= sizeof(directory)) return ENAMETOOLONG;
+  for (size_t i = 1; path[i]; i++) {
+    if (path[i] != '/' || path[i - 1] == '/') continue;
+    memcpy(directory, path, i);
+    directory[i] = '\0';
+    if (mkdir(directory, 0777) && errno != EEXIST) return errno;
+  }
+  return 0;
+}
+
+/* Whether `part` can be made and renamed onto `path`; errno, or 0 */
+static int TryToWrite(const char path[], const char part[])
+{
+  struct stat status;
+  int         error = MakeParents(path), file;
+
+  if (error) return error;
+  if (!stat(path, &status)) {
+    if (S_ISDIR(status.st_mode)) return EISDIR;
+    if (!S_ISREG(status.st_mode)) return EOPNOTSUPP; /* the rename would replace a device, not write to it */
+    if (access(path, W_OK)) return errno;
+  }
+  file = open(part, O_WRONLY | O_CREAT, 0666);
+  if (file < 0) return errno;
+  if (close(file) || unlink(part)) return errno;
+  return 0;
+}
+
+/*
+  OutputFileGetPart - the name under which a file is written until it is whole
+
+  Not Collective
+
+  Input Parameters:
++ path - where the file will be
+- size - length of part
+
+  Output Parameter:
+. part - `<path>.part`
+*/
+PetscErrorCode OutputFileGetPart(const char path[], size_t size, char part[])
+{
+  size_t length;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrlen(path, &length));
+  PetscCheck(length + sizeof(".part") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The output path '%s' is too long: %zu characters at most", path, size - sizeof(".part"));
+  PetscCall(PetscSNPrintf(part, size, "%s.part", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileCheck - makes sure, before anything is computed, that a file can be written; makes the directories it is to be in
+
+  Collective
+
+  Input Parameters:
++ comm   - communicator; rank 0 writes
+. option - the option that gave the path, for the message
+- path   - where the file will be; what is there now stays
+*/
+PetscErrorCode OutputFileCheck(MPI_Comm comm, const char option[], const char path[])
+{
+  char        part[PETSC_MAX_PATH_LEN];
+  int         error = 0;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCheck(path[0], comm, PETSC_ERR_USER_INPUT, "%s needs the path of the file to write", option);
+  PetscCall(OutputFileGetPart(path, sizeof(part), part));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) error = TryToWrite(path, part);
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
+  PetscCheck(!error, comm, PETSC_ERR_FILE_WRITE, "%s %s cannot be written: %s; give the path of a file in a directory that you may write to", option, path, strerror(error));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileReplace - puts a whole file in its place, in one step
+
+  Not Collective
+
+  Input Parameters:
++ part - the file as written
+- path - where it belongs; what is there is replaced
+*/
+PetscErrorCode OutputFileReplace(const char part[], const char path[])
+{
+  PetscFunctionBegin;
+  PetscCheck(!rename(part, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be renamed to %s: %s", part, path, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bytes from one open file to another; errno, or 0 */
+static int CopyBytes(int from, int to, size_t size, char buffer[])
+{
+  for (;;) {
+    const ssize_t bytes = read(from, buffer, size);
+
+    if (bytes < 0) return errno;
+    if (bytes == 0) return 0;
+    for (ssize_t done = 0, now; done < bytes; done += now) {
+      now = write(to, buffer + done, (size_t)(bytes - done));
+      if (now < 0) return errno;
+    }
+  }
+}
+
+/*
+  OutputFileCopy - copies a file
+
+  Not Collective
+
+  Input Parameters:
++ path   - what to copy
+. part   - the copy, replaced if it exists
+. size   - length of buffer
+- buffer - work space
+*/
+PetscErrorCode OutputFileCopy(const char path[], const char part[], size_t size, char buffer[])
+{
+  int from, to, error;
+
+  PetscFunctionBegin;
+  from = open(path, O_RDONLY);
+  PetscCheck(from >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s, written by this run before, cannot be read: %s", path, strerror(errno));
+  to    = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  error = to < 0 ? errno : CopyBytes(from, to, size, buffer);
+  close(from);
+  if (to >= 0 && close(to) && !error) error = errno;
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(error));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

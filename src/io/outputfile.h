@@ -1,0 +1,8 @@
+/* Files that a run writes: checked before computing, and replaced as a whole. */
+#pragma once
+#include <petscsys.h>
+
+PETSC_INTERN PetscErrorCode OutputFileCheck(MPI_Comm, const char[], const char[]);
+PETSC_INTERN PetscErrorCode OutputFileGetPart(const char[], size_t, char[]);
+PETSC_INTERN PetscErrorCode OutputFileReplace(const char[], const char[]);
+PETSC_INTERN PetscErrorCode OutputFileCopy(const char[], const char[], size_t, char[]);

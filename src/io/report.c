@@ -1,0 +1,133 @@
+/* The table that a run ends with. */
+#include "report.h"
+#include <math.h>
+
+/* One line; the exact value stands beside the computed one where there is one */
+static PetscErrorCode PrintValue(PetscViewer viewer, const char name[], PetscReal value, const char unit[], PetscReal exact)
+{
+  PetscFunctionBegin;
+  if (PetscIsInfOrNanReal(value)) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13s\n", name, "none"));
+  else if (PetscIsInfOrNanReal(exact)) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13.6g %s\n", name, (double)value, unit));
+  else PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13.6g %-4s exact %.6g\n", name, (double)value, unit, (double)exact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintCount(PetscViewer viewer, const char name[], PetscInt count, PetscInt of)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13" PetscInt_FMT, name, count));
+  if (of >= 0) PetscCall(PetscViewerASCIIPrintf(viewer, " of %" PetscInt_FMT, of));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintPercent(PetscViewer viewer, const char name[], PetscReal value)
+{
+  PetscFunctionBegin;
+  PetscCall(PrintValue(viewer, name, 100 * value, "%", NAN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *results, ExactImpact exact, PetscViewer viewer)
+{
+  const ContactStatistics *c      = &results->contact;
+  PetscReal                impact = NAN, release = NAN, force = NAN;
+  ContactType              type;
+
+  PetscFunctionBegin;
+  if (exact) {
+    PetscCall(ExactImpactGetTimes(exact, &impact, &release));
+    PetscCall(ExactImpactGetForce(exact, &force));
+  }
+  PetscCall(ContactGetType(contact, &type));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "contact (%s)\n", type));
+  PetscCall(PrintValue(viewer, "first contact", c->first_contact_time, "s", impact));
+  PetscCall(PrintValue(viewer, "release", c->release_time, "s", release));
+  PetscCall(PrintCount(viewer, "onsets", c->onsets, -1));
+  PetscCall(PrintCount(viewer, "steps in contact", c->steps_in_contact, results->steps));
+  PetscCall(PrintValue(viewer, "force, mean", c->force_mean, "N", force));
+  PetscCall(PrintValue(viewer, "force, standard deviation", c->force_std, "N", NAN));
+  PetscCall(PrintValue(viewer, "force, peak", c->force_peak, "N", NAN));
+  PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", exact ? force * (release - impact) : NAN));
+  PetscCall(PrintValue(viewer, "largest penetration", c->max_penetration, "m", NAN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ViewSweeps(Contact contact, const StatisticsResults *results, PetscViewer viewer)
+{
+  ContactCounts counts;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetCounts(contact, &counts));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "sweeps\n"));
+  PetscCall(PrintCount(viewer, "most in a step", results->max_sweeps, -1));
+  PetscCall(PrintValue(viewer, "mean over steps in contact", results->mean_sweeps_contact, "", NAN));
+  if (counts.unconverged_steps) PetscCall(PrintCount(viewer, "steps that did not converge", counts.unconverged_steps, results->steps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults *results, PetscViewer viewer)
+{
+  const PetscReal worst = -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
+  const char     *name;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "energy and momentum\n"));
+  for (PetscInt i = 0; i < results->n_bodies; i++) {
+    const BodyStatistics *body = &results->bodies[i];
+
+    PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g J kinetic, %.6g J potential at the end\n", name, (double)body->kinetic, (double)body->potential));
+  }
+  PetscCall(PrintPercent(viewer, "system energy error, worst", worst));
+  PetscCall(PrintPercent(viewer, "system energy error, final", results->energy_error_final));
+  PetscCall(PrintPercent(viewer, "momentum error, worst", results->momentum_error_max));
+  if (results->penalty_energy_max > 0) PetscCall(PrintValue(viewer, "energy in penalty springs, most", results->penalty_energy_max, "J", NAN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ViewErrors(ExactImpact exact, PetscViewer viewer)
+{
+  ExactErrors errors;
+
+  PetscFunctionBegin;
+  PetscCall(ExactImpactGetErrors(exact, &errors));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "errors against the exact solution\n"));
+  PetscCall(PrintPercent(viewer, "contact position", errors.contact_position));
+  PetscCall(PrintPercent(viewer, "contact force", errors.contact_force));
+  PetscCall(PrintPercent(viewer, "kinetic energy", errors.kinetic));
+  PetscCall(PrintPercent(viewer, "mean velocity", errors.mean_velocity));
+  PetscCall(PrintPercent(viewer, "peak of the potential energy", errors.peak_potential));
+  PetscCall(PrintPercent(viewer, "release time", errors.release_time));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ReportView - prints the results table
+
+  Collective on the viewer
+
+  Input Parameters:
++ controller - the `Controller`, at its end
+. results    - figures of the run
+. exact      - what it was compared with, or `NULL`
+- viewer     - an ASCII viewer
+*/
+PetscErrorCode ReportView(Controller controller, const StatisticsResults *results, ExactImpact exact, PetscViewer viewer)
+{
+  Contact        contact;
+  const Body    *bodies;
+  PetscInt       n;
+  PetscLogDouble setup, wall, cpu;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(controller, &n, &bodies));
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
+  PetscCall(ViewContact(contact, results, exact, viewer));
+  PetscCall(ViewSweeps(contact, results, viewer));
+  PetscCall(ViewEnergies(bodies, results, viewer));
+  if (exact) PetscCall(ViewErrors(exact, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,259 @@
+/* Gathers the figures of the summary, step by step; only the contact forces are kept as series, from first contact on. */
+#include "statistics.h"
+#include <math.h>
+
+/* Touching is told apart from not touching for each pair, and for any of them */
+typedef struct {
+  PetscBool touches;
+  PetscReal force; /* at the end of the last step [N] */
+} ContactMemory;
+
+struct _n_Statistics {
+  StatisticsResults results;
+  ContactMemory     any, *pair;
+  PetscReal         time; /* of the last frame [s] */
+  PetscInt          total_sweeps, contact_sweeps;
+  PetscReal        *initial_energy; /* of each body [J] */
+  PetscReal         system_energy;  /* at the start [J] */
+  PetscReal         momentum[3];    /* of the system at the start [kg m/s] */
+  PetscReal         momentum_scale; /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
+  PetscInt          n_series, capacity;
+  PetscReal        *series; /* from first contact on: time, and for each pair force and nodes in contact */
+};
+
+static void ContactStatisticsInitialize(ContactStatistics *contact)
+{
+  contact->first_contact_time = NAN;
+  contact->release_time       = NAN;
+  contact->force_mean         = NAN;
+  contact->force_std          = NAN;
+  contact->force_min          = NAN;
+}
+
+/*
+  StatisticsCreate - gathers figures about a run
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`, set up
+
+  Output Parameter:
+. statistics - the `Statistics`, to be told of every step by `StatisticsMonitor()`
+*/
+PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
+{
+  const Body *bodies;
+  Contact     contact;
+  Statistics  s;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&s));
+  PetscCall(ControllerGetBodies(controller, &s->results.n_bodies, &bodies));
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
+  PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
+  PetscCall(PetscCalloc2(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy));
+  ContactStatisticsInitialize(&s->results.contact);
+  for (PetscInt i = 0; i < s->results.n_pairs; i++) ContactStatisticsInitialize(&s->results.pairs[i]);
+  s->capacity = 1024;
+  PetscCall(PetscMalloc1(s->capacity * (1 + 2 * s->results.n_pairs), &s->series));
+  *statistics = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal BodyEnergy(const BodyMeasures *body)
+{
+  return body->kinetic + body->potential;
+}
+
+static PetscReal Norm(const PetscReal x[3])
+{
+  return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
+/* The state that energies and momentum are compared with */
+static void NoteInitialState(Statistics s, const ControllerFrame *frame)
+{
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    s->initial_energy[i] = BodyEnergy(&frame->bodies[i]);
+    s->system_energy += s->initial_energy[i];
+    s->momentum_scale += Norm(frame->bodies[i].momentum);
+    for (PetscInt d = 0; d < 3; d++) s->momentum[d] += frame->bodies[i].momentum[d];
+  }
+}
+
+static PetscReal Relative(PetscReal value, PetscReal scale)
+{
+  return scale != 0 ? value / PetscAbsReal(scale) : value;
+}
+
+static void AddEnergies(Statistics s, const ControllerFrame *frame)
+{
+  StatisticsResults *r             = &s->results;
+  PetscReal          change[3]     = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
+  PetscReal          system_energy = 0;
+
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    const BodyMeasures *measures = &frame->bodies[i];
+    BodyStatistics     *body     = &r->bodies[i];
+    const PetscReal     energy = BodyEnergy(measures), start = s->initial_energy[i];
+    const PetscReal     error = Relative(energy - start, start != 0 ? start : s->system_energy);
+
+    body->kinetic          = measures->kinetic;
+    body->potential        = measures->potential;
+    body->peak_potential   = PetscMax(body->peak_potential, measures->potential);
+    body->energy_error_min = PetscMin(body->energy_error_min, error);
+    body->energy_error_max = PetscMax(body->energy_error_max, error);
+    system_energy += energy;
+    for (PetscInt d = 0; d < 3; d++) change[d] += measures->momentum[d];
+  }
+  r->energy_error_final = Relative(system_energy - s->system_energy, s->system_energy);
+  r->energy_error_min   = PetscMin(r->energy_error_min, r->energy_error_final);
+  r->energy_error_max   = PetscMax(r->energy_error_max, r->energy_error_final);
+  r->momentum_error_max = PetscMax(r->momentum_error_max, Relative(Norm(change), s->momentum_scale));
+  r->penalty_energy_max = PetscMax(r->penalty_energy_max, frame->penalty_energy);
+}
+
+/* One step of one pair, or of all together */
+static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time, PetscReal time_step)
+{
+  const PetscBool touches = state->active > 0 ? PETSC_TRUE : PETSC_FALSE;
+
+  if (touches) {
+    if (!contact->steps_in_contact++) contact->first_contact_time = time;
+    if (!memory->touches) contact->onsets++;
+    contact->release_time = time;
+  }
+  contact->impulse += 0.5 * (memory->force + state->force) * time_step;
+  contact->force_peak      = PetscMax(contact->force_peak, state->force);
+  contact->tension_max     = PetscMax(contact->tension_max, state->tension);
+  contact->max_penetration = PetscMax(contact->max_penetration, -state->gap);
+  memory->touches          = touches;
+  memory->force            = state->force;
+}
+
+static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
+{
+  const PetscInt width = 1 + 2 * frame->n_pairs;
+  PetscReal     *next;
+
+  PetscFunctionBegin;
+  if (s->n_series == s->capacity) {
+    s->capacity *= 2;
+    PetscCall(PetscRealloc((size_t)s->capacity * (size_t)width * sizeof(PetscReal), &s->series));
+  }
+  next    = s->series + (size_t)s->n_series++ * (size_t)width;
+  *next++ = frame->time;
+  for (PetscInt i = 0; i < frame->n_pairs; i++) {
+    *next++ = frame->pairs[i].force;
+    *next++ = (PetscReal)frame->pairs[i].active;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  StatisticsMonitor - takes note of a controller step
+
+  Logically Collective
+
+  Input Parameters:
++ controller - the `Controller`
+. frame      - the state of everything; of step 0: what energies and momentum are compared with
+- context    - the `Statistics`
+*/
+PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *frame, void *context)
+{
+  Statistics         s   = (Statistics)context;
+  StatisticsResults *r   = &s->results;
+  ContactPairState   any = {.gap = PETSC_INFINITY};
+
+  PetscFunctionBegin;
+  (void)controller;
+  if (frame->step == 0) NoteInitialState(s, frame);
+  AddEnergies(s, frame);
+  if (frame->step > 0) {
+    for (PetscInt i = 0; i < frame->n_pairs; i++) {
+      AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time);
+      any.force += frame->pairs[i].force;
+      any.gap = PetscMin(any.gap, frame->pairs[i].gap);
+      any.active += frame->pairs[i].active;
+      any.tension = PetscMax(any.tension, frame->pairs[i].tension);
+    }
+    AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time);
+    r->steps++;
+    r->max_sweeps = PetscMax(r->max_sweeps, frame->sweeps);
+    s->total_sweeps += frame->sweeps;
+    if (any.active) s->contact_sweeps += frame->sweeps;
+    if (r->contact.steps_in_contact) PetscCall(AddToSeries(s, frame));
+  }
+  s->time = frame->time;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean, standard deviation and minimum of a pair's force over the middle 3/5 from its first contact to its release */
+static void ComputeForces(Statistics s, PetscInt pair)
+{
+  ContactStatistics *contact  = &s->results.pairs[pair];
+  const size_t       width    = 1 + 2 * (size_t)s->results.n_pairs;
+  const PetscReal    duration = contact->release_time - contact->first_contact_time;
+  const PetscReal    begin    = contact->first_contact_time + 0.2 * duration - 1e-9 * duration; /* times carry round-off */
+  const PetscReal    end      = contact->first_contact_time + 0.8 * duration + 1e-9 * duration;
+  PetscInt           n        = 0;
+  PetscReal          mean = 0, squares = 0, minimum = NAN;
+
+  for (PetscInt i = 0; i < s->n_series; i++) {
+    const PetscReal *record = s->series + (size_t)i * width, force = record[1 + 2 * pair], change = force - mean;
+
+    if (!(record[0] >= begin && record[0] <= end)) continue;
+    n++;
+    mean += change / (PetscReal)n; /* Welford's recurrence: no cancellation where the scatter is small */
+    squares += change * (force - mean);
+    if (record[2 + 2 * pair] > 0 && !(force >= minimum)) minimum = force;
+  }
+  if (!n) return;
+  contact->force_mean = mean;
+  contact->force_std  = PetscSqrtReal(squares / (PetscReal)n);
+  contact->force_min  = minimum;
+}
+
+/*
+  StatisticsGetResults - the figures up to the last step told
+
+  Not Collective
+
+  Input Parameter:
+. statistics - the `Statistics`
+
+  Output Parameter:
+. results - owned by the statistics
+*/
+PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResults **results)
+{
+  StatisticsResults *r = &statistics->results;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < r->n_pairs; i++) ComputeForces(statistics, i);
+  if (r->n_pairs) {
+    r->contact.force_mean = r->pairs[0].force_mean;
+    r->contact.force_std  = r->pairs[0].force_std;
+    r->contact.force_min  = r->pairs[0].force_min;
+    r->contact.force_peak = r->pairs[0].force_peak;
+  }
+  r->mean_sweeps         = r->steps ? (PetscReal)statistics->total_sweeps / (PetscReal)r->steps : 0;
+  r->mean_sweeps_contact = r->contact.steps_in_contact ? (PetscReal)statistics->contact_sweeps / (PetscReal)r->contact.steps_in_contact : 0;
+  *results               = r;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StatisticsDestroy - frees them */
+PetscErrorCode StatisticsDestroy(Statistics *statistics)
+{
+  PetscFunctionBegin;
+  if (!*statistics) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*statistics)->results.pairs, (*statistics)->results.bodies));
+  PetscCall(PetscFree2((*statistics)->pair, (*statistics)->initial_energy));
+  PetscCall(PetscFree((*statistics)->series));
+  PetscCall(PetscFree(*statistics));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,41 @@
+/* What a run was like, gathered step by step. */
+#pragma once
+#include <controller.h>
+
+/* How one pair, or all pairs together, touched. Not-a-number where there is nothing to tell: no contact */
+typedef struct {
+  PetscReal first_contact_time;               /* end of the first controller step in contact [s] */
+  PetscReal release_time;                     /* end of the last controller step in contact [s] */
+  PetscInt  onsets;                           /* how often contact came out of none */
+  PetscInt  steps_in_contact;                 /* controller steps that end in contact */
+  PetscReal force_mean, force_std, force_min; /* over the middle 3/5 from first contact to release; minimum: while in contact [N] */
+  PetscReal force_peak, tension_max;          /* over the whole run [N] */
+  PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
+  PetscReal max_penetration;                  /* 0 or positive [m] */
+} ContactStatistics;
+
+typedef struct {
+  PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
+  PetscReal energy_error_min, energy_error_max; /* of kinetic + potential, relative to its start, or to the system's if that is 0 */
+} BodyStatistics;
+
+typedef struct {
+  PetscInt           steps;
+  PetscInt           n_pairs, n_bodies;
+  ContactStatistics  contact; /* of any pair; the force's mean, scatter, minimum and peak are the first pair's */
+  ContactStatistics *pairs;
+  BodyStatistics    *bodies;
+  PetscInt           max_sweeps;                                             /* in one step */
+  PetscReal          mean_sweeps;                                            /* over all steps */
+  PetscReal          mean_sweeps_contact;                                    /* over steps that end in contact */
+  PetscReal          energy_error_min, energy_error_max, energy_error_final; /* of the system, relative to its start */
+  PetscReal          momentum_error_max;                                     /* relative to the sum of the bodies' initial momenta; absolute if that is 0 [kg m/s] */
+  PetscReal          penalty_energy_max;                                     /* [J] */
+} StatisticsResults;
+
+typedef struct _n_Statistics *Statistics;
+
+PETSC_INTERN PetscErrorCode      StatisticsCreate(Controller, Statistics *);
+PETSC_INTERN ControllerMonitorFn StatisticsMonitor;
+PETSC_INTERN PetscErrorCode      StatisticsGetResults(Statistics, const StatisticsResults **);
+PETSC_INTERN PetscErrorCode      StatisticsDestroy(Statistics *);

@@ -1,0 +1,247 @@
+/* The summary: one JSON object, the contract with scripts. Numbers that do not exist (no contact, no release) are null. */
+#include "summary.h"
+#include "outputfile.h"
+#include "version.h"
+#include <jansson.h>
+
+static PetscErrorCode SetMember(json_t *object, const char name[], json_t *value)
+{
+  PetscFunctionBegin;
+  PetscCheck(!json_object_set_new(object, name, value), PETSC_COMM_SELF, PETSC_ERR_LIB, "Jansson cannot store '%s' in the summary: out of memory, or not UTF-8", name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetReal(json_t *object, const char name[], PetscReal value)
+{
+  PetscFunctionBegin;
+  PetscCall(SetMember(object, name, PetscIsInfOrNanReal(value) ? json_null() : json_real((double)value)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetInteger(json_t *object, const char name[], PetscInt64 value)
+{
+  PetscFunctionBegin;
+  PetscCall(SetMember(object, name, json_integer((json_int_t)value)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new object as a member, borrowed */
+static PetscErrorCode SetObject(json_t *object, const char name[], json_t **member)
+{
+  PetscFunctionBegin;
+  *member = json_object();
+  PetscCall(SetMember(object, name, *member));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatistics *contact)
+{
+  PetscFunctionBegin;
+  PetscCall(SetReal(object, "first_contact_time", contact->first_contact_time));
+  PetscCall(SetReal(object, "release_time", contact->release_time));
+  PetscCall(SetInteger(object, "onsets", contact->onsets));
+  PetscCall(SetInteger(object, "steps_in_contact", contact->steps_in_contact));
+  PetscCall(SetReal(object, "force_mean", contact->force_mean));
+  PetscCall(SetReal(object, "force_std", contact->force_std));
+  PetscCall(SetReal(object, "force_min", contact->force_min));
+  PetscCall(SetReal(object, "force_peak", contact->force_peak));
+  PetscCall(SetReal(object, "tension_max", contact->tension_max));
+  PetscCall(SetReal(object, "impulse", contact->impulse));
+  PetscCall(SetReal(object, "max_penetration", contact->max_penetration));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddContact(json_t *root, Contact contact, const StatisticsResults *results)
+{
+  json_t     *object, *pair;
+  ContactType type;
+  const char *name;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetType(contact, &type));
+  PetscCall(SetObject(root, "contact", &object));
+  PetscCall(SetMember(object, "type", json_string(type)));
+  PetscCall(SetContactStatistics(object, &results->contact));
+  if (results->n_pairs > 1) {
+    PetscCall(SetObject(root, "pairs", &object));
+    for (PetscInt i = 0; i < results->n_pairs; i++) {
+      PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
+      PetscCall(SetObject(object, name, &pair));
+      PetscCall(SetContactStatistics(pair, &results->pairs[i]));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddSchwarz(json_t *root, Contact contact, const StatisticsResults *results)
+{
+  json_t       *object;
+  ContactCounts counts;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetCounts(contact, &counts));
+  PetscCall(SetObject(root, "schwarz", &object));
+  PetscCall(SetInteger(object, "max", results->max_sweeps));
+  PetscCall(SetReal(object, "mean_all_steps", results->mean_sweeps));
+  PetscCall(SetReal(object, "mean_contact_steps", results->mean_sweeps_contact));
+  PetscCall(SetInteger(object, "unconverged_steps", counts.unconverged_steps));
+  PetscCall(SetInteger(object, "set_changes", counts.set_changes));
+  PetscCall(SetInteger(object, "set_cycles", counts.set_cycles));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const StatisticsResults *results)
+{
+  json_t     *objects, *object;
+  const char *name;
+  PetscInt    dofs;
+  PetscInt64  substeps;
+  Vec         u;
+
+  PetscFunctionBegin;
+  PetscCall(SetObject(root, "bodies", &objects));
+  for (PetscInt i = 0; i < results->n_bodies; i++) {
+    const BodyStatistics *body = &results->bodies[i];
+
+    PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
+    PetscCall(BodyGetSolution(bodies[i], &u, NULL, NULL));
+    PetscCall(VecGetSize(u, &dofs));
+    PetscCall(BodyGetTotalSubsteps(bodies[i], &substeps, NULL));
+    PetscCall(SetObject(objects, name, &object));
+    PetscCall(SetInteger(object, "dofs", dofs));
+    PetscCall(SetReal(object, "kinetic", body->kinetic));
+    PetscCall(SetReal(object, "potential", body->potential));
+    PetscCall(SetReal(object, "peak_potential", body->peak_potential));
+    PetscCall(SetReal(object, "total_energy_error_min", body->energy_error_min));
+    PetscCall(SetReal(object, "total_energy_error_max", body->energy_error_max));
+    PetscCall(SetInteger(object, "substeps", substeps));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
+{
+  json_t *object;
+
+  PetscFunctionBegin;
+  PetscCall(SetObject(root, "system", &object));
+  PetscCall(SetReal(object, "energy_error_min", results->energy_error_min));
+  PetscCall(SetReal(object, "energy_error_max", results->energy_error_max));
+  PetscCall(SetReal(object, "energy_error_final", results->energy_error_final));
+  PetscCall(SetReal(object, "momentum_error_max", results->momentum_error_max));
+  PetscCall(SetReal(object, "penalty_energy_max", results->penalty_energy_max));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddErrors(json_t *root, ExactImpact exact)
+{
+  json_t     *object;
+  ExactErrors errors;
+
+  PetscFunctionBegin;
+  PetscCall(ExactImpactGetErrors(exact, &errors));
+  PetscCall(SetObject(root, "errors", &object));
+  PetscCall(SetReal(object, "contact_position", errors.contact_position));
+  PetscCall(SetReal(object, "contact_velocity", errors.contact_velocity));
+  PetscCall(SetReal(object, "contact_force", errors.contact_force));
+  PetscCall(SetReal(object, "kinetic", errors.kinetic));
+  PetscCall(SetReal(object, "potential", errors.potential));
+  PetscCall(SetReal(object, "mean_velocity", errors.mean_velocity));
+  PetscCall(SetReal(object, "peak_potential", errors.peak_potential));
+  PetscCall(SetReal(object, "release_time", errors.release_time));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Time in the integrators, by kind, and in sweeps, which contain most of it */
+static PetscErrorCode AddPhases(json_t *timing, Contact contact, PetscInt n, const Body bodies[])
+{
+  const char *const integrators[] = {"alpha2", "centraldifference"};
+  PetscInt          used[2]       = {0, 0};
+  PetscInt64        substeps[2]   = {0, 0}, more_substeps;
+  PetscLogDouble    seconds[2]    = {0, 0}, more_seconds;
+  ContactCounts     counts;
+  json_t           *phases, *object;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool is_explicit;
+    PetscInt  kind;
+
+    PetscCall(BodyIsExplicit(bodies[i], &is_explicit));
+    PetscCall(BodyGetTotalSubsteps(bodies[i], &more_substeps, &more_seconds));
+    kind = is_explicit ? 1 : 0;
+    used[kind]++;
+    substeps[kind] += more_substeps;
+    seconds[kind] += more_seconds;
+  }
+  PetscCall(SetObject(timing, "per_phase", &phases));
+  for (PetscInt i = 0; i < 2; i++) {
+    if (!used[i]) continue;
+    PetscCall(SetObject(phases, integrators[i], &object));
+    PetscCall(SetReal(object, "seconds", (PetscReal)seconds[i]));
+    PetscCall(SetInteger(object, "substeps", substeps[i]));
+  }
+  PetscCall(ContactGetCounts(contact, &counts));
+  PetscCall(SetObject(phases, "sweeps", &object));
+  PetscCall(SetReal(object, "seconds", (PetscReal)counts.seconds));
+  PetscCall(SetInteger(object, "count", counts.total_sweeps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact contact, PetscInt n, const Body bodies[])
+{
+  json_t        *object;
+  PetscLogDouble setup, wall, cpu;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
+  PetscCall(SetObject(root, "timing", &object));
+  PetscCall(SetReal(object, "wall", (PetscReal)wall));
+  PetscCall(SetReal(object, "cpu", (PetscReal)cpu));
+  PetscCall(SetReal(object, "wall_setup", (PetscReal)setup));
+  PetscCall(AddPhases(object, contact, n, bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  SummaryWrite - writes the summary of a run
+
+  Not Collective; rank 0 writes
+
+  Input Parameters:
++ controller - the `Controller`, at its end
+. results    - figures of the run
+. exact      - what it was compared with, or `NULL`
+- path       - the file
+*/
+PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, ExactImpact exact, const char path[])
+{
+  char        part[PETSC_MAX_PATH_LEN];
+  json_t     *root;
+  Contact     contact;
+  const Body *bodies;
+  PetscInt    n;
+  PetscMPIInt rank;
+  int         failed;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)controller), &rank));
+  if (rank) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ControllerGetBodies(controller, &n, &bodies));
+  PetscCall(ControllerGetContact(controller, &contact));
+  root = json_object();
+  PetscCall(SetMember(root, "version", json_string(IMPAKT_VERSION)));
+  PetscCall(AddContact(root, contact, results));
+  PetscCall(AddSchwarz(root, contact, results));
+  PetscCall(AddBodies(root, bodies, results));
+  PetscCall(AddSystem(root, results));
+  if (exact) PetscCall(AddErrors(root, exact));
+  PetscCall(AddTiming(root, controller, contact, n, bodies));
+  PetscCall(OutputFileGetPart(path, sizeof(part), part));
+  failed = json_dump_file(root, part, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+  json_decref(root);
+  if (failed) remove(part);
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "The summary %s cannot be written; is the disk full?", path);
+  PetscCall(OutputFileReplace(part, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,172 @@
+/* Option hygiene: every option that is given must have been read by somebody. */
+#include <impakt.h>
+
+typedef struct {
+  const char *name;  /* after the body's prefix, for those of bodies */
+  const char *value; /* what it takes */
+  const char *text;
+} KnownOption;
+
+static const KnownOption global_options[] = {
+  {"bodies", "a,b", "names of the bodies; options of body a begin with -a_"},
+  {"contact_pairs", "a:b,b:c", "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces"},
+  {"contact_type", "schwarz|penalty|lagrange", "contact method"},
+  {"contact_penalty", "tau", "penalty parameter [N/m in 1-D]"},
+  {"contact_tolerance", "g", "depth that does not yet count as penetration [m]"},
+  {"time_start", "t", "start [s], default 0"},
+  {"time_end", "t", "end [s]"},
+  {"time_step", "dt", "controller step [s]"},
+  {"schwarz_snes_type", "newtonls|anderson|nrichardson|ngmres|qn", "outer iteration, default newtonls"},
+  {"schwarz_snes_atol", "a", "absolute tolerance on the change of position [m], default 1e-12"},
+  {"schwarz_snes_rtol", "r", "relative tolerance, default 1e-15"},
+  {"schwarz_snes_max_it", "n", "limit of iterations, default 50"},
+  {"schwarz_snes_linesearch_damping", "theta", "relaxation of nrichardson, default 1"},
+  {"schwarz_relaxation", "fixed|aitken", "relaxation of nrichardson, default fixed"},
+  {"schwarz_traction", "internal|reaction", "nodal force handed over: without or with inertia, default internal"},
+  {"schwarz_convergence", "auto|position|mismatch", "what change of position is tested, default auto"},
+  {"schwarz_recheck", "true|false", "let tensile nodes leave contact within the step, default true"},
+  {"schwarz_unconverged", "error|accept", "what to do with a step that does not converge, default error"},
+  {"penalty_snes_type", "newtonls|...", "outer iteration of the penalty method, default newtonls"},
+  {"penalty_snes_rtol", "r", "its relative tolerance on the force, default 1e-9"},
+  {"penalty_snes_atol", "a", "its absolute tolerance [N], default 1e-14"},
+  {"penalty_snes_max_it", "n", "its limit of iterations, default 50"},
+  {"exact", "none|impact", "compare with a closed-form solution"},
+  {"output_history", "file.h5", "history of every controller step"},
+  {"output_summary", "file.json", "summary of the run"},
+  {"monitor_interval", "n", "a line on the terminal every n steps, default 0: none"},
+  {"progress", "true|false", "progress bar on standard error"},
+  {"options_file", "file", "more options from a file"},
+};
+
+static const KnownOption body_options[] = {
+  {"dm_plex_dim", "1", "space dimension of the mesh"},
+  {"dm_plex_box_faces", "n", "elements along the axes"},
+  {"dm_plex_box_lower", "x", "lower corner [m]"},
+  {"dm_plex_box_upper", "x", "upper corner [m]"},
+  {"material_type", "linear_elastic", "constitutive model"},
+  {"density", "rho", "mass density [kg/m^3]"},
+  {"youngs_modulus", "E", "Young's modulus [Pa]"},
+  {"poissons_ratio", "nu", "Poisson's ratio, default 0"},
+  {"cross_section", "A", "cross-sectional area of bars [m^2], default 1"},
+  {"initial_velocity", "v[,v,v]", "[m/s], default 0"},
+  {"initial_displacement", "u[,u,u]", "[m], default 0"},
+  {"mass_type", "lumped|consistent|averaged", "mass matrix, default averaged"},
+  {"mass_redistribute", "true|false", "massless contact nodes, default true"},
+  {"ts_type", "alpha2|centraldifference", "implicit or explicit integrator, default alpha2"},
+  {"ts_time_step", "dt|auto", "substep [s], default the controller step"},
+  {"ts_alpha_radius", "r", "numerical dissipation of alpha2, 1 (none) to 0"},
+  {"ts_alpha_alpha_m", "a", "parameter of alpha2, default 1"},
+  {"ts_alpha_alpha_f", "a", "parameter of alpha2, default 1"},
+  {"ts_alpha_gamma", "g", "Newmark's gamma, default 1/2"},
+  {"ts_alpha_beta", "b", "Newmark's beta, default 1/4"},
+};
+
+/* These are read by PETSc when it finalises, so they are unread before the run */
+static const char *const late_options[] = {"options_left", "options_view", "malloc_dump", "malloc_view", "malloc_debug", "objects_dump", "memory_view", "log_view", "log_trace", "log_view_memory", "log_view_gpu_time", "log_nested", "get_total_flops", "mpidump", "citations", "petsc_mpi", "x_virtual", "on_error_abort", "on_error_mpiabort"};
+
+/* Levenshtein's distance between two short words */
+static PetscInt EditDistance(const char a[], const char b[])
+{
+  size_t   n, m;
+  PetscInt row[129];
+
+  if (PetscStrlen(a, &n) || PetscStrlen(b, &m) || n > 128 || m > 128) return 1000;
+  for (size_t j = 0; j <= m; j++) row[j] = (PetscInt)j;
+  for (size_t i = 1; i <= n; i++) {
+    PetscInt diagonal = row[0];
+
+    row[0] = (PetscInt)i;
+    for (size_t j = 1; j <= m; j++) {
+      const PetscInt above = row[j];
+
+      row[j]   = PetscMin(PetscMin(row[j] + 1, row[j - 1] + 1), diagonal + (a[i - 1] != b[j - 1]));
+      diagonal = above;
+    }
+  }
+  return row[m];
+}
+
+static PetscErrorCode FindNearest(const char name[], PetscInt n_bodies, const char *const bodies[], char nearest[], size_t size)
+{
+  PetscInt best = 1000;
+
+  PetscFunctionBegin;
+  nearest[0] = 0;
+  for (size_t i = 0; i < sizeof(global_options) / sizeof(global_options[0]); i++) {
+    const PetscInt distance = EditDistance(name, global_options[i].name);
+
+    if (distance >= best) continue;
+    best = distance;
+    PetscCall(PetscStrncpy(nearest, global_options[i].name, size));
+  }
+  for (PetscInt b = 0; b < n_bodies; b++)
+    for (size_t i = 0; i < sizeof(body_options) / sizeof(body_options[0]); i++) {
+      char     full[128];
+      PetscInt distance;
+
+      PetscCall(PetscSNPrintf(full, sizeof(full), "%s_%s", bodies[b], body_options[i].name));
+      distance = EditDistance(name, full);
+      if (distance >= best) continue;
+      best = distance;
+      PetscCall(PetscStrncpy(nearest, full, size));
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ImpaktCheckOptions - stops with an error if an option has been given that nobody has read
+
+  Collective on `PETSC_COMM_WORLD`
+
+  Input Parameters:
++ n      - number of bodies
+- bodies - their names
+
+  Level: developer
+
+  Note:
+  To be called when everything has been set up and nothing been computed. Names the nearest known option.
+
+.seealso: `ImpaktPrintOptions()`
+@*/
+PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
+{
+  PetscInt n_left;
+  char   **names, **values, message[2048] = "";
+  PetscInt unread = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsLeftGet(NULL, &n_left, &names, &values));
+  for (PetscInt i = 0; i < n_left; i++) {
+    PetscBool late = PETSC_FALSE;
+    char      nearest[128], line[512];
+
+    for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++) PetscCall(PetscStrcmp(names[i], late_options[k], &late));
+    if (late) continue;
+    PetscCall(FindNearest(names[i], n, bodies, nearest, sizeof(nearest)));
+    PetscCall(PetscSNPrintf(line, sizeof(line), "%s-%s%s%s (the nearest known one is -%s)", unread ? ", " : "", names[i], values[i] ? " " : "", values[i] ? values[i] : "", nearest));
+    PetscCall(PetscStrlcat(message, line, sizeof(message)));
+    unread++;
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n_left, &names, &values));
+  PetscCheck(!unread, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "Unknown option%s, or without effect here: %s. `impakt -help_options` lists the options", unread == 1 ? "" : "s", message);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ImpaktPrintOptions - prints a table of all options that Impakt has beside those of PETSc
+
+  Collective on `PETSC_COMM_WORLD`
+
+  Level: beginner
+
+.seealso: `ImpaktCheckOptions()`
+@*/
+PetscErrorCode ImpaktPrintOptions(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "Options of Impakt (PETSc's own options work too; -help lists those that apply)\n\n"));
+  for (size_t i = 0; i < sizeof(global_options) / sizeof(global_options[0]); i++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s %s\n      %s\n", global_options[i].name, global_options[i].value, global_options[i].text));
+  for (size_t i = 0; i < sizeof(body_options) / sizeof(body_options[0]); i++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -<body>_%s %s\n      %s\n", body_options[i].name, body_options[i].value, body_options[i].text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,117 @@
+/* Start and end of the library: class ids, events, registries; how errors reach the user. */
+#include <impakt.h>
+#include <unistd.h>
+#include "petsccompat.h"
+
+static const char help[] = "Impakt: dynamic contact by the Schwarz alternating method.\n"
+                           "  impakt -options_file FILE [-option value ...]\n"
+                           "`impakt -help_options` lists the options of Impakt; -version prints that of PETSc.\n\n";
+
+/*@
+  ImpaktRegisterAll - registers classes, integrators, materials, elements and contact methods
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ImpaktInitialize()`
+@*/
+PetscErrorCode ImpaktRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(TSSecondOrderRegisterAll());
+  PetscCall(BodyRegisterAll());
+  PetscCall(ContactRegisterAll());
+  PetscCall(ControllerRegisterAll());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One line to the user in place of PETSc's stack trace; for what is not the user's fault, with the place in the source too */
+static PetscErrorCode ReportError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *ctx)
+{
+  PetscMPIInt rank = 0, size = 1;
+
+  (void)ctx;
+  if (type != PETSC_ERROR_INITIAL) return code;
+  if (comm != MPI_COMM_NULL && comm != PETSC_COMM_SELF) MPI_Comm_rank(comm, &rank);
+  if (comm == PETSC_COMM_SELF) MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  if (rank) return code;
+  if (size > 1) {
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    fprintf(stderr, "impakt: error on rank %d: %s\n", rank, message ? message : "");
+  } else fprintf(stderr, "impakt: error: %s\n", message ? message : "");
+  if (code != PETSC_ERR_USER_INPUT && code != PETSC_ERR_ARG_UNKNOWN_TYPE && code != PETSC_ERR_NOT_CONVERGED && code != PETSC_ERR_FILE_OPEN && code != PETSC_ERR_FP) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
+  fflush(stderr);
+  return code;
+}
+
+/*@C
+  ImpaktInitialize - starts PETSc and Impakt
+
+  Collective on `PETSC_COMM_WORLD`
+
+  Input Parameters:
++ argc - of main()
+- argv - of main()
+
+  Level: beginner
+
+.seealso: `ImpaktFinalize()`, `ImpaktExit()`
+@*/
+PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscInitialize(argc, argv, NULL, help));
+  PetscCall(PetscPushErrorHandler(ReportError, NULL));
+  PetscCall(ImpaktRegisterAll());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ImpaktFinalize - ends Impakt and PETSc
+
+  Collective on `PETSC_COMM_WORLD`
+
+  Level: beginner
+
+.seealso: `ImpaktInitialize()`
+@*/
+PetscErrorCode ImpaktFinalize(void)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactFinalizePackage());
+  PetscCall(BodyFinalizePackage());
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(PetscFinalize());
+  return PETSC_SUCCESS;
+}
+
+/*@
+  ImpaktExit - ends the program with an exit code, on all ranks even where an error came up on one alone
+
+  Not Collective
+
+  Input Parameter:
+. error - 0, or the error that stopped the program
+
+  Level: developer
+
+  Note:
+  The error has been printed when it came up.
+
+.seealso: `ImpaktInitialize()`
+@*/
+int ImpaktExit(PetscErrorCode error)
+{
+  PetscMPIInt initialized, size = 1, rank = 0;
+
+  if (!error) return 0;
+  if (MPI_Initialized(&initialized) || !initialized) return (int)error;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (size == 1) return (int)error;
+  /* an error on all ranks is printed by the first: let it speak before the others end the job */
+  if (rank) sleep(1);
+  MPI_Abort(MPI_COMM_WORLD, (int)error);
+  return (int)error;
+}

@@ -1,0 +1,186 @@
+#include <trace.h>
+
+struct _n_Trace {
+  PetscInt     size, levels;
+  PetscScalar *values; /* (levels + 1) x size */
+};
+
+/*@
+  TraceCreate - creates a waveform of zeros
+
+  Not Collective
+
+  Input Parameters:
++ size   - how many numbers each level holds (contact rows of this rank)
+- levels - number of equal intervals of the controller step, at least 1
+
+  Output Parameter:
+. trace - the waveform
+
+  Level: developer
+
+.seealso: `Trace`, `TraceDestroy()`
+@*/
+PetscErrorCode TraceCreate(PetscInt size, PetscInt levels, Trace *trace)
+{
+  PetscFunctionBegin;
+  PetscCheck(levels > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "A trace needs at least one interval, not %" PetscInt_FMT, levels);
+  PetscCall(PetscNew(trace));
+  (*trace)->size   = size;
+  (*trace)->levels = levels;
+  PetscCall(PetscCalloc1((levels + 1) * size, &(*trace)->values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TraceDestroy - frees a waveform
+
+  Not Collective
+
+  Input Parameter:
+. trace - the waveform, set to `NULL`
+
+  Level: developer
+
+.seealso: `Trace`, `TraceCreate()`
+@*/
+PetscErrorCode TraceDestroy(Trace *trace)
+{
+  PetscFunctionBegin;
+  if (!*trace) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*trace)->values));
+  PetscCall(PetscFree(*trace));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TraceGetSizes - how many numbers a level holds, and how many intervals the controller step has
+
+  Not Collective
+
+  Input Parameter:
+. trace - the waveform
+
+  Output Parameters:
++ size   - numbers in a level, or `NULL`
+- levels - number of intervals, or `NULL`
+
+  Level: developer
+
+.seealso: `Trace`
+@*/
+PetscErrorCode TraceGetSizes(Trace trace, PetscInt *size, PetscInt *levels)
+{
+  PetscFunctionBegin;
+  if (size) *size = trace->size;
+  if (levels) *levels = trace->levels;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TraceZero - sets all levels to zero
+
+  Not Collective
+
+  Input Parameter:
+. trace - the waveform
+
+  Level: developer
+
+.seealso: `Trace`
+@*/
+PetscErrorCode TraceZero(Trace trace)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(trace->values, (trace->levels + 1) * trace->size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TraceGetLevel - the values at one level, to read or write
+
+  Not Collective
+
+  Input Parameters:
++ trace - the waveform
+- level - 0 (start of the controller step) to `levels` (its end)
+
+  Output Parameter:
+. values - `size` numbers, owned by the trace
+
+  Level: developer
+
+.seealso: `Trace`, `TraceInterpolate()`
+@*/
+PetscErrorCode TraceGetLevel(Trace trace, PetscInt level, PetscScalar **values)
+{
+  PetscFunctionBegin;
+  PetscAssert(level >= 0 && level <= trace->levels, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "Level %" PetscInt_FMT " of a trace with %" PetscInt_FMT " intervals", level, trace->levels);
+  *values = trace->values + level * trace->size;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TraceInterpolate - the values of some rows at any time of the controller step
+
+  Not Collective
+
+  Input Parameters:
++ trace - the waveform
+. time  - 0 (start of the controller step) to 1 (its end)
+. begin - first row
+- end   - one past the last row
+
+  Output Parameter:
+. values - array of `size` numbers, of which `begin` to `end` - 1 are set
+
+  Level: developer
+
+.seealso: `Trace`, `TraceResample()`
+@*/
+PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, PetscInt end, PetscScalar values[])
+{
+  const PetscReal    position = time * trace->levels;
+  const PetscInt     level    = (PetscInt)PetscMin(PetscMax(PetscFloorReal(position), 0), trace->levels - 1);
+  const PetscReal    weight   = position - level;
+  const PetscScalar *lower = trace->values + level * trace->size, *upper = lower + trace->size;
+
+  PetscFunctionBegin;
+  /* written so that both ends of an interval come out bit for bit */
+  for (PetscInt i = begin; i < end; i++) values[i] = weight == 1 ? upper[i] : lower[i] + weight * (upper[i] - lower[i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TraceResample - evaluates some rows of a waveform at the levels of another one, scaled
+
+  Not Collective
+
+  Input Parameters:
++ from  - the waveform to evaluate
+. begin - first row
+. end   - one past the last row
+. scale - factor on the values
+- to    - waveform of the same size, whose rows `begin` to `end` - 1 are set at all its levels
+
+  Level: developer
+
+.seealso: `Trace`, `TraceInterpolate()`
+@*/
+PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
+{
+  PetscFunctionBegin;
+  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows", from->size, to->size);
+  for (PetscInt level = 0; level <= to->levels; level++) {
+    PetscScalar *values = to->values + level * to->size;
+
+    if (from->levels == to->levels) {
+      const PetscScalar *source = from->values + level * from->size;
+
+      for (PetscInt i = begin; i < end; i++) values[i] = source[i];
+    } else PetscCall(TraceInterpolate(from, (PetscReal)level / to->levels, begin, end, values));
+    if (scale != 1)
+      for (PetscInt i = begin; i < end; i++) values[i] *= scale;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

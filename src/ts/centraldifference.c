@@ -1,0 +1,225 @@
+/*
+   Central differences for M a = f(t, u): the explicit Newmark scheme, beta = 0, gamma = 1/2, in its velocity form
+
+     v_{n+1/2} = v_n + dt/2 a_n,   u_{n+1} = u_n + dt v_{n+1/2},   a_{n+1} = a(t_{n+1}, u_{n+1}),   v_{n+1} = v_{n+1/2} + dt/2 a_{n+1}
+*/
+#include <tssecondorder.h>
+#include <petsc/private/tsimpl.h>
+
+typedef struct {
+  TSCentralDifferenceFn *acceleration;
+  void                  *ctx;
+  Vec                    A;         /* acceleration at ts->ptime, owned by the caller of TSCentralDifferenceSetAccelerationVec() */
+  Vec                    U0, V0, A0; /* state at the start of the step, for TSRollBack() */
+} TS_CentralDifference;
+
+static PetscErrorCode TSStep_CentralDifference(TS ts)
+{
+  TS_CentralDifference *cd   = (TS_CentralDifference *)ts->data;
+  const PetscReal       half = 0.5 * ts->time_step;
+  PetscReal             next = ts->time_step;
+  PetscBool             accept;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(ts->vec_sol, cd->U0));
+  PetscCall(VecCopy(ts->vec_dot, cd->V0));
+  PetscCall(VecCopy(cd->A, cd->A0));
+  PetscCall(VecAXPY(ts->vec_dot, half, cd->A));
+  PetscCall(VecAXPY(ts->vec_sol, ts->time_step, ts->vec_dot));
+  PetscCall((*cd->acceleration)(ts, ts->ptime + ts->time_step, ts->vec_sol, ts->vec_dot, cd->A, cd->ctx));
+  PetscCall(VecAXPY(ts->vec_dot, half, cd->A));
+  PetscCall(TSAdaptChoose(ts->adapt, ts, ts->time_step, NULL, &next, &accept));
+  ts->ptime += ts->time_step;
+  ts->time_step = next;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSRollBack_CentralDifference(TS ts)
+{
+  TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(cd->U0, ts->vec_sol));
+  PetscCall(VecCopy(cd->V0, ts->vec_dot));
+  PetscCall(VecCopy(cd->A0, cd->A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSSetUp_CentralDifference(TS ts)
+{
+  TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TS2SetSolution() first");
+  PetscCheck(cd->acceleration, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAcceleration() first");
+  PetscCheck(cd->A, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAccelerationVec() first");
+  PetscCall(VecDuplicate(ts->vec_sol, &cd->U0));
+  PetscCall(VecDuplicate(ts->vec_sol, &cd->V0));
+  PetscCall(VecDuplicate(ts->vec_sol, &cd->A0));
+  PetscCall(TSGetAdapt(ts, &ts->adapt));
+  PetscCall(TSAdaptCandidatesClear(ts->adapt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSReset_CentralDifference(TS ts)
+{
+  TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCall(VecDestroy(&cd->U0));
+  PetscCall(VecDestroy(&cd->V0));
+  PetscCall(VecDestroy(&cd->A0));
+  PetscCall(VecDestroy(&cd->A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSDestroy_CentralDifference(TS ts)
+{
+  PetscFunctionBegin;
+  PetscCall(TSReset_CentralDifference(ts));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C", NULL));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C", NULL));
+  PetscCall(PetscFree(ts->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSCentralDifferenceSetAcceleration_CentralDifference(TS ts, TSCentralDifferenceFn *acceleration, void *ctx)
+{
+  TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
+
+  PetscFunctionBegin;
+  cd->acceleration = acceleration;
+  cd->ctx          = ctx;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSCentralDifferenceSetAccelerationVec_CentralDifference(TS ts, Vec A)
+{
+  TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectReference((PetscObject)A));
+  PetscCall(VecDestroy(&cd->A));
+  cd->A = A;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  TSCentralDifferenceSetAcceleration - sets the function that gives the acceleration for a displacement
+
+  Logically Collective
+
+  Input Parameters:
++ ts           - the `TSCENTRALDIFFERENCE`
+. acceleration - function (ts, t, U, V, A, ctx): computes A = M^{-1} f(t, U) [m/s^2]. It may correct U (prescribed and massless
+                 nodes) and V (the velocity at mid-step) before it does
+- ctx          - its context
+
+  Level: developer
+
+.seealso: `TSCENTRALDIFFERENCE`, `TSCentralDifferenceSetAccelerationVec()`
+@*/
+PetscErrorCode TSCentralDifferenceSetAcceleration(TS ts, TSCentralDifferenceFn *acceleration, void *ctx)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  PetscTryMethod(ts, "TSCentralDifferenceSetAcceleration_C", (TS, TSCentralDifferenceFn *, void *), (ts, acceleration, ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TSCentralDifferenceSetAccelerationVec - sets the vector that holds the acceleration between steps
+
+  Logically Collective
+
+  Input Parameters:
++ ts - the `TSCENTRALDIFFERENCE`
+- A  - acceleration at the current time [m/s^2]; the caller fills it at the start, and to restore an earlier state
+
+  Level: developer
+
+.seealso: `TSCENTRALDIFFERENCE`, `TSCentralDifferenceSetAcceleration()`, `TS2SetSolution()`
+@*/
+PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS ts, Vec A)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  PetscValidHeaderSpecific(A, VEC_CLASSID, 2);
+  PetscTryMethod(ts, "TSCentralDifferenceSetAccelerationVec_C", (TS, Vec), (ts, A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*MC
+   TSCENTRALDIFFERENCE - explicit Newmark scheme (beta = 0, gamma = 1/2) for second-order systems; second order, stable for
+   dt < 2 / omega_max
+
+   Level: beginner
+
+   Note:
+   One evaluation of the acceleration in a step. It conserves the staggered energy 1/2 v'Mv - dt^2/8 a'Ma + potential.
+
+.seealso: `TSALPHA2`, `TSCentralDifferenceSetAcceleration()`
+M*/
+static PetscErrorCode TSCreate_CentralDifference(TS ts)
+{
+  TS_CentralDifference *cd;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&cd));
+  ts->data            = cd;
+  ts->ops->setup      = TSSetUp_CentralDifference;
+  ts->ops->step       = TSStep_CentralDifference;
+  ts->ops->rollback   = TSRollBack_CentralDifference;
+  ts->ops->reset      = TSReset_CentralDifference;
+  ts->ops->destroy    = TSDestroy_CentralDifference;
+  ts->default_adapt_type = TSADAPTNONE;
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C", TSCentralDifferenceSetAcceleration_CentralDifference));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C", TSCentralDifferenceSetAccelerationVec_CentralDifference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TSSecondOrderRegisterAll - registers Impakt's time integrators with `TS`
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `TSCENTRALDIFFERENCE`, `ImpaktInitialize()`
+@*/
+PetscErrorCode TSSecondOrderRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(TSRegister(TSCENTRALDIFFERENCE, TSCreate_CentralDifference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TSSecondOrderSetState - puts an integrator at a time, to go on from the vectors of `TS2SetSolution()` as they are now
+
+  Logically Collective
+
+  Input Parameters:
++ ts        - a `TSALPHA2` or `TSCENTRALDIFFERENCE`
+. time      - current time [s]
+. time_step - step from here on [s]
+- step      - number of steps taken so far
+
+  Level: developer
+
+  Note:
+  Also switches off the restart of `TSALPHA2`, which would put two half steps with another matrix before the next step to
+  guess an acceleration: Impakt always has one.
+
+.seealso: `TSALPHA2`, `TSCENTRALDIFFERENCE`
+@*/
+PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step, PetscInt step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  ts->ptime       = time;
+  ts->time_step   = time_step;
+  ts->steps       = step;
+  ts->steprestart = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,158 @@
+"""What the tests share: starting programs under MPI, running Impakt, and the tally that ends `make test`."""
+
+import json
+import os
+import re
+import shlex
+import signal
+import subprocess
+from functools import cached_property
+from pathlib import Path
+from types import SimpleNamespace
+
+import h5py
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+BUILD = Path(os.environ.get("IMPAKT_BUILD", ROOT / "build"))
+IMPAKT = Path(os.environ.get("IMPAKT", BUILD / "impakt"))
+MPIEXEC = shlex.split(os.environ.get("MPIEXEC") or "mpiexec")
+
+LEAK = re.compile(r"^\[ *\d+\] *\d+ bytes .*|^.*Total space allocated.*", re.MULTILINE)
+LEFTOVER = re.compile(r"^WARNING! There are options you set that were not used[\s\S]*", re.MULTILINE)
+
+
+def complaints(output):
+    """What PETSc found wrong at the end of a run with -malloc_dump: unfreed memory (its first few lines), unused options."""
+    found = LEAK.findall(output)[:5]
+    leftover = LEFTOVER.search(output)
+    if leftover:
+        found += [line for line in leftover.group().splitlines() if "ption left" in line]
+    return found
+
+
+def start(command, ranks=1, timeout=120, **more):
+    """Runs a command on some ranks; one that outlives `timeout` seconds is ended, and the test fails with its output."""
+    command = [str(word) for word in command]
+    if ranks > 1:
+        command = MPIEXEC + ["-n", str(ranks)] + command
+    process = subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+        **more,
+    )
+    late = False
+    try:
+        stdout, stderr = process.communicate(timeout=timeout)
+    except subprocess.TimeoutExpired:
+        late = True
+        os.killpg(process.pid, signal.SIGTERM)  # mpiexec ends its ranks, which are not in its process group
+        try:
+            stdout, stderr = process.communicate(timeout=10)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            stdout, stderr = process.communicate()
+    if late:
+        fail(f"still running after {timeout} s", command, stdout, stderr)
+    return SimpleNamespace(command=command, returncode=process.returncode, stdout=stdout, stderr=stderr)
+
+
+def fail(what, command, stdout, stderr):
+    ends = "".join(f"\n--- {name}\n{text[-8000:].rstrip()}" for name, text in (("stdout", stdout), ("stderr", stderr)) if text.strip())
+    pytest.fail(f"{what}\n$ {shlex.join(command)}{ends}", pytrace=False)
+
+
+class Run:
+    """A finished run of Impakt. `summary` is the parsed JSON, `history` the open HDF5 file; both are read when asked for."""
+
+    def __init__(self, process, folder):
+        self.command, self.returncode = process.command, process.returncode
+        self.stdout, self.stderr = process.stdout, process.stderr
+        self.folder = folder
+
+    @cached_property
+    def summary(self):
+        return json.loads((self.folder / "summary.json").read_text())
+
+    @cached_property
+    def history(self):
+        return h5py.File(self.folder / "history.h5", "r")
+
+
+@pytest.fixture
+def launch():
+    """start(command, ranks=1, timeout=120, ...), for programs other than Impakt."""
+    return start
+
+
+@pytest.fixture
+def impakt(tmp_path):
+    """Runs Impakt: impakt("-options_file options/x.opts -time_end 1e-4", ranks=2) -> Run.
+
+    Each call has a folder of its own as working directory, in which options/ and tests/ are the repository's; history and
+    summary go there. The run must succeed, free its memory and use all its options; with expect_failure it must end with
+    an exit code of its own other than 0 (not by a signal), whatever it leaves. `env` is added to the environment.
+    """
+    runs = []
+
+    def run(options, ranks=1, expect_failure=False, timeout=300, env=None):
+        words = shlex.split(options) if isinstance(options, str) else [str(word) for word in options]
+        folder = tmp_path / f"run-{len(runs)}"
+        folder.mkdir()
+        for name in ("options", "tests"):
+            (folder / name).symlink_to(ROOT / name)
+        words += ["-output_history", folder / "history.h5", "-output_summary", folder / "summary.json", "-malloc_dump"]
+        done = Run(start([IMPAKT, *words], ranks, timeout, cwd=folder, env={**os.environ, **(env or {})}), folder)
+        runs.append(done)
+
+        def reject(what):
+            fail(what, done.command, done.stdout, done.stderr)
+
+        if expect_failure:
+            if done.returncode == 0:
+                reject("succeeded, but was expected to fail")
+            if done.returncode < 0 or "Segmentation" in done.stderr:
+                reject("crashed, but was expected to fail with a message")
+            return done
+        if done.returncode != 0:
+            reject(f"exit code {done.returncode}")
+        found = complaints(done.stdout + done.stderr)
+        if found:
+            reject("memory not freed or options not used:\n" + "\n".join(found))
+        return done
+
+    yield run
+    for done in runs:
+        if "history" in done.__dict__:
+            done.history.close()
+
+
+def tally(config):
+    """Passed, failed (with errors, of which collecting and fixtures have some too), skipped."""
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    count = {key: len(reports) for key, reports in reporter.stats.items()} if reporter else {}
+    return count.get("passed", 0), count.get("failed", 0) + count.get("error", 0), count.get("skipped", 0) + count.get("xfailed", 0)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session):
+    passed, failed, _ = tally(session.config)
+    if not hasattr(session.config, "workerinput") and passed + failed == 0:
+        session.exitstatus = pytest.ExitCode.NO_TESTS_COLLECTED  # all skipped is no success
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config):
+    """The last line: N passed, N failed[, N skipped]. Kept in the build folder as well."""
+    if hasattr(config, "workerinput"):
+        return
+    passed, failed, skipped = tally(config)
+    line = f"{passed} passed, {failed} failed" + (f", {skipped} skipped" if skipped else "")
+    BUILD.mkdir(parents=True, exist_ok=True)
+    (BUILD / "tally").write_text(line + "\n")
+    print(line, flush=True)

@@ -1,0 +1,176 @@
+"""Compare the CPU time of Impakt with the yardstick, a plain C program for the same problem.
+
+    python tests/scaling/bench.py --build build
+
+Program and yardstick run in turn, several times: on a shared machine one measurement says little, and the ratio of two
+runs made one after the other says more than either time. The exit code tells whether all runs worked, not whether they
+were fast.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# name, options of the program, bound on (CPU time of the program) / (CPU time of the yardstick)
+CASES = (
+    ("II", "options/paper-ii.opts", 6.0),
+    ("EE", "options/paper-ee.opts", 8.0),
+    ("IE", "options/paper-ie.opts", None),
+)
+DEFAULT_RUN = "options/impact-high-speed.opts"
+PHASES = (("alpha2", "substeps"), ("centraldifference", "substeps"), ("sweeps", "count"))
+
+
+class RunError(Exception):
+    """A run that gave no usable result."""
+
+
+def execute(command, time_limit):
+    """Run a command in the top directory and return its standard output."""
+    # Open MPI refuses to start as root, as in a container, unless told twice
+    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    line = " ".join(map(str, command))
+    try:
+        done = subprocess.run(
+            command, cwd=ROOT, env=environment, timeout=time_limit, capture_output=True, text=True, check=False
+        )
+    except subprocess.TimeoutExpired:
+        raise RunError(f"{line}\nno result within {time_limit:g} s") from None
+    except OSError as error:
+        raise RunError(f"{line}\n{error}") from None
+    if done.returncode:
+        tail = "\n".join((done.stdout + done.stderr).splitlines()[-20:])
+        raise RunError(f"{line}\nexit code {done.returncode}\n{tail}")
+    return done.stdout
+
+
+def run_yardstick(build, mode, time_limit):
+    """Return the yardstick's results for a mode."""
+    output = execute([build / "yardstick", "--mode", mode], time_limit)
+    try:
+        return json.loads(output)
+    except ValueError as error:
+        raise RunError(f"yardstick --mode {mode}: {error}") from None
+
+
+def run_program(build, options, time_limit):
+    """Return the program's summary of a run."""
+    with tempfile.TemporaryDirectory() as directory:
+        path = Path(directory) / "summary.json"
+        command = [build / "impakt", "-options_file", options, "-output_summary", path, "-progress", "0"]
+        execute(command, time_limit)
+        try:
+            summary = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise RunError(f"summary of {options}: {error}") from None
+    try:
+        float(summary["timing"]["cpu"])
+    except (KeyError, TypeError, ValueError):
+        raise RunError(f"summary of {options}: no number timing.cpu") from None
+    return summary
+
+
+def spread(values, digits=3):
+    """Median, with minimum and maximum in brackets."""
+    values = [value for value in values if value is not None]
+    if not values:
+        return "-"
+    return f"{median(values):.{digits}f} [{min(values):.{digits}f} {max(values):.{digits}f}]"
+
+
+def microseconds(summary, phase, count):
+    """CPU time of a phase for each of its substeps or sweeps; None if the run has none."""
+    entry = summary["timing"].get("per_phase", {}).get(phase, {})
+    return 1e6 * entry["seconds"] / entry[count] if entry.get("seconds") and entry.get(count) else None
+
+
+def sweeps(summary):
+    """Largest and mean number of sweeps, of the program or of the yardstick."""
+    schwarz = summary.get("schwarz", summary)
+    largest, mean = schwarz.get("max", schwarz.get("max_sweeps")), schwarz.get("mean_all_steps")
+    return "-" if largest is None or mean is None else f"{largest:g} / {mean:.4f}"
+
+
+def print_table(rows):
+    """Print rows of text, the first of them the header, in aligned columns."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    for number, row in enumerate(rows):
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
+        if number == 0:
+            print("  ".join("-" * width for width in widths))
+
+
+def ratio_row(name, bound, yardsticks, summaries):
+    """One case as a row of the first table."""
+    times = [summary["timing"]["cpu"] for summary in summaries]
+    references = [result["cpu"] for result in yardsticks]
+    ratios = [time / reference for time, reference in zip(times, references)]
+    if bound is None:
+        limit, verdict = "-", "no bound"
+    else:
+        limit, verdict = f"{bound:g}", "above the bound" if median(ratios) > bound else "within the bound"
+    return [
+        name,
+        spread(times),
+        spread([summary["timing"].get("wall_setup") for summary in summaries]),
+        spread(references),
+        spread(ratios, 2),
+        limit,
+        verdict,
+        sweeps(summaries[-1]),
+        sweeps(yardsticks[-1]),
+    ]
+
+
+def main():
+    """Run everything and print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help="directory of impakt and yardstick")
+    parser.add_argument("--repeats", type=int, default=5, help="runs of each case (default: 5)")
+    parser.add_argument("--time-limit", type=float, default=120.0, help="for one run, in s (default: 120)")
+    arguments = parser.parse_args()
+    if arguments.repeats < 1:
+        parser.error("--repeats must be at least 1")
+    build, limit = arguments.build.resolve(), arguments.time_limit
+
+    yardsticks = {name: [] for name, _, _ in CASES}
+    summaries = {name: [] for name in (*yardsticks, "default")}
+    try:
+        for _ in range(arguments.repeats):
+            for name, options, _ in CASES:
+                yardsticks[name].append(run_yardstick(build, name, limit))
+                summaries[name].append(run_program(build, options, limit))
+            summaries["default"].append(run_program(build, DEFAULT_RUN, limit))
+    except RunError as error:
+        print(f"bench.py: a run failed: {error}", file=sys.stderr)
+        return 1
+
+    print(f"Median [minimum maximum] of {arguments.repeats} runs; CPU time of the time loop only, set-up apart.\n")
+    header = ["case", "program, s", "set-up, s", "yardstick, s", "ratio", "bound", "verdict"]
+    header += ["sweeps max / mean", "yardstick's"]
+    rows = [ratio_row(name, bound, yardsticks[name], summaries[name]) for name, _, bound in CASES]
+    default = summaries["default"]
+    cells = [spread([summary["timing"].get(key) for summary in default]) for key in ("cpu", "wall_setup")]
+    rows.append(["default", *cells, "-", "-", "-", "-", sweeps(default[-1]), "-"])
+    print_table([header, *rows])
+
+    print("\nMicroseconds per substep of an integrator, and per sweep with all its substeps:\n")
+    rows = [["case", *(f"{phase}, per {count[:-1] if count == 'substeps' else 'sweep'}" for phase, count in PHASES)]]
+    rows[0].append("yardstick, time loop per substep")
+    for name, runs in summaries.items():
+        cells = [spread([microseconds(run, phase, count) for run in runs], 2) for phase, count in PHASES]
+        cells.append(spread([1e6 * run["cpu"] / run["substeps"] for run in yardsticks.get(name, [])], 2))
+        rows.append([name, *cells])
+    print_table(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

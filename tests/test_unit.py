@@ -1,0 +1,32 @@
+"""The CMocka programs of tests/unit, each on 1, 2 and 3 ranks or on those that a comment in it names: /* ranks: 1 2 */"""
+
+import os
+import re
+
+import pytest
+from conftest import BUILD, ROOT, complaints, fail
+
+RANKS = re.compile(r"/\*\s*ranks:\s*([\d\s,]+)\*/")
+
+
+def cases():
+    for source in sorted((ROOT / "tests/unit").glob("*.c")):
+        named = RANKS.search(source.read_text())
+        for ranks in re.findall(r"\d+", named.group(1)) if named else (1, 2, 3):
+            yield pytest.param(source.stem, int(ranks), id=f"{source.stem}-{ranks}")
+
+
+@pytest.mark.parametrize(("name", "ranks"), list(cases()))
+def test_unit(name, ranks, launch, tmp_path):
+    done = launch([BUILD / "tests/unit" / name], ranks, cwd=tmp_path, env={**os.environ, "PETSC_OPTIONS": "-malloc_dump"})
+    output = done.stdout + done.stderr
+    failed = sorted(set(re.findall(r"\[  FAILED  \] (\w+)$", output, re.MULTILINE)))
+    if done.returncode != 0 or failed:
+        fail(f"failed: {', '.join(failed) or f'exit code {done.returncode}'}", done.command, done.stdout, done.stderr)
+    found = complaints(output)
+    if found:
+        fail("memory not freed or options not used:\n" + "\n".join(found), done.command, done.stdout, done.stderr)
+    if not re.search(r"\[  PASSED  \] [1-9]\d* test", output):
+        if "[  SKIPPED ]" in output:
+            pytest.skip(f"{name} skips all its tests on {ranks} ranks")
+        fail("no CMocka test passed: none ran?", done.command, done.stdout, done.stderr)
