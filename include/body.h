@@ -131,6 +131,8 @@ PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDou
 
 PETSC_EXTERN PetscErrorCode BodySave(Body);
 PETSC_EXTERN PetscErrorCode BodyRestore(Body);
+PETSC_EXTERN PetscErrorCode BodyKeep(Body);
+PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
 PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);

@@ -63,6 +63,77 @@ PetscErrorCode BodyRestore(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All levels but the first, which belongs to the saved state */
+static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
+{
+  const Trace    traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  const PetscInt n        = body->substeps * body->rows.local;
+  PetscScalar   *values;
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], 1, &values));
+    if (keep) PetscCall(PetscArraycpy(body->kept_traces + t * n, values, n));
+    else PetscCall(PetscArraycpy(values, body->kept_traces + t * n, n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyKeep - puts the state at the end of the controller step aside, for `BodyReinstate()`
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, integrated
+
+  Level: developer
+
+  Note:
+  For an integration under other conditions, tried to see what it would bring.
+
+.seealso: `Body`, `BodyReinstate()`, `BodySave()`
+@*/
+PetscErrorCode BodyKeep(Body body)
+{
+  const Vec      from[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
+  const PetscInt n      = body->substeps * body->rows.local;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt i = 0; i < 4; i++) {
+    if (!body->kept[i]) PetscCall(VecDuplicate(from[i], &body->kept[i]));
+    PetscCall(VecCopy(from[i], body->kept[i]));
+  }
+  if (!body->kept_traces) PetscCall(PetscMalloc1(4 * n, &body->kept_traces));
+  PetscCall(CopyOutputTraces(body, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyReinstate - brings the state and the output traces of the last `BodyKeep()` back
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, in the same controller step
+
+  Level: developer
+
+.seealso: `Body`, `BodyKeep()`
+@*/
+PetscErrorCode BodyReinstate(Body body)
+{
+  const Vec to[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->kept[0], PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Nothing has been kept");
+  for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(body->kept[i], to[i]));
+  PetscCall(CopyOutputTraces(body, PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* NaN or infinity in the solution, told with body, time and step */
 static PetscErrorCode CheckFinite(Body body)
 {

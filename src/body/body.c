@@ -239,7 +239,7 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec   *vecs[]   = {&b->state.u, &b->state.v, &b->state.a, &b->saved.u, &b->saved.v, &b->saved.a, &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u, &b->work[0], &b->work[1], &b->work[2], &b->positions, &b->mass_row_sum, &b->mass_diagonal, &b->inverse_mass, &b->row_vec[0], &b->row_vec[1], &b->layer_rhs, &b->layer_solution};
+    Vec   *vecs[]   = {&b->state.u, &b->state.v, &b->state.a, &b->saved.u, &b->saved.v, &b->saved.a, &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u, &b->work[0], &b->work[1], &b->work[2], &b->positions, &b->mass_row_sum, &b->mass_diagonal, &b->inverse_mass, &b->row_vec[0], &b->row_vec[1], &b->layer_rhs, &b->layer_solution, &b->kept[0], &b->kept[1], &b->kept[2], &b->kept[3]};
     Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in, &b->traces.displacement, &b->traces.velocity, &b->traces.acceleration, &b->traces.reaction};
 
     PetscCall(BodyDestroyResponse(b));
@@ -258,6 +258,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(ElementDestroy(&b->element));
   PetscCall(MaterialDestroy(&b->material));
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
+  PetscCall(PetscFree(b->kept_traces));
   PetscCall(PetscFree(b->conditions));
   PetscCall(PetscFree(b->layer_dofs));
   PetscCall(PetscFree(b->in_layer));

@@ -61,8 +61,9 @@ struct _p_Body {
   Vec       internal_force; /* at state.u */
   Vec       previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
   PetscBool swept;          /* previous_u holds such a state */
-  PetscReal change, position_norm;
-  Vec       work[3];
+  Vec          kept[4]; /* displacement, velocity, acceleration, internal force put aside by BodyKeep() */
+  PetscScalar *kept_traces;
+  Vec          work[3];
   /* interface rows */
   Mat               interface;
   BodyRows          rows;

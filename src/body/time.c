@@ -1,7 +1,6 @@
 /* Substeps, the stable step, and the TS of a body. */
 #include "bodyimpl.h"
 #include <petscblaslapack.h>
-#include <sys/petsccompat.h>
 
 /* Largest eigenvalue of K x = lambda M x of one element, its massless nodes held: no eigenvalue of the body is larger
    (Irons and Treharne 1971), whether its contact nodes are free or prescribed. */
@@ -82,7 +81,7 @@ PetscErrorCode BodySetUpTime(Body body)
   PetscCall(TSGetAdapt(body->ts, &adapt));
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &none));
   PetscCheck(none, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sts_adapt_type: adaptive substeps within a controller step are not supported; leave it at none", ((PetscObject)body)->prefix);
-  PetscCall(TSSetMaxSteps(body->ts, PETSC_INT_MAX));
+  PetscCall(TSSetMaxTime(body->ts, 1e300));
   PetscCall(TSSetExactFinalTime(body->ts, TS_EXACTFINALTIME_STEPOVER));
   if (body->is_explicit) PetscCall(BodySetUpExplicit(body));
   else PetscCall(BodySetUpImplicit(body));

@@ -4,18 +4,15 @@
 /* A SNES of `local` unknowns on this rank, with a dense Jacobian held as a sparse matrix: its size is that of the interface */
 PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *), PetscErrorCode (*jacobian)(SNES, Vec, Mat, Mat, void *), OuterSolver *solver)
 {
-  MPI_Comm       comm = PetscObjectComm((PetscObject)contact);
-  SNESLineSearch line_search;
-  KSP            ksp;
-  PC             pc;
-  PetscInt       global;
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  KSP      ksp;
+  PC       pc;
 
   PetscFunctionBegin;
   PetscCall(VecCreate(comm, &solver->x));
   PetscCall(VecSetSizes(solver->x, local, PETSC_DETERMINE));
   PetscCall(VecSetType(solver->x, VECSTANDARD));
   PetscCall(VecDuplicate(solver->x, &solver->residual));
-  PetscCall(VecGetSize(solver->x, &global));
   PetscCall(MatCreate(comm, &solver->jacobian));
   PetscCall(MatSetSizes(solver->jacobian, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(solver->jacobian, contact->size == 1 ? MATDENSE : MATAIJ));
@@ -24,9 +21,6 @@ PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt 
   PetscCall(SNESSetOptionsPrefix(solver->snes, prefix));
   PetscCall(SNESSetFunction(solver->snes, solver->residual, function, contact));
   PetscCall(SNESSetJacobian(solver->snes, solver->jacobian, solver->jacobian, jacobian, contact));
-  PetscCall(SNESSetType(solver->snes, SNESNEWTONLS));
-  PetscCall(SNESGetLineSearch(solver->snes, &line_search));
-  PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHNONE));
   PetscCall(SNESGetKSP(solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -63,11 +57,11 @@ static PetscErrorCode RemoveDefault(const char prefix[], const char option[], Pe
    which is that of the Dirichlet-Neumann alternation between equal bodies. */
 PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, PetscReal atol, PetscReal rtol, PetscInt max_it)
 {
-  const char *prefix;
-  char        type[64] = SNESNEWTONLS;
-  PetscBool   beta = PETSC_FALSE, size = PETSC_FALSE, anderson;
-  const char *known[] = {SNESNEWTONLS, SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
-  PetscBool   same    = PETSC_FALSE;
+  const char    *known[] = {SNESNEWTONLS, SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
+  const char    *prefix;
+  char           type[64] = SNESNEWTONLS;
+  PetscBool      beta = PETSC_FALSE, size = PETSC_FALSE, same = PETSC_FALSE, anderson;
+  SNESLineSearch line_search;
 
   PetscFunctionBegin;
   PetscCall(SNESGetOptionsPrefix(solver->snes, &prefix));
@@ -75,6 +69,10 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
   for (PetscInt i = 0; i < 5 && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
   PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%ssnes_type '%s'; known: newtonls, anderson, nrichardson, ngmres, qn", prefix, type);
   PetscCall(PetscStrcmp(type, SNESANDERSON, &anderson));
+  PetscCall(SNESSetType(solver->snes, type));
+  /* after the type, which brings a line search of its own */
+  PetscCall(SNESGetLineSearch(solver->snes, &line_search));
+  PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHNONE));
   PetscCall(SNESSetTolerances(solver->snes, atol, rtol, 0, max_it, 1000000));
   if (anderson) {
     PetscCall(InsertDefault(prefix, "-snes_anderson_beta", "0.5", &beta));

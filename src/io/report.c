@@ -38,6 +38,7 @@ static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *resu
   if (exact) {
     PetscCall(ExactImpactGetTimes(exact, &impact, &release));
     PetscCall(ExactImpactGetForce(exact, &force));
+    if (PetscAbsReal(impact) < 1e-12 * (release - impact)) impact = 0; /* round-off of start + gap / speed */
   }
   PetscCall(ContactGetType(contact, &type));
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact (%s)\n", type));

@@ -10,6 +10,9 @@ _Static_assert(sizeof(PetscReal) == sizeof(double), "series are stored in double
 /* Values in a chunk: small enough for a short run's file, large enough for a long run's index */
 #define CHUNK 1024
 
+/* Records written at a time */
+#define BLOCK 4096
+
 static PetscErrorCode CheckHDF5(hid_t result, const char what[], const char path[])
 {
   PetscFunctionBegin;
@@ -110,26 +113,37 @@ PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Seri
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Up to BLOCK records of one series, gathered from the records of all: HDF5 is quick where both sides have the same shape */
+static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt64 length, PetscInt n, PetscInt width, const PetscReal records[], const char path[])
+{
+  const PetscInt components = series->components;
+  const hsize_t  start[2] = {(hsize_t)length, 0}, count[2] = {(hsize_t)n, (hsize_t)components};
+  PetscReal      values[3 * BLOCK];
+  hid_t          to, from;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt c = 0; c < components; c++) values[i * components + c] = records[(size_t)i * (size_t)width + (size_t)(series->column + c)];
+  to = H5Dget_space(dataset);
+  PetscCall(CheckHDF5(H5Sselect_hyperslab(to, H5S_SELECT_SET, start, NULL, count, NULL), "select records", path));
+  from = H5Screate_simple(components > 1 ? 2 : 1, count, NULL);
+  PetscCall(CheckHDF5(from, "make a data space", path));
+  PetscCall(CheckHDF5(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, values), "write records", path));
+  PetscCall(CheckHDF5(H5Sclose(from), "close a data space", path));
+  PetscCall(CheckHDF5(H5Sclose(to), "close a data space", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AppendToDataset(hid_t file, const Series *series, PetscInt64 length, PetscInt n, PetscInt width, const PetscReal records[], const char path[])
 {
-  const hsize_t size[2]       = {(hsize_t)length + (hsize_t)n, (hsize_t)series->components};
-  const hsize_t start[2]      = {(hsize_t)length, 0};
-  const hsize_t count[2]      = {(hsize_t)n, (hsize_t)series->components};
-  const hsize_t block[2]      = {(hsize_t)n, (hsize_t)width};
-  const hsize_t from_start[2] = {0, (hsize_t)series->column};
-  hid_t         dataset, to, from;
+  const hsize_t size[2] = {(hsize_t)length + (hsize_t)n, (hsize_t)series->components};
+  hid_t         dataset;
 
   PetscFunctionBegin;
   dataset = H5Dopen2(file, series->name, H5P_DEFAULT);
   PetscCall(CheckHDF5(dataset, "open a dataset", path));
   PetscCall(CheckHDF5(H5Dset_extent(dataset, size), "extend a dataset", path));
-  to = H5Dget_space(dataset);
-  PetscCall(CheckHDF5(H5Sselect_hyperslab(to, H5S_SELECT_SET, start, NULL, count, NULL), "select records", path));
-  from = H5Screate_simple(2, block, NULL);
-  PetscCall(CheckHDF5(H5Sselect_hyperslab(from, H5S_SELECT_SET, from_start, NULL, count, NULL), "select records", path));
-  PetscCall(CheckHDF5(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, records), "write records", path));
-  PetscCall(CheckHDF5(H5Sclose(from), "close a data space", path));
-  PetscCall(CheckHDF5(H5Sclose(to), "close a data space", path));
+  for (PetscInt i = 0; i < n; i += BLOCK) PetscCall(WriteRecords(dataset, series, length + i, PetscMin(BLOCK, n - i), width, records + (size_t)i * (size_t)width, path));
   PetscCall(CheckHDF5(H5Dclose(dataset), "write records", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

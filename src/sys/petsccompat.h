@@ -5,9 +5,6 @@
 #if PETSC_VERSION_LT(3, 21, 0)
   #error "Impakt needs PETSc 3.21 or newer (TSAlpha2SetPredictor)"
 #endif
-#if PETSC_VERSION_LT(3, 24, 0)
-  #define PETSC_INT_MAX PETSC_MAX_INT
-#endif
 #if PETSC_VERSION_LT(3, 26, 0)
   #define SNESLINESEARCHNONE SNESLINESEARCHBASIC
 #endif

@@ -51,7 +51,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCall(PetscCalloc6(contact->n_all_rows, &schwarz->all_offset, contact->n_all_rows, &schwarz->in, contact->n_all_rows, &schwarz->traction_in, contact->n_all_rows, &schwarz->out, contact->n_all_rows * contact->n_all_rows, &schwarz->gain, contact->n_rows, &schwarz->jacobian_active));
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc1(MAX_ROUNDS * contact->n_rows, &schwarz->tried));
+  PetscCall(PetscMalloc2((MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,22 +136,22 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the active set has been tried in this step before; notes it */
-static PetscErrorCode NoteActiveSet(Contact contact, PetscBool *seen)
+/* Whether the active set is one that has been tried in this step before; `last`: the one before this */
+static PetscErrorCode FindActiveSet(Contact contact, PetscBool *seen, PetscBool *last)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  *seen = PETSC_FALSE;
-  for (PetscInt k = 0; k < schwarz->n_tried && !*seen; k++) {
+  *seen = *last = PETSC_FALSE;
+  for (PetscInt k = schwarz->n_tried - 1; k >= 0 && !*seen; k--) {
     int differs = 0;
 
     for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->tried[k * contact->n_rows + i] != contact->active[i];
     if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
-    if (!differs) *seen = PETSC_TRUE;
+    if (differs) continue;
+    *seen = PETSC_TRUE;
+    *last = (PetscBool)(k == schwarz->n_tried - 1);
   }
-  PetscCall(PetscArraycpy(schwarz->tried + schwarz->n_tried * contact->n_rows, contact->active, contact->n_rows));
-  schwarz->n_tried++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,10 +184,32 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The free trial after all nodes have been let go, being pulled. If it ends in penetration by the same nodes as were held,
+   the contact solution is the better of both, and is taken back. */
+static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *final)
+{
+  Schwarz  *schwarz = (Schwarz *)contact->data;
+  PetscBool seen, last;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
+  PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
+  PetscCall(Trial(contact, in_contact));
+  if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FindActiveSet(contact, &seen, &last));
+  if (!last) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
+  PetscCall(PetscArraycpy(contact->force, schwarz->kept_force, contact->n_rows));
+  PetscCall(ContactComputeGaps(contact));
+  contact->counts_made.set_cycles++;
+  *final = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactStep_Schwarz(Contact contact)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool in_contact, changed, seen, final = PETSC_FALSE;
+  PetscBool in_contact, changed, seen, last, final = PETSC_FALSE;
 
   PetscFunctionBegin;
   schwarz->n_tried = 0;
@@ -195,22 +217,25 @@ static PetscErrorCode ContactStep_Schwarz(Contact contact)
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
-  for (PetscInt round = 0; in_contact; round++) {
-    PetscCheck(round < MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", MAX_ROUNDS);
-    PetscCall(NoteActiveSet(contact, &seen));
+  while (in_contact) {
+    PetscCheck(schwarz->n_tried < MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", MAX_ROUNDS);
+    PetscCall(PetscArraycpy(schwarz->tried + schwarz->n_tried++ * contact->n_rows, contact->active, contact->n_rows));
     PetscCall(SolveActive(contact));
     if (final) break;
     PetscCall(UpdateActiveSet(contact, &changed));
     if (!changed) break;
     contact->counts_made.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-    if (!in_contact) PetscCall(Trial(contact, &in_contact));
-    if (seen) {
-      /* a node that is pulled when it is held and penetrates when it is let go touches at round-off: hold it */
+    if (!in_contact) {
+      PetscCall(TrialAfterContact(contact, &in_contact, &final));
+      if (final) break;
+    }
+    PetscCall(FindActiveSet(contact, &seen, &last));
+    if (in_contact && seen) {
+      /* the alternation ends with all nodes held that were held in either of the last two sets: no penetration */
       contact->counts_made.set_cycles++;
       for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->active[i] || schwarz->tried[(schwarz->n_tried - 1) * contact->n_rows + i]);
-      final      = PETSC_TRUE;
-      in_contact = PETSC_TRUE;
+      final = PETSC_TRUE;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -238,7 +263,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(PetscFree3(schwarz->levels, schwarz->trace, schwarz->offset));
   PetscCall(PetscFree6(schwarz->all_offset, schwarz->in, schwarz->traction_in, schwarz->out, schwarz->gain, schwarz->jacobian_active));
-  PetscCall(PetscFree(schwarz->tried));
+  PetscCall(PetscFree2(schwarz->tried, schwarz->kept_force));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -39,7 +39,8 @@ typedef struct {
   PetscReal        damping;     /* Aitken: relaxation of the last iteration */
   Vec              last_residual;
   PetscBool       *tried;       /* active sets seen in this step, one after the other */
-  PetscInt         n_tried, max_tried;
+  PetscInt         n_tried;
+  PetscReal       *kept_force;  /* of the contact solution, during a free trial after it */
 } Schwarz;
 
 PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
