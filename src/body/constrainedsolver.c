@@ -27,12 +27,43 @@ struct _n_ConstrainedSolver {
   Vec          row, rhs;
 };
 
+/* Bodies up to this size are factored whole on every rank; larger ones by MUMPS */
+#define MAX_REDUNDANT_SIZE 5000
+/* PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies on one rank */
+#define MAX_SEQUENTIAL_SIZE 50000
+
+/* How A is factored, unless options say otherwise */
+static PetscErrorCode ChooseFactorisation(KSP ksp, PetscInt n)
+{
+  PetscMPIInt size;
+  PC          pc;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  if (size > 1 && n <= MAX_REDUNDANT_SIZE) {
+    KSP inner;
+
+    PetscCall(PCSetType(pc, PCREDUNDANT));
+    PetscCall(PCRedundantGetKSP(pc, &inner));
+    PetscCall(KSPSetType(inner, KSPPREONLY));
+    PetscCall(KSPGetPC(inner, &pc));
+    PetscCall(PCSetType(pc, PCLU));
+    PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PCSetType(pc, PCLU));
+  if (size > 1 || n > MAX_SEQUENTIAL_SIZE) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  else PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], ConstrainedSolver *solver)
 {
   ConstrainedSolver s;
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
   PetscMPIInt       size;
-  PC                pc;
   PetscInt          n;
 
   PetscFunctionBegin;
@@ -40,15 +71,10 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
   PetscCall(KSPCreate(comm, &s->ksp));
   PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
   PetscCall(KSPSetOperators(s->ksp, A, A));
-  PetscCall(KSPSetType(s->ksp, KSPPREONLY));
-  PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
-  PetscCall(KSPGetPC(s->ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(MatGetSize(A, &n, NULL));
-  /* PETSc's own factorisation is an order of magnitude faster for small bodies on one rank */
-  if (size > 1 || n > 50000) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  else PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
+  PetscCall(ChooseFactorisation(s->ksp, n));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(KSPSetUp(s->ksp));
 

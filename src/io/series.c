@@ -1,6 +1,6 @@
 /* Time series in HDF5: extensible datasets, appended to record by record. Serial; the caller is one rank. */
 #include "series.h"
-#include "version.h"
+#include <impakt.h>
 #include <ctype.h>
 #include <hdf5.h>
 #include <string.h>

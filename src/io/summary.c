@@ -1,7 +1,7 @@
 /* The summary: one JSON object, the contract with scripts. Numbers that do not exist (no contact, no release) are null. */
 #include "summary.h"
 #include "outputfile.h"
-#include "version.h"
+#include <impakt.h>
 #include <jansson.h>
 
 static PetscErrorCode SetMember(json_t *object, const char name[], json_t *value)

@@ -1,0 +1,217 @@
+"""Draws the history of an impact: contact positions, contact force, energies and sweeps, beside the exact solution.
+
+    python plots/impact.py history.h5 figure.png
+
+The exact solution (dashed) is drawn for runs made with `-exact impact`; it is computed from the options in the file.
+"""
+
+import sys
+from pathlib import Path
+
+import h5py
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+# Okabe and Ito's colours, told apart with any colour vision
+BLUE, ORANGE, GREEN, PURPLE, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
+DASHED = {"color": BLACK, "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 3}
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+
+
+class NoHistory(Exception):
+    """The file is not what it should be; the message says why."""
+
+
+def scale(largest, unit):
+    """A factor and a unit in which `largest` is a number from 1 to 1000."""
+    for size, prefix in PREFIXES:
+        if largest >= size:
+            return 1 / size, prefix + unit
+    return 1.0, unit
+
+
+def read(path):
+    """All that is drawn, from the history file."""
+    if not Path(path).is_file():
+        raise NoHistory(f"there is no file {path}")
+    try:
+        with h5py.File(path, "r") as file:
+            pairs = list(file["contact"])
+            options = {name: str(value) for name, value in file.attrs.items()}
+            first = options.get("-contact_pairs", "").split(",")[0]
+            pairs.sort(key=lambda name: name != first)
+            names = bodies_of(pairs[0], list(file["body"]))
+            return {
+                "options": options,
+                "time": file["time"][()],
+                "sweeps": file["schwarz/iterations"][()],
+                "forces": {name: file[f"contact/{name}/force"][()] for name in pairs},
+                "pair": names,
+                "bodies": {name: {key: data[()] for key, data in body.items()} for name, body in file["body"].items()},
+            }
+    except (KeyError, IndexError) as error:
+        raise NoHistory(f"{path} is not the history of an Impakt run with contact: {error}") from error
+    except OSError as error:
+        raise NoHistory(f"{path} cannot be read as HDF5: {error}") from error
+
+
+def bodies_of(pair, names):
+    """The two bodies of a pair, Dirichlet side first; surfaces may stand behind a dot."""
+    found = [side.split(".")[0] for side in pair.split(":")]
+    return found if len(found) == 2 and all(name in names for name in found) else names[:2]
+
+
+def contact_axis(history):
+    """The coordinate along which the bodies of the first pair approach each other."""
+    one, other = (history["bodies"][name]["mean_velocity"] for name in history["pair"])
+    if one.ndim == 1:
+        return None
+    return int(np.argmax(np.abs(one[0] - other[0])))
+
+
+def along(values, axis):
+    return values if axis is None else values[:, axis]
+
+
+def numbers(options, name):
+    return np.array([float(number) for number in options[name].split(",")])
+
+
+def exact_solution(history, axis):
+    """Hoy, Tezaur, Mota, eqs. (4.1) to (4.7), in the frame of the run; None where the options do not tell."""
+    options, time = history["options"], history["time"]
+    if options.get("-exact") != "impact":
+        return None
+    name, partner = history["pair"]
+    try:
+        density, modulus = (float(options[f"-{name}_{key}"]) for key in ("density", "youngs_modulus"))
+        lengths = numbers(options, f"-{name}_dm_plex_box_upper") - numbers(options, f"-{name}_dm_plex_box_lower")
+        length = lengths[axis or 0]
+        area = float(options.get(f"-{name}_cross_section", 1)) if axis is None else np.prod(np.delete(lengths, axis))
+    except (KeyError, ValueError) as error:
+        print(f"no exact solution: the options in the file do not give {error}", file=sys.stderr)
+        return None
+    bar, other = history["bodies"][name], history["bodies"][partner]
+    x, x_other = (along(body["contact_position"], axis)[0] for body in (bar, other))
+    v, v_other = (along(body["mean_velocity"], axis)[0] for body in (bar, other))
+    speed, frame = (v - v_other) / 2, (v + v_other) / 2
+    impact = time[0] + (x_other - x) / (v - v_other)
+    crossing = length * np.sqrt(density / modulus)
+    release = impact + 2 * crossing
+    part = np.clip((time - impact) / crossing, 0, 2)
+    touching = (time > impact) & (time <= release)
+    energy = density * area * length * speed**2 / 2
+    potential = energy * np.minimum(part, 2 - part)
+    origin = (x + x_other) / 2 + frame * (time - time[0])
+    deviation = np.where(time <= impact, time - impact, np.where(time > release, release - time, 0)) * speed
+    return {
+        "position": {name: origin + deviation, partner: origin - deviation},
+        "force": np.where(touching, abs(speed) * np.sqrt(modulus * density) * area, 0),
+        "kinetic": density * area * length * frame * (frame / 2 + speed * (1 - part)) + energy - potential,
+        "potential": potential,
+    }
+
+
+def draw_positions(axes, history, exact, axis, time):
+    positions = {name: along(history["bodies"][name]["contact_position"], axis) for name in history["pair"]}
+    factor, unit = scale(max(np.abs(values).max() for values in positions.values()), "m")
+    for colour, (name, values) in zip(COLOURS, positions.items()):
+        axes.plot(time, factor * values, color=colour, label=name)
+        if exact:
+            axes.plot(time, factor * exact["position"][name], **DASHED)
+    axes.set_title("contact position")
+    axes.set_ylabel(f"position [{unit}]")
+
+
+def draw_forces(axes, history, exact, time):
+    forces = history["forces"]
+    factor, unit = scale(max(np.abs(values).max() for values in forces.values()), "N")
+    for colour, (name, values) in zip(COLOURS, forces.items()):
+        axes.plot(time, factor * values, color=colour, label=name.replace(":", " : "))
+    if exact:
+        axes.plot(time, factor * exact["force"], **DASHED)
+    axes.set_title("contact force")
+    axes.set_ylabel(f"force [{unit}]")
+
+
+def draw_energies(axes, history, exact, time):
+    name = history["pair"][0]
+    body = history["bodies"][name]
+    factor, unit = scale(max(body["kinetic"].max(), body["potential"].max()), "J")
+    for colour, key in ((BLUE, "kinetic"), (ORANGE, "potential")):
+        axes.plot(time, factor * body[key], color=colour, label=key)
+        if exact:
+            axes.plot(time, factor * exact[key], **DASHED)
+    axes.set_title(f"energy of {name}; error of the system")
+    axes.set_ylabel(f"energy [{unit}]")
+    axes.tick_params(labelbottom=False)
+
+
+def draw_energy_error(axes, history, time):
+    total = sum(body["kinetic"] + body["potential"] for body in history["bodies"].values())
+    start = total[0] if total[0] != 0 else 1.0
+    axes.plot(time, (total - total[0]) / abs(start), color=GREEN)
+    axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
+    axes.set_ylabel("rel. error [1]" if total[0] != 0 else "error [J]")
+
+
+def draw_sweeps(axes, history, time):
+    sweeps = history["sweeps"]
+    axes.plot(time, sweeps, color=BLUE, linestyle="none", marker=".", markersize=3)
+    axes.set_ylim(-0.3, max(1, sweeps.max()) * 1.1 + 0.3)
+    axes.yaxis.get_major_locator().set_params(integer=True)
+    axes.set_title("sweeps in each controller step")
+    axes.set_ylabel("sweeps [1]")
+
+
+def draw(history, path):
+    matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.4, "axes.axisbelow": True})
+    axis = contact_axis(history)
+    exact = exact_solution(history, axis)
+    span = np.ptp(history["time"])
+    factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms")
+    time = factor * history["time"]
+
+    figure = Figure(figsize=(10, 7), layout="constrained")
+    grid = figure.add_gridspec(2, 2, wspace=0.04, hspace=0.04)
+    position, force, sweeps = (figure.add_subplot(grid[at]) for at in ((0, 0), (0, 1), (1, 1)))
+    halves = grid[1, 0].subgridspec(2, 1, height_ratios=(2, 1))
+    energy = figure.add_subplot(halves[0])
+    error = figure.add_subplot(halves[1], sharex=energy)
+
+    draw_positions(position, history, exact, axis, time)
+    draw_forces(force, history, exact, time)
+    draw_energies(energy, history, exact, time)
+    draw_energy_error(error, history, time)
+    draw_sweeps(sweeps, history, time)
+    for axes in figure.axes:
+        axes.grid(color="0.9", linewidth=0.6)
+        axes.margins(x=0.01)
+        if axes is not energy:
+            axes.set_xlabel(f"time [{unit}]")
+    for axes in (position, force, energy):
+        if exact:
+            axes.plot([], [], label="exact", **DASHED)
+        axes.legend(frameon=True, framealpha=0.9, edgecolor="0.8")
+    figure.savefig(path, dpi=150)
+
+
+def main(arguments):
+    if len(arguments) != 2:
+        print("usage: python plots/impact.py history.h5 figure.png", file=sys.stderr)
+        return 1
+    try:
+        history = read(arguments[0])
+        Path(arguments[1]).parent.mkdir(parents=True, exist_ok=True)
+        draw(history, arguments[1])
+    except (NoHistory, OSError, ValueError) as error:
+        print(f"plots/impact.py: {error}", file=sys.stderr)
+        return 1
+    print(arguments[1])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
