@@ -131,6 +131,41 @@ PetscErrorCode BodyReinstate(Body body)
   PetscCheck(body->kept[0], PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Nothing has been kept");
   for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(body->kept[i], to[i]));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
+  PetscCall(BodyInvalidateWindow(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyResetTraces - sets what the body tells its partners, at all times of the controller step, to what it is at its start
+
+  Logically Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+  Note:
+  What the first sweep of a controller step starts from.
+
+.seealso: `Body`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodyResetTraces(Body body)
+{
+  const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  PetscScalar *start, *values;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], 0, &start));
+    for (PetscInt level = 1; level <= body->substeps; level++) {
+      PetscCall(TraceGetLevel(traces[t], level, &values));
+      PetscCall(PetscArraycpy(values, start, body->rows.local));
+    }
+  }
+  /* the traces do not belong to the present state any more, so nothing can be added to them */
+  PetscCall(BodyInvalidateWindow(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -244,3 +244,42 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
   *redistributed = body->mass_redistribute;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodyGetNewmark - velocity and acceleration at the end of a substep as linear functions of the displacement in it
+
+  Not Collective
+
+  Input Parameter:
+. body - an implicit `Body`, set up
+
+  Output Parameters:
++ v_u - v1 = v_u (u1 - u0) + v_v v0 + v_a a0 [1/s]
+. v_v - see `v_u`
+. v_a - see `v_u` [s]
+. a_u - a1 = a_u (u1 - u0) + a_v v0 + a_a a0 [1/s^2]
+. a_v - see `a_u` [1/s]
+- a_a - see `a_u`
+
+  Level: developer
+
+  Note:
+  Newmark's formulas. Massless nodes, which have no dynamics, report u1 - u0 over the step and zero instead.
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetNewmark(Body body, PetscReal *v_u, PetscReal *v_v, PetscReal *v_a, PetscReal *a_u, PetscReal *a_v, PetscReal *a_a)
+{
+  const PetscReal dt = body->time_step, beta = body->beta, gamma = body->gamma;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(!body->is_explicit, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
+  *a_u = body->mass_redistribute ? 0 : 1 / (beta * dt * dt);
+  *a_v = body->mass_redistribute ? 0 : -1 / (beta * dt);
+  *a_a = body->mass_redistribute ? 0 : -(1 - 2 * beta) / (2 * beta);
+  *v_u = body->mass_redistribute ? 1 / dt : gamma / (beta * dt);
+  *v_v = body->mass_redistribute ? 0 : 1 - gamma / beta;
+  *v_a = body->mass_redistribute ? 0 : dt * (1 - gamma / (2 * beta));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -33,7 +33,8 @@ struct _BodyResponse {
   BodyCondition *conditions;
   PetscBool    window_valid; /* the present end state came from `inputs` */
   PetscBool    condensed;    /* columns hold states */
-  PetscScalar *matrix;       /* global x global by columns: reaction of prescribed, displacement of other rows */
+  PetscScalar *matrix, *rate_matrix[2]; /* for displacements and forces; for velocities and accelerations: all rows by all
+                                           rows, by columns; reaction of prescribed, displacement of other rows */
   PetscInt     n_columns;
   Column      *columns;      /* at most 3 for each row */
   PetscScalar *inputs, *new_inputs; /* of all rows on every rank, 4 kinds each */
@@ -63,7 +64,8 @@ PetscErrorCode BodyDestroyResponse(Body body)
   PetscFunctionBegin;
   if (!response) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DestroyColumns(response));
-  PetscCall(PetscFree6(response->matrix, response->columns, response->inputs, response->new_inputs, response->mine, response->conditions));
+  PetscCall(PetscFree3(response->matrix, response->rate_matrix[0], response->rate_matrix[1]));
+  PetscCall(PetscFree5(response->columns, response->inputs, response->new_inputs, response->mine, response->conditions));
   PetscCall(PetscFree(body->response));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,6 +185,20 @@ static PetscErrorCode SetUnitInput(Body body, PetscInt row, InputKind kind)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Column `row` of a response matrix, on every rank: the reaction of prescribed rows, the displacement of the others */
+static PetscErrorCode GatherOutputs(Body body, const PetscScalar displacement[], const PetscScalar reaction[], PetscScalar matrix[], PetscInt row)
+{
+  struct _BodyResponse *response = body->response;
+  const BodyRows       *rows     = &body->rows;
+
+  PetscFunctionBegin;
+  /* in steps of four, as the counts and offsets are */
+  for (PetscInt i = 0; i < rows->local; i++) response->mine[4 * i] = body->conditions[i] == BODY_PRESCRIBED ? reaction[i] : displacement[i];
+  PetscCallMPI(MPI_Allgatherv(response->mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, response->new_inputs, rows->counts, rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
+  for (PetscInt i = 0; i < rows->global; i++) matrix[row * rows->global + i] = response->new_inputs[4 * i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One column: integrates a body at rest under one unit input */
 static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
 {
@@ -200,19 +216,7 @@ static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
     PetscCall(TraceGetLevel(traces[t], body->substeps, &outputs[t]));
     PetscCall(PetscArraycpy(rows + t * body->rows.local, outputs[t], body->rows.local));
   }
-  if (kind == INPUT_DISPLACEMENT || kind == INPUT_FORCE) {
-    PetscScalar *mine = response->mine;
-
-    for (PetscInt i = 0; i < body->rows.local; i++) mine[i] = body->conditions[i] == BODY_PRESCRIBED ? outputs[3][i] : outputs[0][i];
-    /* offsets and counts are for four numbers a row */
-    for (PetscInt i = body->rows.local - 1; i >= 0; i--) {
-      mine[4 * i] = mine[i];
-      if (i) mine[4 * i + 1] = mine[4 * i + 2] = mine[4 * i + 3] = 0;
-    }
-    if (body->rows.size > 1) PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)(4 * body->rows.local), MPIU_SCALAR, response->new_inputs, body->rows.counts, body->rows.offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
-    else PetscCall(PetscArraycpy(response->new_inputs, mine, 4 * body->rows.local));
-    for (PetscInt i = 0; i < body->rows.global; i++) response->matrix[row * body->rows.global + i] = response->new_inputs[4 * i];
-  }
+  PetscCall(GatherOutputs(body, outputs[0], outputs[3], kind == INPUT_VELOCITY ? response->rate_matrix[0] : kind == INPUT_ACCELERATION ? response->rate_matrix[1] : response->matrix, row));
   if (response->condensed) {
     Column *column = &response->columns[response->n_columns++];
 
@@ -242,7 +246,8 @@ static PetscErrorCode CreateResponse(Body body)
   response = body->response;
   PetscCall(MaterialIsLinear(body->material, &linear));
   response->condensed = (PetscBool)(linear && body->substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
-  PetscCall(PetscCalloc6(rows->global * rows->global, &response->matrix, 3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs, 4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
+  PetscCall(PetscCalloc3(rows->global * rows->global, &response->matrix, rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
+  PetscCall(PetscCalloc5(3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs, 4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -346,6 +351,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
   PetscCall(DestroyColumns(response));
   PetscCall(PetscArrayzero(response->matrix, rows->global * rows->global));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(PetscArrayzero(response->rate_matrix[k], rows->global * rows->global));
   PetscCall(BeginProbing(body, &backup));
   PetscCall(PetscMalloc1(rows->global, &kinds));
   for (PetscInt row = 0; row < rows->global; row++) {
@@ -358,7 +364,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
     if (kinds[row] == BODY_FORCED) PetscCall(Probe(body, row, INPUT_FORCE));
     if (kinds[row] != BODY_PRESCRIBED) continue;
     PetscCall(Probe(body, row, INPUT_DISPLACEMENT));
-    if (!body->prescribed_mass || !response->condensed) continue;
+    if (!body->prescribed_mass || body->substeps > 1) continue;
     PetscCall(Probe(body, row, INPUT_VELOCITY));
     PetscCall(Probe(body, row, INPUT_ACCELERATION));
   }
@@ -367,6 +373,35 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   PetscCall(PetscArraycpy(response->conditions, body->conditions, rows->local));
   response->made = response->valid = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetRateResponse - what comes out of the rows for a unit velocity or acceleration on each prescribed one, at rest otherwise
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodyComputeResponse()`, with one substep
+
+  Output Parameters:
++ velocity     - reaction or displacement for 1 m/s, laid out as the matrix of `BodyComputeResponse()`
+- acceleration - for 1 m/s^2
+
+  Level: developer
+
+  Note:
+  Zero where the contact nodes are massless.
+
+.seealso: `Body`, `BodyComputeResponse()`
+@*/
+PetscErrorCode BodyGetRateResponse(Body body, const PetscScalar *velocity[], const PetscScalar *acceleration[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->response && body->response->valid, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyComputeResponse() first");
+  *velocity     = body->response->rate_matrix[0];
+  *acceleration = body->response->rate_matrix[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

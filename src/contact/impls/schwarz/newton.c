@@ -5,6 +5,22 @@
 */
 #include "schwarzimpl.h"
 
+/* What the velocity and acceleration that go with a displacement of a prescribed row add to the output of its body */
+static PetscErrorCode AddKinematics(Contact contact, PetscInt b, PetscInt row, PetscScalar input)
+{
+  Schwarz           *schwarz = (Schwarz *)contact->data;
+  const ContactPair *pair    = &contact->pairs[contact->all_row_pair[row]];
+  const PetscInt     n       = contact->n_all_rows;
+  const PetscScalar *velocity, *acceleration;
+  PetscReal          dv, da, unused;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetNewmark(contact->bodies[pair->body[1]], &dv, &unused, &unused, &da, &unused, &unused));
+  PetscCall(BodyGetRateResponse(contact->bodies[b], &velocity, &acceleration));
+  for (PetscInt i = 0; i < n; i++) schwarz->out[i] += input * (dv * velocity[row * n + i] + da * acceleration[row * n + i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Column j of dG/dx: a unit displacement on row j goes through the sweep */
 static PetscErrorCode LinearSweep(Contact contact, const PetscScalar *responses[], PetscInt j, PetscScalar column[])
 {
@@ -27,6 +43,7 @@ static PetscErrorCode LinearSweep(Contact contact, const PetscScalar *responses[
       else if (pair->body[1] == b) input = schwarz->traction_in[row];
       if (input == 0) continue;
       for (PetscInt i = 0; i < n; i++) schwarz->out[i] += input * responses[b][row * n + i];
+      if (pair->body[0] == b && schwarz->kinematic[contact->all_row_pair[row]]) PetscCall(AddKinematics(contact, b, row, input));
     }
     for (PetscInt row = 0; row < n; row++) {
       const ContactPair *pair = &contact->pairs[contact->all_row_pair[row]];

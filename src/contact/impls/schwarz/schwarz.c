@@ -30,7 +30,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscInt begin, *mine;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(contact->n_pairs, &schwarz->levels, contact->n_pairs, &schwarz->trace, contact->n_rows, &schwarz->offset));
+  PetscCall(PetscCalloc4(contact->n_pairs, &schwarz->levels, contact->n_pairs, &schwarz->trace, contact->n_rows, &schwarz->offset, contact->n_pairs, &schwarz->kinematic));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscInt dirichlet, neumann;
 
@@ -55,6 +55,29 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* With the inertia of prescribed nodes in the traction, their acceleration takes part in the iteration. It follows from their
+   displacement where the Neumann side is implicit and makes one substep. */
+static PetscErrorCode SetUpReactionTraction(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  if (schwarz->traction != BODY_TRACTION_REACTION) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const Body dirichlet = contact->bodies[contact->pairs[p].body[0]], neumann = contact->bodies[contact->pairs[p].body[1]];
+    PetscBool  massless, is_explicit;
+    PetscInt   substeps;
+
+    PetscCall(BodyIsRedistributed(dirichlet, &massless));
+    if (massless) continue;
+    PetscCall(BodyIsExplicit(neumann, &is_explicit));
+    PetscCall(BodyGetSubsteps(neumann, &substeps));
+    PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true", ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
+    schwarz->kinematic[p] = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
@@ -63,6 +86,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SetUpUnknowns(contact, &unknowns));
+  PetscCall(SetUpReactionTraction(contact));
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
@@ -261,7 +285,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
     for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->trace[p]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
-  PetscCall(PetscFree3(schwarz->levels, schwarz->trace, schwarz->offset));
+  PetscCall(PetscFree4(schwarz->levels, schwarz->trace, schwarz->offset, schwarz->kinematic));
   PetscCall(PetscFree6(schwarz->all_offset, schwarz->in, schwarz->traction_in, schwarz->out, schwarz->gain, schwarz->jacobian_active));
   PetscCall(PetscFree2(schwarz->tried, schwarz->kept_force));
   PetscCall(PetscFree(contact->data));

@@ -11,21 +11,7 @@ PetscErrorCode SchwarzStartTraces(Contact contact)
   PetscScalar *x;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const Trace traces[] = {contact->traces[b].displacement, contact->traces[b].velocity, contact->traces[b].acceleration, contact->traces[b].reaction};
-
-    for (PetscInt t = 0; t < 4; t++) {
-      PetscScalar *start, *values;
-      PetscInt     size, levels;
-
-      PetscCall(TraceGetSizes(traces[t], &size, &levels));
-      PetscCall(TraceGetLevel(traces[t], 0, &start));
-      for (PetscInt level = 1; level <= levels; level++) {
-        PetscCall(TraceGetLevel(traces[t], level, &values));
-        PetscCall(PetscArraycpy(values, start, size));
-      }
-    }
-  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
   PetscCall(VecGetArrayWrite(schwarz->outer.x, &x));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
     const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];
@@ -36,6 +22,33 @@ PetscErrorCode SchwarzStartTraces(Contact contact)
     for (PetscInt level = 1; level <= levels; level++) x[schwarz->offset[i] + level - 1] = start[i] + contact->initial_gap[i] - contact->saved_gap[i] * (1 - (PetscReal)level / levels);
   }
   PetscCall(VecRestoreArrayWrite(schwarz->outer.x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The velocity and acceleration that the Neumann side would have if it were where the unknowns put the Dirichlet side: with the
+   inertia of the nodes in the traction, those of its last sweep would be another unknown that the SNES does not see. */
+static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
+{
+  Schwarz           *schwarz = (Schwarz *)contact->data;
+  const ContactPair *pair    = &contact->pairs[p];
+  const BodyTraces  *from    = &contact->traces[pair->body[1]];
+  PetscScalar       *x, *u0, *v0, *a0, *v, *a;
+  PetscReal          dv, da, v_v, v_a, a_v, a_a;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetNewmark(contact->bodies[pair->body[1]], &dv, &v_v, &v_a, &da, &a_v, &a_a));
+  PetscCall(TraceGetLevel(schwarz->trace[p], 1, &x));
+  PetscCall(TraceGetLevel(from->displacement, 0, &u0));
+  PetscCall(TraceGetLevel(from->velocity, 0, &v0));
+  PetscCall(TraceGetLevel(from->acceleration, 0, &a0));
+  PetscCall(TraceGetLevel(from->velocity, 1, &v));
+  PetscCall(TraceGetLevel(from->acceleration, 1, &a));
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    const PetscScalar moved = x[i] - contact->initial_gap[i] - u0[i];
+
+    v[i] = dv * moved + v_v * v0[i] + v_a * a0[i];
+    a[i] = da * moved + a_v * v0[i] + a_a * a0[i];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,6 +69,7 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
     for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = x[schwarz->offset[i] + level - 1];
   }
   PetscCall(TraceResample(schwarz->trace[p], pair->begin, pair->end, 1, to->displacement_in));
+  if (schwarz->kinematic[p]) PetscCall(PrescribeKinematics(contact, p));
   PetscCall(TraceResample(from->velocity, pair->begin, pair->end, 1, to->velocity_in));
   PetscCall(TraceResample(from->acceleration, pair->begin, pair->end, 1, to->acceleration_in));
   PetscFunctionReturn(PETSC_SUCCESS);
