@@ -74,6 +74,8 @@ static PetscErrorCode SetUpReactionTraction(Contact contact)
     PetscCall(BodyGetSubsteps(neumann, &substeps));
     PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true", ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
     schwarz->kinematic[p] = PETSC_TRUE;
+    for (PetscInt k = 0; k < 2; k++)
+      if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->n_rows, 1, &schwarz->rate[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -283,6 +285,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscFunctionBegin;
   if (schwarz->trace)
     for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->trace[p]));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(PetscFree4(schwarz->levels, schwarz->trace, schwarz->offset, schwarz->kinematic));

@@ -27,6 +27,7 @@ typedef struct {
   BodyTractionType traction;
   PetscBool        recheck;     /* tensile reactions leave the active set within the step */
   PetscInt        *levels;      /* per pair: times in the controller step at which its trace is an unknown */
+  Trace            rate[2];     /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
   PetscBool       *kinematic;   /* per pair: velocity and acceleration of the Dirichlet side follow from its displacement */
   PetscInt        *offset;      /* per row: its first unknown on this rank */
   Trace           *trace;       /* per pair: displacements put on the Dirichlet side */

@@ -41,13 +41,19 @@ static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
   PetscCall(TraceGetLevel(from->displacement, 0, &u0));
   PetscCall(TraceGetLevel(from->velocity, 0, &v0));
   PetscCall(TraceGetLevel(from->acceleration, 0, &a0));
-  PetscCall(TraceGetLevel(from->velocity, 1, &v));
-  PetscCall(TraceGetLevel(from->acceleration, 1, &a));
+  PetscCall(TraceGetLevel(schwarz->rate[0], 1, &v));
+  PetscCall(TraceGetLevel(schwarz->rate[1], 1, &a));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscScalar moved = x[i] - contact->initial_gap[i] - u0[i];
 
     v[i] = dv * moved + v_v * v0[i] + v_a * a0[i];
     a[i] = da * moved + a_v * v0[i] + a_a * a0[i];
+  }
+  PetscCall(TraceGetLevel(schwarz->rate[0], 0, &v));
+  PetscCall(TraceGetLevel(schwarz->rate[1], 0, &a));
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    v[i] = v0[i];
+    a[i] = a0[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,8 +76,8 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   }
   PetscCall(TraceResample(schwarz->trace[p], pair->begin, pair->end, 1, to->displacement_in));
   if (schwarz->kinematic[p]) PetscCall(PrescribeKinematics(contact, p));
-  PetscCall(TraceResample(from->velocity, pair->begin, pair->end, 1, to->velocity_in));
-  PetscCall(TraceResample(from->acceleration, pair->begin, pair->end, 1, to->acceleration_in));
+  PetscCall(TraceResample(schwarz->kinematic[p] ? schwarz->rate[0] : from->velocity, pair->begin, pair->end, 1, to->velocity_in));
+  PetscCall(TraceResample(schwarz->kinematic[p] ? schwarz->rate[1] : from->acceleration, pair->begin, pair->end, 1, to->acceleration_in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
