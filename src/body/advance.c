@@ -96,16 +96,11 @@ static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
 @*/
 PetscErrorCode BodyKeep(Body body)
 {
-  const Vec      from[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
-  const PetscInt n      = body->substeps * body->rows.local;
+  const Vec from[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  for (PetscInt i = 0; i < 4; i++) {
-    if (!body->kept[i]) PetscCall(VecDuplicate(from[i], &body->kept[i]));
-    PetscCall(VecCopy(from[i], body->kept[i]));
-  }
-  if (!body->kept_traces) PetscCall(PetscMalloc1(4 * n, &body->kept_traces));
+  for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(from[i], body->kept[i]));
   PetscCall(CopyOutputTraces(body, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,7 +123,6 @@ PetscErrorCode BodyReinstate(Body body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->kept[0], PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Nothing has been kept");
   for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(body->kept[i], to[i]));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
   PetscCall(BodyInvalidateWindow(body));
@@ -267,18 +261,24 @@ PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *po
   const PetscInt     n = body->owned_nodes * body->dim;
   const PetscScalar *u, *x;
   PetscScalar       *previous;
-  PetscReal          sums[2] = {0, 0};
+  PetscReal          sums[2] = {0, 0}, change4[4] = {0}, position4[4] = {0};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(VecGetArrayRead(body->state.u, &u));
   PetscCall(VecGetArrayRead(body->positions, &x));
   PetscCall(VecGetArray(body->previous_u, &previous));
-  for (PetscInt i = 0; i < n; i++) {
-    sums[0] += PetscSqr(u[i] - previous[i]);
-    sums[1] += PetscSqr(x[i] + u[i]);
-    previous[i] = u[i];
+  /* four sums each, since a single one waits for every addition */
+  for (PetscInt i = 0; i < n; i += 4)
+    for (PetscInt k = 0; k < PetscMin(4, n - i); k++) {
+      change4[k] += PetscSqr(u[i + k] - previous[i + k]);
+      position4[k] += PetscSqr(x[i + k] + u[i + k]);
+    }
+  for (PetscInt k = 0; k < 4; k++) {
+    sums[0] += change4[k];
+    sums[1] += position4[k];
   }
+  PetscCall(PetscArraycpy(previous, u, n));
   PetscCall(VecRestoreArray(body->previous_u, &previous));
   PetscCall(VecRestoreArrayRead(body->positions, &x));
   PetscCall(VecRestoreArrayRead(body->state.u, &u));

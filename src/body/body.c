@@ -149,6 +149,7 @@ static PetscErrorCode CreateTraces(Body body)
 
   PetscFunctionBegin;
   for (PetscInt t = 0; t < 8; t++) PetscCall(TraceCreate(body->rows.local, body->substeps, traces[t]));
+  PetscCall(PetscCalloc1(4 * body->substeps * body->rows.local, &body->kept_traces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,7 +176,7 @@ static PetscErrorCode SetUpRows(Body body)
   PetscCall(PetscMPIIntCast(4 * rows->local, &four));
   PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
-  PetscCall(PetscCalloc1(rows->local, &body->conditions));
+  PetscCall(PetscCalloc2(rows->local, &body->conditions, rows->local, &body->held));
   PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[0]));
   PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[1]));
   body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute);
@@ -196,7 +197,7 @@ static PetscErrorCode SetUpRows(Body body)
 @*/
 PetscErrorCode BodySetUp(Body body)
 {
-  Vec *vecs[] = {&body->state.u, &body->state.v, &body->state.a, &body->saved.u, &body->saved.v, &body->saved.a, &body->substep_start.u, &body->substep_start.v, &body->internal_force, &body->previous_u, &body->work[0], &body->work[1], &body->work[2]};
+  Vec *vecs[] = {&body->state.u, &body->state.v, &body->state.a, &body->saved.u, &body->saved.v, &body->saved.a, &body->substep_start.u, &body->substep_start.v, &body->internal_force, &body->previous_u, &body->kept[0], &body->kept[1], &body->kept[2], &body->kept[3], &body->work[0], &body->work[1], &body->work[2]};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -259,7 +260,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MaterialDestroy(&b->material));
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
   PetscCall(PetscFree(b->kept_traces));
-  PetscCall(PetscFree(b->conditions));
+  PetscCall(PetscFree2(b->conditions, b->held));
   PetscCall(PetscFree(b->layer_dofs));
   PetscCall(PetscFree(b->in_layer));
   PetscCall(PetscFree(b->connectivity));

@@ -68,6 +68,7 @@ struct _p_Body {
   Mat               interface;
   BodyRows          rows;
   BodyCondition    *conditions; /* local rows */
+  PetscBool        *held;       /* those that are prescribed */
   PetscInt          n_prescribed, n_forced; /* over all ranks */
   PetscBool         prescribed_mass; /* prescribed nodes carry mass */
   BodyTractionType  traction;

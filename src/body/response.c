@@ -11,6 +11,7 @@
 
 /* Above this many rows the columns of whole states would cost more memory and time than they save. */
 #define MAX_CONDENSED_ROWS 16
+#define N_BACKUP           7
 
 typedef enum {
   INPUT_DISPLACEMENT,
@@ -22,8 +23,8 @@ typedef enum {
 typedef struct {
   PetscInt     row; /* global */
   InputKind    kind;
-  BodyState    state;
-  Vec          internal_force;
+  Vec          change[4]; /* of displacement, velocity, acceleration, internal force */
+  PetscBool    changes[4]; /* whether they are not zero: a velocity, say, changes little but itself */
   PetscScalar *rows; /* displacement, velocity, acceleration, reaction: 4 x local rows */
 } Column;
 
@@ -39,23 +40,11 @@ struct _BodyResponse {
   Column      *columns;      /* at most 3 for each row */
   PetscScalar *inputs, *new_inputs; /* of all rows on every rank, 4 kinds each */
   PetscScalar *mine;
+  /* what probing overwrites: present and saved state, internal force; all traces */
+  Vec          backup[N_BACKUP];
+  PetscScalar *backup_traces;
+  PetscMPIInt *kinds; /* conditions of all rows */
 };
-
-static PetscErrorCode DestroyColumns(struct _BodyResponse *response)
-{
-  PetscFunctionBegin;
-  for (PetscInt c = 0; c < response->n_columns; c++) {
-    Column *column = &response->columns[c];
-
-    PetscCall(VecDestroy(&column->state.u));
-    PetscCall(VecDestroy(&column->state.v));
-    PetscCall(VecDestroy(&column->state.a));
-    PetscCall(VecDestroy(&column->internal_force));
-    PetscCall(PetscFree(column->rows));
-  }
-  response->n_columns = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 PetscErrorCode BodyDestroyResponse(Body body)
 {
@@ -63,7 +52,12 @@ PetscErrorCode BodyDestroyResponse(Body body)
 
   PetscFunctionBegin;
   if (!response) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DestroyColumns(response));
+  for (PetscInt c = 0; c < 3 * body->rows.global; c++) {
+    for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&response->columns[c].change[k]));
+    PetscCall(PetscFree(response->columns[c].rows));
+  }
+  for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDestroy(&response->backup[k]));
+  PetscCall(PetscFree2(response->backup_traces, response->kinds));
   PetscCall(PetscFree3(response->matrix, response->rate_matrix[0], response->rate_matrix[1]));
   PetscCall(PetscFree5(response->columns, response->inputs, response->new_inputs, response->mine, response->conditions));
   PetscCall(PetscFree(body->response));
@@ -129,13 +123,12 @@ PetscErrorCode BodyNoteWindow(Body body)
 static PetscErrorCode AddColumn(Body body, const Column *column, PetscScalar change)
 {
   const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  const Vec    vecs[]   = {body->state.u, body->state.v, body->state.a, body->internal_force};
   PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscCall(VecAXPY(body->state.u, change, column->state.u));
-  PetscCall(VecAXPY(body->state.v, change, column->state.v));
-  PetscCall(VecAXPY(body->state.a, change, column->state.a));
-  PetscCall(VecAXPY(body->internal_force, change, column->internal_force));
+  for (PetscInt k = 0; k < 4; k++)
+    if (column->changes[k]) PetscCall(VecAXPY(vecs[k], change, column->change[k]));
   for (PetscInt t = 0; t < 4; t++) {
     PetscCall(TraceGetLevel(traces[t], body->substeps, &values));
     for (PetscInt i = 0; i < body->rows.local; i++) values[i] += change * column->rows[t * body->rows.local + i];
@@ -204,34 +197,29 @@ static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
 {
   struct _BodyResponse *response = body->response;
   const Trace           traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
-  PetscScalar          *outputs[4], *rows;
+  const Vec             vecs[]   = {body->state.u, body->state.v, body->state.a, body->internal_force};
+  PetscScalar          *outputs[4];
+  Column               *column;
 
   PetscFunctionBegin;
   PetscCall(SetUnitInput(body, row, kind));
   PetscCall(BodyRestore(body));
   PetscCall(BodyIntegrateWindow(body));
   body->total_substeps -= body->substeps;
-  PetscCall(PetscMalloc1(4 * body->rows.local, &rows));
-  for (PetscInt t = 0; t < 4; t++) {
-    PetscCall(TraceGetLevel(traces[t], body->substeps, &outputs[t]));
-    PetscCall(PetscArraycpy(rows + t * body->rows.local, outputs[t], body->rows.local));
-  }
+  for (PetscInt t = 0; t < 4; t++) PetscCall(TraceGetLevel(traces[t], body->substeps, &outputs[t]));
   PetscCall(GatherOutputs(body, outputs[0], outputs[3], kind == INPUT_VELOCITY ? response->rate_matrix[0] : kind == INPUT_ACCELERATION ? response->rate_matrix[1] : response->matrix, row));
-  if (response->condensed) {
-    Column *column = &response->columns[response->n_columns++];
+  if (!response->condensed) PetscFunctionReturn(PETSC_SUCCESS);
+  column       = &response->columns[response->n_columns++];
+  column->row  = row;
+  column->kind = kind;
+  for (PetscInt t = 0; t < 4; t++) PetscCall(PetscArraycpy(column->rows + t * body->rows.local, outputs[t], body->rows.local));
+  for (PetscInt k = 0; k < 4; k++) {
+    PetscReal norm;
 
-    column->row  = row;
-    column->kind = kind;
-    column->rows = rows;
-    PetscCall(VecDuplicate(body->state.u, &column->state.u));
-    PetscCall(VecDuplicate(body->state.u, &column->state.v));
-    PetscCall(VecDuplicate(body->state.u, &column->state.a));
-    PetscCall(VecDuplicate(body->state.u, &column->internal_force));
-    PetscCall(VecCopy(body->state.u, column->state.u));
-    PetscCall(VecCopy(body->state.v, column->state.v));
-    PetscCall(VecCopy(body->state.a, column->state.a));
-    PetscCall(VecCopy(body->internal_force, column->internal_force));
-  } else PetscCall(PetscFree(rows));
+    PetscCall(VecNorm(vecs[k], NORM_INFINITY, &norm));
+    column->changes[k] = (PetscBool)(norm > 0);
+    if (column->changes[k]) PetscCall(VecCopy(vecs[k], column->change[k]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,17 +236,21 @@ static PetscErrorCode CreateResponse(Body body)
   response->condensed = (PetscBool)(linear && body->substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
   PetscCall(PetscCalloc3(rows->global * rows->global, &response->matrix, rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
   PetscCall(PetscCalloc5(3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs, 4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
+  PetscCall(PetscMalloc2(8 * (body->substeps + 1) * rows->local, &response->backup_traces, rows->global, &response->kinds));
+  for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDuplicate(body->state.u, &response->backup[k]));
+  if (!response->condensed) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt c = 0; c < 3 * rows->global; c++) {
+    for (PetscInt k = 0; k < 4; k++) PetscCall(VecDuplicate(body->state.u, &response->columns[c].change[k]));
+    PetscCall(PetscMalloc1(4 * rows->local, &response->columns[c].rows));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Everything that probing overwrites */
+/* Where a body is in time, beside what its response keeps of its state */
 typedef struct {
-  BodyState    state, saved;
-  Vec          internal_force;
-  PetscReal    time, saved_time;
-  PetscInt     step, saved_step;
-  PetscScalar *traces;
-} Backup;
+  PetscReal time, saved_time;
+  PetscInt  step, saved_step;
+} Clock;
 
 static PetscErrorCode CopyTraces(Body body, PetscScalar buffer[], PetscBool store)
 {
@@ -275,42 +267,36 @@ static PetscErrorCode CopyTraces(Body body, PetscScalar buffer[], PetscBool stor
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode BeginProbing(Body body, Backup *backup)
+static PetscErrorCode BeginProbing(Body body, Clock *clock)
 {
-  const Vec from[] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
-  Vec      *to[]   = {&backup->state.u, &backup->state.v, &backup->state.a, &backup->saved.u, &backup->saved.v, &backup->saved.a, &backup->internal_force};
+  struct _BodyResponse *response = body->response;
+  const Vec             vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < 7; i++) {
-    PetscCall(VecDuplicate(from[i], to[i]));
-    PetscCall(VecCopy(from[i], *to[i]));
-    PetscCall(VecZeroEntries(from[i]));
+  for (PetscInt k = 0; k < N_BACKUP; k++) {
+    PetscCall(VecCopy(vecs[k], response->backup[k]));
+    PetscCall(VecZeroEntries(vecs[k]));
   }
-  PetscCall(PetscMalloc1(8 * (body->substeps + 1) * body->rows.local, &backup->traces));
-  PetscCall(CopyTraces(body, backup->traces, PETSC_TRUE));
-  backup->time       = body->time;
-  backup->saved_time = body->saved_time;
-  backup->step       = body->step;
-  backup->saved_step = body->saved_step;
+  PetscCall(CopyTraces(body, response->backup_traces, PETSC_TRUE));
+  clock->time       = body->time;
+  clock->saved_time = body->saved_time;
+  clock->step       = body->step;
+  clock->saved_step = body->saved_step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode EndProbing(Body body, Backup *backup)
+static PetscErrorCode EndProbing(Body body, const Clock *clock)
 {
-  Vec *from[] = {&backup->state.u, &backup->state.v, &backup->state.a, &backup->saved.u, &backup->saved.v, &backup->saved.a, &backup->internal_force};
-  Vec  to[]   = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
+  struct _BodyResponse *response = body->response;
+  const Vec             vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < 7; i++) {
-    PetscCall(VecCopy(*from[i], to[i]));
-    PetscCall(VecDestroy(from[i]));
-  }
-  PetscCall(CopyTraces(body, backup->traces, PETSC_FALSE));
-  PetscCall(PetscFree(backup->traces));
-  body->time       = backup->time;
-  body->saved_time = backup->saved_time;
-  body->step       = backup->step;
-  body->saved_step = backup->saved_step;
+  for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecCopy(response->backup[k], vecs[k]));
+  PetscCall(CopyTraces(body, response->backup_traces, PETSC_FALSE));
+  body->time       = clock->time;
+  body->saved_time = clock->saved_time;
+  body->step       = clock->step;
+  body->saved_step = clock->saved_step;
   PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -339,27 +325,27 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
 {
   struct _BodyResponse *response;
   BodyRows             *rows = &body->rows;
-  Backup                backup;
-  PetscMPIInt           mine, *kinds;
+  PetscMPIInt          *kinds;
+  Clock                 clock = {0};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!body->response) PetscCall(CreateResponse(body));
   response = body->response;
+  kinds    = response->kinds;
   *matrix  = response->matrix;
   if (response->valid) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
-  PetscCall(DestroyColumns(response));
+  response->n_columns = 0;
   PetscCall(PetscArrayzero(response->matrix, rows->global * rows->global));
   for (PetscInt k = 0; k < 2; k++) PetscCall(PetscArrayzero(response->rate_matrix[k], rows->global * rows->global));
-  PetscCall(BeginProbing(body, &backup));
-  PetscCall(PetscMalloc1(rows->global, &kinds));
+  PetscCall(BeginProbing(body, &clock));
   for (PetscInt row = 0; row < rows->global; row++) {
     const PetscInt local = row - rows->begin;
 
-    mine = local >= 0 && local < rows->local ? (PetscMPIInt)body->conditions[local] : 0;
-    PetscCallMPI(MPI_Allreduce(&mine, &kinds[row], 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
+    kinds[row] = local >= 0 && local < rows->local ? (PetscMPIInt)body->conditions[local] : 0;
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, kinds, (PetscMPIInt)rows->global, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
   for (PetscInt row = 0; row < rows->global; row++) {
     if (kinds[row] == BODY_FORCED) PetscCall(Probe(body, row, INPUT_FORCE));
     if (kinds[row] != BODY_PRESCRIBED) continue;
@@ -368,8 +354,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
     PetscCall(Probe(body, row, INPUT_VELOCITY));
     PetscCall(Probe(body, row, INPUT_ACCELERATION));
   }
-  PetscCall(PetscFree(kinds));
-  PetscCall(EndProbing(body, &backup));
+  PetscCall(EndProbing(body, &clock));
   PetscCall(PetscArraycpy(response->conditions, body->conditions, rows->local));
   response->made = response->valid = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));

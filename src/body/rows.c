@@ -110,14 +110,10 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 /* Tells the solvers which rows they hold */
 PetscErrorCode BodySetConstraints(Body body)
 {
-  PetscBool *held;
-
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(body->rows.local, &held));
-  for (PetscInt i = 0; i < body->rows.local; i++) held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
-  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, held));
-  if (body->mass_solver && body->is_explicit && body->prescribed_mass) PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, held));
-  PetscCall(PetscFree(held));
+  for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
+  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held));
+  if (body->mass_solver && body->is_explicit && body->prescribed_mass) PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,7 +15,6 @@ typedef struct {
   Trace        force;      /* of all rows over the controller step */
   PetscBool   *penetrating;
   PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
-  PetscBool    have_compliance;
   PetscReal    residual, magnitude;
 } Penalty;
 
@@ -103,7 +102,6 @@ static PetscErrorCode ComputeCompliance(Contact contact)
         penalty->compliance[j * n + i] += sign_i * sign_j * response[j * n + i];
       }
   }
-  penalty->have_compliance = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,7 +114,6 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   (void)snes;
   (void)X;
   (void)P;
-  if (!penalty->have_compliance) PetscCall(ComputeCompliance(contact));
   for (PetscInt local = 0; local < contact->n_rows; local++) {
     const PetscInt i = contact->row_begin + local;
 
@@ -157,6 +154,9 @@ static PetscErrorCode ContactSetUp_Penalty(Contact contact)
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(TraceCreate(contact->n_rows, 1, &penalty->force));
   PetscCall(PetscCalloc2(contact->n_rows, &penalty->penetrating, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
+  PetscCall(ComputeCompliance(contact));
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

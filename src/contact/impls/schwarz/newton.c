@@ -62,7 +62,7 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   Contact             contact = (Contact)ctx;
   Schwarz            *schwarz = (Schwarz *)contact->data;
   const PetscInt      n       = contact->n_all_rows;
-  const PetscScalar **responses;
+  const PetscScalar **responses = schwarz->responses;
 
   PetscFunctionBegin;
   (void)snes;
@@ -70,13 +70,11 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   (void)P;
   if (!schwarz->stale) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactGatherActive(contact));
-  PetscCall(PetscMalloc1(contact->n_bodies, &responses));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeResponse(contact->bodies[b], &responses[b]));
   for (PetscInt j = 0; j < n; j++) {
     if (contact->all_active[j]) PetscCall(LinearSweep(contact, responses, j, schwarz->gain + j * n));
     else PetscCall(PetscArrayzero(schwarz->gain + j * n, n));
   }
-  PetscCall(PetscFree(responses));
   for (PetscInt local = 0; local < contact->n_rows; local++) {
     const PetscInt i = contact->row_begin + local, levels_i = schwarz->levels[contact->all_row_pair[i]];
 

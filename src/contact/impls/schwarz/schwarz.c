@@ -48,7 +48,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   begin -= *unknowns;
   PetscCall(PetscMalloc1(contact->n_rows, &mine));
   for (PetscInt i = 0; i < contact->n_rows; i++) mine[i] = begin + schwarz->offset[i];
-  PetscCall(PetscCalloc6(contact->n_all_rows, &schwarz->all_offset, contact->n_all_rows, &schwarz->in, contact->n_all_rows, &schwarz->traction_in, contact->n_all_rows, &schwarz->out, contact->n_all_rows * contact->n_all_rows, &schwarz->gain, contact->n_rows, &schwarz->jacobian_active));
+  PetscCall(PetscCalloc6(contact->n_all_rows, &schwarz->all_offset, contact->n_bodies, &schwarz->responses, contact->n_all_rows, &schwarz->traction_in, contact->n_all_rows, &schwarz->out, contact->n_all_rows * contact->n_all_rows, &schwarz->gain, contact->n_rows, &schwarz->jacobian_active));
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
   PetscCall(PetscMalloc2((MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force));
@@ -80,6 +80,22 @@ static PetscErrorCode SetUpReactionTraction(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes everything that the time loop needs once all nodes are in contact, so that it need not be made there */
+static PetscErrorCode PrepareContact(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = schwarz->jacobian_active[i] = PETSC_TRUE;
+  PetscCall(ContactSetConditions(contact, CONDITIONS_SCHWARZ));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  schwarz->stale = PETSC_TRUE;
+  PetscCall(SchwarzComputeJacobian(schwarz->outer.snes, schwarz->outer.x, schwarz->outer.jacobian, schwarz->outer.jacobian, contact));
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = PETSC_FALSE;
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
@@ -87,6 +103,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscBool richardson, damping_set;
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
   PetscCall(SetUpUnknowns(contact, &unknowns));
   PetscCall(SetUpReactionTraction(contact));
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
@@ -104,8 +121,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
   if (schwarz->convergence == CONVERGENCE_AUTO) schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED ? CONVERGENCE_POSITION : CONVERGENCE_MISMATCH;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
-  schwarz->stale = PETSC_TRUE;
+  PetscCall(PrepareContact(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -289,7 +305,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(PetscFree4(schwarz->levels, schwarz->trace, schwarz->offset, schwarz->kinematic));
-  PetscCall(PetscFree6(schwarz->all_offset, schwarz->in, schwarz->traction_in, schwarz->out, schwarz->gain, schwarz->jacobian_active));
+  PetscCall(PetscFree6(schwarz->all_offset, schwarz->responses, schwarz->traction_in, schwarz->out, schwarz->gain, schwarz->jacobian_active));
   PetscCall(PetscFree2(schwarz->tried, schwarz->kept_force));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);

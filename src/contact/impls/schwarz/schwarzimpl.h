@@ -34,7 +34,8 @@ typedef struct {
   PetscBool        stale;       /* the Jacobian belongs to another active set */
   PetscBool       *jacobian_active; /* per row: the set that it belongs to */
   PetscInt        *all_offset;  /* per row, all ranks: its first unknown */
-  PetscScalar     *in, *traction_in, *out; /* work space of the Jacobian: all rows */
+  PetscScalar     *traction_in, *out; /* work space of the Jacobian: all rows */
+  const PetscScalar **responses; /* per body */
   PetscScalar     *gain;        /* dG/dx at the end of the step, all rows by all rows */
   PetscReal        change, position; /* of the last sweep: the body with the worst ratio */
   PetscBool        converged;
