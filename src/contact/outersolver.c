@@ -15,7 +15,7 @@ PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt 
   PetscCall(VecDuplicate(solver->x, &solver->residual));
   PetscCall(MatCreate(comm, &solver->jacobian));
   PetscCall(MatSetSizes(solver->jacobian, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(solver->jacobian, contact->size == 1 ? MATDENSE : MATAIJ));
+  PetscCall(MatSetType(solver->jacobian, MATAIJ));
   PetscCall(MatSetUp(solver->jacobian));
   PetscCall(SNESCreate(comm, &solver->snes));
   PetscCall(SNESSetOptionsPrefix(solver->snes, prefix));

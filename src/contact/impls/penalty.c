@@ -14,6 +14,8 @@ typedef struct {
   PetscReal    atol, rtol; /* on the force [N], and relative to it */
   Trace        force;      /* of all rows over the controller step */
   PetscBool   *penetrating;
+  PetscBool   *jacobian_penetrating; /* the set that the Jacobian belongs to */
+  PetscBool    have_jacobian;
   PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
   PetscReal    residual, magnitude;
 } Penalty;
@@ -109,11 +111,17 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 {
   Contact  contact = (Contact)ctx;
   Penalty *penalty = (Penalty *)contact->data;
+  int      differs = 0;
 
   PetscFunctionBegin;
   (void)snes;
   (void)X;
   (void)P;
+  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= penalty->jacobian_penetrating[i] != penalty->penetrating[i];
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  if (penalty->have_jacobian && !differs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(penalty->jacobian_penetrating, penalty->penetrating, contact->n_rows));
+  penalty->have_jacobian = PETSC_TRUE;
   for (PetscInt local = 0; local < contact->n_rows; local++) {
     const PetscInt i = contact->row_begin + local;
 
@@ -153,7 +161,7 @@ static PetscErrorCode ContactSetUp_Penalty(Contact contact)
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(TraceCreate(contact->n_rows, 1, &penalty->force));
-  PetscCall(PetscCalloc2(contact->n_rows, &penalty->penetrating, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
+  PetscCall(PetscCalloc3(contact->n_rows, &penalty->penetrating, contact->n_rows, &penalty->jacobian_penetrating, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscCall(ComputeCompliance(contact));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
@@ -223,7 +231,7 @@ static PetscErrorCode ContactDestroy_Penalty(Contact contact)
   PetscFunctionBegin;
   PetscCall(OuterSolverDestroy(&penalty->outer));
   PetscCall(TraceDestroy(&penalty->force));
-  PetscCall(PetscFree2(penalty->penetrating, penalty->compliance));
+  PetscCall(PetscFree3(penalty->penetrating, penalty->jacobian_penetrating, penalty->compliance));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

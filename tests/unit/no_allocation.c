@@ -1,0 +1,128 @@
+/* ranks: 1
+   Nothing is allocated in the time loop: the C library's allocator is replaced by one that counts. */
+#include <impakt.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+extern void *__libc_malloc(size_t);
+extern void *__libc_calloc(size_t, size_t);
+extern void *__libc_realloc(void *, size_t);
+extern void *__libc_memalign(size_t, size_t);
+
+static volatile long allocations;
+
+#if !defined(__SANITIZE_ADDRESS__)
+void *malloc(size_t size)
+{
+  allocations++;
+  return __libc_malloc(size);
+}
+
+void *calloc(size_t n, size_t size)
+{
+  allocations++;
+  return __libc_calloc(n, size);
+}
+
+void *realloc(void *old, size_t size)
+{
+  allocations++;
+  return __libc_realloc(old, size);
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t size)
+{
+  allocations++;
+  *memory = __libc_memalign(alignment, size);
+  return *memory ? 0 : 12;
+}
+#endif
+
+/* Steps at which the count is taken. The bars touch in step 4 and part in step 505: first free flight, then contact with the
+   set-up of PETSc's solvers behind it (each makes its work vectors in its first solve), then all the rest with the release. */
+static const PetscInt marks[] = {2, 3, 10, 510};
+static long           counts[4];
+
+static PetscErrorCode Count(Controller controller, const ControllerFrame *frame, void *ctx)
+{
+  PetscFunctionBegin;
+  (void)controller;
+  (void)ctx;
+  for (int i = 0; i < 4; i++)
+    if (frame->step == marks[i]) counts[i] = allocations;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void RunCase(const char options[])
+{
+  static const char common[] = "-bodies left,right -time_end 5.2e-4 -time_step 1e-6 "
+                               "-left_dm_plex_dim 1 -left_dm_plex_box_faces 50 -left_dm_plex_box_lower -0.2503 -left_dm_plex_box_upper -3.5e-4 -left_density 1000 -left_youngs_modulus 1e9 -left_cross_section 1e-6 -left_initial_velocity 100 "
+                               "-right_dm_plex_dim 1 -right_dm_plex_box_faces 40 -right_dm_plex_box_lower 3.5e-4 -right_dm_plex_box_upper 0.2503 -right_density 1000 -right_youngs_modulus 1e9 -right_cross_section 1e-6 -right_initial_velocity -100 ";
+  Controller controller;
+
+  assert_int_equal(PetscOptionsClear(NULL), PETSC_SUCCESS);
+  assert_int_equal(PetscOptionsInsertString(NULL, common), PETSC_SUCCESS);
+  assert_int_equal(PetscOptionsInsertString(NULL, options), PETSC_SUCCESS);
+  assert_int_equal(ControllerCreate(PETSC_COMM_WORLD, &controller), PETSC_SUCCESS);
+  assert_int_equal(ControllerSetFromOptions(controller), PETSC_SUCCESS);
+  assert_int_equal(ControllerSetUp(controller), PETSC_SUCCESS);
+  assert_int_equal(ControllerMonitorSet(controller, Count, NULL, NULL), PETSC_SUCCESS);
+  assert_int_equal(ControllerSolve(controller), PETSC_SUCCESS);
+  assert_int_equal(ControllerDestroy(&controller), PETSC_SUCCESS);
+#if defined(__SANITIZE_ADDRESS__)
+  skip();
+#endif
+  assert_true(counts[0] > 0);
+  assert_int_equal(counts[1] - counts[0], 0);
+  assert_int_equal(counts[3] - counts[2], 0);
+}
+
+static void DefaultsDoNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("");
+}
+
+static void ExplicitDoesNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-left_ts_type centraldifference -right_ts_type centraldifference -right_ts_time_step 5e-7");
+}
+
+static void PaperDoesNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-schwarz_snes_type nrichardson -left_mass_type lumped -right_mass_type lumped -left_mass_redistribute 0 -right_mass_redistribute 0");
+}
+
+static void PenaltyDoesNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-contact_type penalty -contact_penalty 7.5e4");
+}
+
+static void LagrangeDoesNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-contact_type lagrange -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 -right_mass_redistribute 0");
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(DefaultsDoNotAllocate),
+    cmocka_unit_test(ExplicitDoesNotAllocate),
+    cmocka_unit_test(PaperDoesNotAllocate),
+    cmocka_unit_test(PenaltyDoesNotAllocate),
+    cmocka_unit_test(LagrangeDoesNotAllocate),
+  };
+  int failed;
+
+  if (ImpaktInitialize(&argc, &argv)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  if (ImpaktFinalize()) return 1;
+  return failed;
+}
