@@ -18,9 +18,10 @@ static PetscErrorCode CheckOptions(Controller controller)
 
 static PetscErrorCode Run(void)
 {
-  Controller controller;
-  Output     output;
-  PetscBool  list = PETSC_FALSE;
+  Controller     controller;
+  Output         output;
+  PetscErrorCode error;
+  PetscBool      list = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-help_options", &list, NULL));
@@ -35,7 +36,9 @@ static PetscErrorCode Run(void)
   PetscCall(OutputSetFromOptions(output));
   PetscCall(CheckOptions(controller));
   PetscCall(ControllerView(controller, PETSC_VIEWER_STDOUT_WORLD));
-  PetscCall(ControllerSolve(controller));
+  error = ControllerSolve(controller);
+  if (error) (void)OutputDestroy(&output); /* what was recorded until then helps to find out why */
+  PetscCall(error);
   PetscCall(OutputReport(output));
   PetscCall(OutputDestroy(&output));
   PetscCall(ControllerDestroy(&controller));

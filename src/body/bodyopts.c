@@ -17,10 +17,10 @@ static PetscErrorCode CreateMesh(Body body)
 {
   PetscFunctionBegin;
   PetscCall(DMCreate(PetscObjectComm((PetscObject)body), &body->dm));
-  PetscCall(PetscObjectSetName((PetscObject)body->dm, body->hdr.name));
   PetscCall(DMSetType(body->dm, DMPLEX));
   PetscCall(DMSetOptionsPrefix(body->dm, ((PetscObject)body)->prefix));
   PetscCall(DMSetFromOptions(body->dm));
+  PetscCall(PetscObjectSetName((PetscObject)body->dm, body->hdr.name)); /* error messages about surfaces name the mesh */
   PetscCall(DMGetCoordinateDim(body->dm, &body->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

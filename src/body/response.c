@@ -415,12 +415,12 @@ PetscErrorCode BodyPrepareSweeps(Body body)
 }
 
 /*@
-  BodyComputeForwardCompliance - displacement of the rows at the end of the controller step for unit forces at its start
+  BodyComputeForwardCompliance - displacement of the rows after one substep for unit forces at its start
 
   Collective
 
   Input Parameter:
-. body - an explicit `Body` without massless nodes and with one substep
+. body - an explicit `Body` without massless nodes
 
   Output Parameter:
 . matrix - dt^2 B M^{-1} B^T [m/N], all rows by all rows, on every rank; free it with `PetscFree()`

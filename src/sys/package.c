@@ -26,21 +26,38 @@ PetscErrorCode ImpaktRegisterAll(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Errors whose message says all that the user can do about them */
+static PetscBool IsUsersBusiness(PetscErrorCode code)
+{
+  switch (code) {
+  case PETSC_ERR_USER_INPUT:
+  case PETSC_ERR_ARG_UNKNOWN_TYPE:
+  case PETSC_ERR_NOT_CONVERGED:
+  case PETSC_ERR_FILE_OPEN:
+  case PETSC_ERR_FILE_WRITE:
+  case PETSC_ERR_FP:
+    return PETSC_TRUE;
+  default:
+    return PETSC_FALSE;
+  }
+}
+
 /* One line to the user in place of PETSc's stack trace; for what is not the user's fault, with the place in the source too */
 static PetscErrorCode ReportError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *ctx)
 {
-  PetscMPIInt rank = 0, size = 1;
+  PetscMPIInt rank = 0, size = 1, initialized = 0;
 
   (void)ctx;
   if (type != PETSC_ERROR_INITIAL) return code;
-  if (comm != MPI_COMM_NULL && comm != PETSC_COMM_SELF) MPI_Comm_rank(comm, &rank);
-  if (comm == PETSC_COMM_SELF) MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  MPI_Initialized(&initialized);
+  if (initialized && comm != MPI_COMM_NULL && comm != MPI_COMM_SELF) MPI_Comm_rank(comm, &rank);
+  if (initialized && comm == MPI_COMM_SELF) MPI_Comm_size(MPI_COMM_WORLD, &size);
   if (rank) return code;
   if (size > 1) {
-    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     fprintf(stderr, "impakt: error on rank %d: %s\n", rank, message ? message : "");
   } else fprintf(stderr, "impakt: error: %s\n", message ? message : "");
-  if (code != PETSC_ERR_USER_INPUT && code != PETSC_ERR_ARG_UNKNOWN_TYPE && code != PETSC_ERR_NOT_CONVERGED && code != PETSC_ERR_FILE_OPEN && code != PETSC_ERR_FP) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
+  if (!IsUsersBusiness(code)) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
   fflush(stderr);
   return code;
 }
@@ -61,8 +78,8 @@ static PetscErrorCode ReportError(MPI_Comm comm, int line, const char *function,
 PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
 {
   PetscFunctionBegin;
+  PetscCall(PetscPushErrorHandler(ReportError, NULL)); /* first, for what is wrong with the options file */
   PetscCall(PetscInitialize(argc, argv, NULL, help));
-  PetscCall(PetscPushErrorHandler(ReportError, NULL));
   PetscCall(ImpaktRegisterAll());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,6 +100,7 @@ PetscErrorCode ImpaktFinalize(void)
   PetscCall(BodyFinalizePackage());
   PetscCall(PetscPopErrorHandler());
   PetscCall(PetscFinalize());
+  /* PetscFunctionReturn() would need PETSc */
   return PETSC_SUCCESS;
 }
 

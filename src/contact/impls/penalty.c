@@ -151,11 +151,38 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The spring alone, between the masses of explicit bodies, must be stable: tau A dt^2 B M^{-1} B^T < 4 */
+static PetscErrorCode CheckStability(Contact contact)
+{
+  Penalty    *penalty = (Penalty *)contact->data;
+  PetscReal  *compliance, worst = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(contact->n_rows, &compliance));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool    is_explicit, massless;
+    PetscScalar *forward;
+
+    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
+    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
+    if (!is_explicit || massless) continue;
+    PetscCall(BodyComputeForwardCompliance(contact->bodies[b], &forward));
+    for (PetscInt i = 0; i < contact->n_rows; i++) compliance[i] += forward[(contact->row_begin + i) * (contact->n_all_rows + 1)];
+    PetscCall(PetscFree(forward));
+  }
+  for (PetscInt i = 0; i < contact->n_rows; i++) worst = PetscMax(worst, compliance[i] * contact->area[i]);
+  PetscCall(PetscFree(compliance));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCheck(penalty->penalty * worst < 4, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_penalty %g is too stiff for the explicit steps: above %.4g the contact springs are unstable; choose a smaller one, or smaller time steps", (double)penalty->penalty, (double)(4 / worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactSetUp_Penalty(Contact contact)
 {
   Penalty *penalty = (Penalty *)contact->data;
 
   PetscFunctionBegin;
+  PetscCall(CheckStability(contact));
   PetscCall(OuterSolverCreate(contact, "penalty_", contact->n_rows, ComputeResidual, ComputeJacobian, &penalty->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, 1e-14, 1e-9, 50));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));

@@ -1,0 +1,258 @@
+/* Surfaces: which faces a name means, their areas and normals. */
+#include "simulation.h"
+
+/* [0,1] x [0,2] x [0,3] as far as it has dimensions */
+static DM CreateBox(PetscInt dim, const char faces[], PetscBool simplex)
+{
+  const char *const upper[] = {"1", "1,2", "1,2,3"}, *const lower[] = {"0", "0,0", "0,0,0"};
+
+  return CreateBoxMesh("box", dim, faces, lower[dim - 1], upper[dim - 1], simplex);
+}
+
+static PetscReal TotalArea(const SurfaceData *data)
+{
+  PetscReal sum = 0;
+
+  for (PetscInt i = 0; i < data->n_nodes; i++) sum += data->areas[i];
+  return sum;
+}
+
+/* Each end of a line is a node and a face of area 1 with its normal away from the other end */
+static void CheckEnd(const SurfaceData *data, PetscInt node, PetscReal position, PetscReal normal)
+{
+  assert_near(data->positions[node], position, 1e-15); /* a corner of the box, but for one rounding */
+  assert_near(data->areas[node], 1, 0);
+  assert_near(data->normals[node], normal, 0);
+  assert_near(data->face_normals[node], normal, 0);
+  assert_int_equal(data->faces[node], node);
+}
+
+static void line_ends_by_name(void **state)
+{
+  const char *const  names[]     = {"xmin", "xmax", "1", "2"}; /* PETSc puts the ends of a line into face sets 1 and 2 */
+  const PetscReal    positions[] = {0, 1, 0, 1}, normals[] = {-1, 1, -1, 1};
+  const SurfaceData *data;
+  Surface            surface;
+  DM                 dm = CreateBox(1, "5", PETSC_TRUE);
+
+  (void)state;
+  for (PetscInt i = 0; i < 4; i++) {
+    CHECK(SurfaceCreate(dm, names[i], &surface));
+    CHECK(SurfaceGetData(surface, &data));
+    assert_int_equal(data->dim, 1);
+    assert_int_equal(data->face_nodes, 1);
+    assert_int_equal(data->n_nodes, 1);
+    assert_int_equal(data->n_faces, 1);
+    CheckEnd(data, 0, positions[i], normals[i]);
+    assert_near(data->lower[0], 0, 0);
+    assert_near(data->upper[0], 1, 0);
+    CHECK(SurfaceDestroy(&surface));
+    assert_null(surface);
+  }
+  CHECK(DMDestroy(&dm));
+}
+
+static void whole_boundary_of_a_line(void **state)
+{
+  const char *const  names[] = {NULL, "", "marker"}; /* PETSc labels the whole boundary of its boxes "marker" */
+  const SurfaceData *data;
+  Surface            surface;
+  DM                 dm = CreateBox(1, "5", PETSC_TRUE);
+
+  (void)state;
+  for (PetscInt i = 0; i < 3; i++) {
+    CHECK(SurfaceCreate(dm, names[i], &surface));
+    CHECK(SurfaceGetData(surface, &data));
+    assert_int_equal(data->n_nodes, 2);
+    assert_int_equal(data->n_faces, 2);
+    assert_true(data->dofs[0] < data->dofs[1]);
+    for (PetscInt node = 0; node < 2; node++) {
+      const PetscBool left = (PetscBool)(data->positions[node] < 0.5);
+
+      CheckEnd(data, node, left ? 0 : 1, left ? -1 : 1);
+    }
+    assert_near(data->positions[0] + data->positions[1], 1, 1e-15);
+    CHECK(SurfaceDestroy(&surface));
+  }
+  CHECK(DMDestroy(&dm));
+}
+
+/* A label that somebody put on the mesh, with any values */
+static void faces_of_a_label(void **state)
+{
+  const SurfaceData *data;
+  Surface            surface;
+  DMLabel            label, sets;
+  IS                 points;
+  DM                 dm = CreateBox(1, "5", PETSC_TRUE);
+
+  (void)state;
+  CHECK(DMCreateLabel(dm, "nose"));
+  CHECK(DMGetLabel(dm, "nose", &label));
+  CHECK(DMGetLabel(dm, "Face Sets", &sets));
+  CHECK(DMLabelGetStratumIS(sets, 2, &points));
+  CHECK(DMLabelSetStratumIS(label, 7, points));
+  CHECK(ISDestroy(&points));
+  CHECK(SurfaceCreate(dm, "nose", &surface));
+  CHECK(SurfaceGetData(surface, &data));
+  assert_int_equal(data->n_nodes, 1);
+  CheckEnd(data, 0, 1, 1);
+  CHECK(SurfaceDestroy(&surface));
+  CHECK(DMDestroy(&dm));
+}
+
+/* The side at 0 or 1, 2, 3 of one axis: its area is the product of the other two lengths, its normal along the axis */
+static void CheckSides(DM dm, PetscInt dim, PetscInt face_nodes, const PetscInt faces[])
+{
+  const char *const  names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+  const SurfaceData *data;
+  Surface            surface;
+
+  for (PetscInt side = 0; side < 2 * dim; side++) {
+    const PetscInt  axis = side / 2;
+    const PetscReal sign = side % 2 ? 1 : -1;
+    PetscReal       area = 1;
+
+    for (PetscInt d = 0; d < dim; d++) area *= d == axis ? 1 : d + 1;
+    CHECK(SurfaceCreate(dm, names[side], &surface));
+    CHECK(SurfaceGetData(surface, &data));
+    assert_int_equal(data->face_nodes, face_nodes);
+    assert_int_equal(data->n_faces, faces[axis]);
+    assert_near(TotalArea(data), area, 1e-14); /* round-off of a few additions of numbers of size 1 */
+    for (PetscInt i = 0; i < data->n_nodes; i++) {
+      assert_near(data->positions[i * dim + axis], sign > 0 ? axis + 1 : 0, 1e-14);
+      for (PetscInt d = 0; d < dim; d++) assert_near(data->normals[i * dim + d], d == axis ? sign : 0, 1e-14);
+    }
+    for (PetscInt f = 0; f < data->n_faces; f++)
+      for (PetscInt d = 0; d < dim; d++) assert_near(data->face_normals[f * dim + d], d == axis ? sign : 0, 1e-14);
+    for (PetscInt d = 0; d < dim; d++) {
+      assert_near(data->lower[d], 0, 0);
+      assert_near(data->upper[d], d + 1, 0);
+    }
+    CHECK(SurfaceDestroy(&surface));
+  }
+}
+
+/* All sides: nodes on edges and corners belong to several, and their normals point between them */
+static void CheckWholeBoundary(DM dm, PetscInt dim, PetscReal area, PetscInt nodes)
+{
+  const SurfaceData *data;
+  Surface            surface;
+
+  CHECK(SurfaceCreate(dm, NULL, &surface));
+  CHECK(SurfaceGetData(surface, &data));
+  assert_int_equal(data->n_nodes, nodes);
+  assert_near(TotalArea(data), area, 1e-13);
+  for (PetscInt i = 0; i < data->n_nodes; i++) {
+    PetscReal length = 0;
+
+    for (PetscInt d = 0; d < dim; d++) {
+      const PetscReal x = data->positions[i * dim + d], n = data->normals[i * dim + d];
+
+      length += n * n;
+      /* outward: away from the sides that the node lies on, and along none of the others */
+      if (x < 1e-12) assert_true(n < 0);
+      else if (x > d + 1 - 1e-12) assert_true(n > 0);
+      else assert_near(n, 0, 1e-14);
+    }
+    assert_near(length, 1, 1e-14);
+    if (i) assert_true(data->dofs[i] > data->dofs[i - 1]);
+  }
+  CHECK(SurfaceDestroy(&surface));
+}
+
+static void sides_of_a_rectangle(void **state)
+{
+  const PetscInt faces[] = {3, 2}; /* a side has the elements of the other direction */
+
+  (void)state;
+  for (PetscInt simplex = 0; simplex < 2; simplex++) {
+    DM dm = CreateBox(2, "2,3", (PetscBool)simplex);
+
+    CheckSides(dm, 2, 2, faces);
+    CheckWholeBoundary(dm, 2, 6, 10); /* perimeter 2 (1 + 2); as many nodes as edges, 2 (2 + 3) */
+    CHECK(DMDestroy(&dm));
+  }
+}
+
+static void sides_of_a_hexahedral_box(void **state)
+{
+  const PetscInt faces[] = {6, 6, 4}; /* 2 x 2 x 3 elements */
+  DM             dm      = CreateBox(3, "2,2,3", PETSC_FALSE);
+
+  (void)state;
+  CheckSides(dm, 3, 4, faces);
+  CheckWholeBoundary(dm, 3, 22, 34); /* 2 (2 + 3 + 6); 3 x 3 x 4 nodes less the 1 x 1 x 2 inner ones */
+  CHECK(DMDestroy(&dm));
+}
+
+/* A node's vertex is on the ranks that have it, and on one at least */
+static void vertices_of_nodes(void **state)
+{
+  const PetscInt     nodes[] = {0, 1};
+  PetscInt           n, *vertices;
+  const SurfaceData *data;
+  Surface            surface;
+  int                found = 0;
+  DM                 dm    = CreateBox(1, "5", PETSC_TRUE);
+
+  (void)state;
+  CHECK(SurfaceCreate(dm, NULL, &surface));
+  CHECK(SurfaceGetData(surface, &data));
+  CHECK(SurfaceGetVertices(surface, 2, nodes, &n, &vertices));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscInt supports;
+
+    CHECK(DMPlexGetSupportSize(dm, vertices[i], &supports));
+    assert_int_equal(supports, 1); /* an end of the line */
+  }
+  found = (int)n;
+  CHECK(PetscFree(vertices));
+  MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  assert_int_equal(found, 2); /* with one element to each rank at least, no rank but its own has an end */
+  CHECK(SurfaceDestroy(&surface));
+  CHECK(DMDestroy(&dm));
+}
+
+static void unknown_names_are_refused(void **state)
+{
+  const char *const names[]    = {"nose", "zmin", "99", "1x"}; /* no label, beyond the dimension, no such set, no number */
+  Simulation       *simulation = (Simulation *)*state;
+  Surface           surface;
+  DM                dm = CreateBox(1, "5", PETSC_TRUE);
+
+  for (PetscInt i = 0; i < 4; i++) {
+    expect_error(simulation, SurfaceCreate(dm, names[i], &surface), PETSC_ERR_USER_INPUT);
+    assert_message(simulation, names[i]);
+    assert_message(simulation, "'box'");
+    CHECK(SurfaceDestroy(&surface));
+  }
+  CHECK(DMDestroy(&dm));
+}
+
+/* A label that marks no boundary face is no surface */
+static void empty_surfaces_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  Surface     surface;
+  DM          dm = CreateBox(1, "5", PETSC_TRUE);
+
+  CHECK(DMCreateLabel(dm, "nowhere"));
+  expect_error(simulation, SurfaceCreate(dm, "nowhere", &surface), PETSC_ERR_USER_INPUT);
+  assert_message(simulation, "'nowhere'");
+  CHECK(SurfaceDestroy(&surface));
+  CHECK(DMDestroy(&dm));
+}
+
+static const struct CMUnitTest tests[] = {
+  simulation_test(line_ends_by_name),
+  simulation_test(whole_boundary_of_a_line),
+  simulation_test(faces_of_a_label),
+  simulation_test(sides_of_a_rectangle),
+  simulation_test(sides_of_a_hexahedral_box),
+  simulation_test(vertices_of_nodes),
+  simulation_test(unknown_names_are_refused),
+  simulation_test(empty_surfaces_are_refused),
+};
+
+SIMULATION_MAIN(tests)
