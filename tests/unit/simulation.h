@@ -64,7 +64,7 @@ static inline void AddBar(const char name[], PetscReal lower, PetscReal upper, P
   AddOptions(options);
 }
 
-/* A box with a block of displacements at each vertex, as a body's mesh has it */
+/* A box of boxes, or of triangles in two dimensions, with a block of displacements at each vertex, as a body's mesh has it */
 static inline DM CreateBoxMesh(const char name[], PetscInt dim, const char faces[], const char lower[], const char upper[], PetscBool simplex)
 {
   PetscSection section;
@@ -72,8 +72,10 @@ static inline DM CreateBoxMesh(const char name[], PetscInt dim, const char faces
   char         options[512];
   DM           dm;
 
-  CHECK(PetscSNPrintf(options, sizeof(options), "-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s -dm_plex_simplex %d", (int)dim, faces, lower, upper, (int)simplex));
+  CHECK(PetscSNPrintf(options, sizeof(options), "-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s -dm_plex_simplex 0", (int)dim, faces, lower, upper));
   AddOptions(options);
+  /* each quadrilateral cut into two triangles: PETSc alone has no generator of triangles */
+  if (simplex && dim > 1) AddOptions("-dm_plex_transform_type refine_tosimplex -dm_refine 1");
   CHECK(DMCreate(PETSC_COMM_WORLD, &dm));
   CHECK(PetscObjectSetName((PetscObject)dm, name));
   CHECK(DMSetType(dm, DMPLEX));
