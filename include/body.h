@@ -141,6 +141,7 @@ PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *
 PETSC_EXTERN PetscErrorCode BodyComputeResponse(Body, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyPrepareSweeps(Body);
 PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
+PETSC_EXTERN PetscErrorCode BodyGetWaveformResponse(Body, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyGetRateResponse(Body, const PetscScalar *[], const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, PetscScalar *[]);

@@ -5,7 +5,8 @@
    substep the whole end state is affine in the inputs, so that repeated sweeps of a controller step add columns instead of
    solving again.
 
-   The inputs of a row rise linearly from zero to one over the controller step.
+   The body is probed once for each input, by a hat: one at the end of the first substep, zero at the start and from the second
+   substep on. Since the body does not change with time, what comes out k substeps after the hat is the same wherever it stands.
 */
 #include "bodyimpl.h"
 
@@ -34,8 +35,10 @@ struct _BodyResponse {
   BodyCondition *conditions;
   PetscBool    window_valid; /* the present end state came from `inputs` */
   PetscBool    condensed;    /* columns hold states */
-  PetscScalar *matrix, *rate_matrix[2]; /* for displacements and forces; for velocities and accelerations: all rows by all
-                                           rows, by columns; reaction of prescribed, displacement of other rows */
+  /* all rows by all rows, by columns: reaction of prescribed, displacement of other rows, for displacements and forces */
+  PetscScalar *waveform;       /* at the end of each substep, for a hat in the first: substeps of them */
+  PetscScalar *matrix;         /* at the end of the controller step, for inputs that rise linearly over it */
+  PetscScalar *rate_matrix[2]; /* for velocities and accelerations, with one substep */
   PetscInt     n_columns;
   Column      *columns;      /* at most 3 for each row */
   PetscScalar *inputs, *new_inputs; /* of all rows on every rank, 4 kinds each */
@@ -58,7 +61,7 @@ PetscErrorCode BodyDestroyResponse(Body body)
   }
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDestroy(&response->backup[k]));
   PetscCall(PetscFree2(response->backup_traces, response->kinds));
-  PetscCall(PetscFree3(response->matrix, response->rate_matrix[0], response->rate_matrix[1]));
+  PetscCall(PetscFree4(response->waveform, response->matrix, response->rate_matrix[0], response->rate_matrix[1]));
   PetscCall(PetscFree5(response->columns, response->inputs, response->new_inputs, response->mine, response->conditions));
   PetscCall(PetscFree(body->response));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -161,20 +164,13 @@ static PetscErrorCode SetUnitInput(Body body, PetscInt row, InputKind kind)
 {
   const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
   const PetscInt local    = row - body->rows.begin;
+  PetscScalar   *values;
 
   PetscFunctionBegin;
   for (PetscInt t = 0; t < 4; t++) PetscCall(TraceZero(traces[t]));
   if (local < 0 || local >= body->rows.local) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt level = 1; level <= body->substeps; level++) {
-    PetscScalar *values;
-
-    PetscCall(TraceGetLevel(traces[kind], level, &values));
-    values[local] = (PetscReal)level / body->substeps;
-    if (kind == INPUT_DISPLACEMENT && body->substeps > 1) {
-      PetscCall(TraceGetLevel(body->traces.velocity_in, level, &values));
-      values[local] = 1 / body->controller_step;
-    }
-  }
+  PetscCall(TraceGetLevel(traces[kind], 1, &values));
+  values[local] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,8 +202,14 @@ static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
   PetscCall(BodyRestore(body));
   PetscCall(BodyIntegrateWindow(body));
   body->total_substeps -= body->substeps;
-  for (PetscInt t = 0; t < 4; t++) PetscCall(TraceGetLevel(traces[t], body->substeps, &outputs[t]));
-  PetscCall(GatherOutputs(body, outputs[0], outputs[3], kind == INPUT_VELOCITY ? response->rate_matrix[0] : kind == INPUT_ACCELERATION ? response->rate_matrix[1] : response->matrix, row));
+  for (PetscInt level = 1; level <= body->substeps; level++) {
+    PetscScalar *matrix = response->waveform + (level - 1) * body->rows.global * body->rows.global;
+
+    for (PetscInt t = 0; t < 4; t++) PetscCall(TraceGetLevel(traces[t], level, &outputs[t]));
+    if (kind == INPUT_VELOCITY) matrix = response->rate_matrix[0];
+    if (kind == INPUT_ACCELERATION) matrix = response->rate_matrix[1];
+    PetscCall(GatherOutputs(body, outputs[0], outputs[3], matrix, row));
+  }
   if (!response->condensed) PetscFunctionReturn(PETSC_SUCCESS);
   column       = &response->columns[response->n_columns++];
   column->row  = row;
@@ -234,7 +236,7 @@ static PetscErrorCode CreateResponse(Body body)
   response = body->response;
   PetscCall(MaterialIsLinear(body->material, &linear));
   response->condensed = (PetscBool)(linear && body->substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
-  PetscCall(PetscCalloc3(rows->global * rows->global, &response->matrix, rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
+  PetscCall(PetscCalloc4(body->substeps * rows->global * rows->global, &response->waveform, rows->global * rows->global, &response->matrix, rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
   PetscCall(PetscCalloc5(3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs, 4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
   PetscCall(PetscMalloc2(8 * (body->substeps + 1) * rows->local, &response->backup_traces, rows->global, &response->kinds));
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDuplicate(body->state.u, &response->backup[k]));
@@ -337,6 +339,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   if (response->valid) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
   response->n_columns = 0;
+  PetscCall(PetscArrayzero(response->waveform, body->substeps * rows->global * rows->global));
   PetscCall(PetscArrayzero(response->matrix, rows->global * rows->global));
   for (PetscInt k = 0; k < 2; k++) PetscCall(PetscArrayzero(response->rate_matrix[k], rows->global * rows->global));
   PetscCall(BeginProbing(body, &clock));
@@ -355,9 +358,41 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
     PetscCall(Probe(body, row, INPUT_ACCELERATION));
   }
   PetscCall(EndProbing(body, &clock));
+  /* a linear rise is a sum of hats */
+  for (PetscInt level = 1; level <= body->substeps; level++)
+    for (PetscInt i = 0; i < rows->global * rows->global; i++) response->matrix[i] += (PetscReal)level / body->substeps * response->waveform[(body->substeps - level) * rows->global * rows->global + i];
   PetscCall(PetscArraycpy(response->conditions, body->conditions, rows->local));
   response->made = response->valid = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetWaveformResponse - what comes out of the rows in the course of the controller step, for an input at the end of its first
+  substep alone
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodyComputeResponse()`
+
+  Output Parameter:
+. matrices - one for each substep, each laid out as the matrix of `BodyComputeResponse()`; owned by the body
+
+  Level: developer
+
+  Note:
+  The output at the end of substep k for an input at the end of substep l is matrix k - l. Velocities and accelerations that go
+  with a prescribed displacement are left out.
+
+.seealso: `Body`, `BodyComputeResponse()`
+@*/
+PetscErrorCode BodyGetWaveformResponse(Body body, const PetscScalar *matrices[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->response && body->response->valid, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyComputeResponse() first");
+  *matrices = body->response->waveform;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,56 +1,135 @@
 /*
    The Jacobian of x - G(x) by the interface compliance of the bodies: a sweep is a chain of the responses of each body, so its
-   derivative is the same chain with unit vectors put in. Exact for linear bodies where no pair has more than one level; else
-   each level is treated as if it were the end of the controller step.
+   derivative is the same chain with unit waveforms put in. Exact for linear bodies, but for the velocity and acceleration of
+   nodes with mass that are prescribed in several substeps.
 */
 #include "schwarzimpl.h"
 
-/* What the velocity and acceleration that go with a displacement of a prescribed row add to the output of its body */
-static PetscErrorCode AddKinematics(Contact contact, PetscInt b, PetscInt row, PetscScalar input)
+/* Waveforms of all rows at the substeps of each body, and of each pair at its unknowns, for the chain */
+PetscErrorCode SchwarzSetUpNewton(Contact contact)
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[contact->all_row_pair[row]];
-  const PetscInt     n       = contact->n_all_rows;
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->responses, contact->n_bodies, &schwarz->body_in, contact->n_bodies, &schwarz->body_out, contact->n_pairs, &schwarz->unit));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt substeps;
+
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    PetscCall(TraceCreate(contact->n_all_rows, substeps, &schwarz->body_in[b]));
+    PetscCall(TraceCreate(contact->n_all_rows, substeps, &schwarz->body_out[b]));
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceCreate(contact->n_all_rows, schwarz->levels[p], &schwarz->unit[p]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchwarzDestroyNewton(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  if (!schwarz->responses) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(TraceDestroy(&schwarz->body_in[b]));
+    PetscCall(TraceDestroy(&schwarz->body_out[b]));
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->unit[p]));
+  PetscCall(PetscFree4(schwarz->responses, schwarz->body_in, schwarz->body_out, schwarz->unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the velocity and acceleration that go with a displacement of a prescribed row add to the output of its body */
+static PetscErrorCode AddKinematics(Contact contact, PetscInt b, PetscInt row, PetscScalar input, PetscScalar out[])
+{
+  const ContactPair *pair = &contact->pairs[contact->all_row_pair[row]];
+  const PetscInt     n    = contact->n_all_rows;
   const PetscScalar *velocity, *acceleration;
   PetscReal          dv, da, unused;
 
   PetscFunctionBegin;
   PetscCall(BodyGetNewmark(contact->bodies[pair->body[1]], &dv, &unused, &unused, &da, &unused, &unused));
   PetscCall(BodyGetRateResponse(contact->bodies[b], &velocity, &acceleration));
-  for (PetscInt i = 0; i < n; i++) schwarz->out[i] += input * (dv * velocity[row * n + i] + da * acceleration[row * n + i]);
+  for (PetscInt i = 0; i < n; i++) out[i] += input * (dv * velocity[row * n + i] + da * acceleration[row * n + i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Column j of dG/dx: a unit displacement on row j goes through the sweep */
-static PetscErrorCode LinearSweep(Contact contact, const PetscScalar *responses[], PetscInt j, PetscScalar column[])
+/* Output of a body at rest for the input waveforms of its active rows */
+static PetscErrorCode Respond(Contact contact, PetscInt b)
 {
   Schwarz       *schwarz = (Schwarz *)contact->data;
   const PetscInt n       = contact->n_all_rows;
+  PetscInt       substeps;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(schwarz->traction_in, n));
-  PetscCall(PetscArrayzero(column, n));
+  PetscCall(TraceGetSizes(schwarz->body_in[b], NULL, &substeps));
+  PetscCall(TraceZero(schwarz->body_out[b]));
+  for (PetscInt l = 1; l <= substeps; l++) {
+    PetscScalar *in, *out;
+
+    PetscCall(TraceGetLevel(schwarz->body_in[b], l, &in));
+    for (PetscInt row = 0; row < n; row++) {
+      const PetscInt p = contact->all_row_pair[row];
+
+      if (in[row] == 0) continue;
+      for (PetscInt k = l; k <= substeps; k++) {
+        const PetscScalar *matrix = schwarz->responses[b] + (k - l) * n * n;
+
+        PetscCall(TraceGetLevel(schwarz->body_out[b], k, &out));
+        for (PetscInt i = 0; i < n; i++) out[i] += in[row] * matrix[row * n + i];
+        if (contact->pairs[p].body[0] == b && schwarz->kinematic[p]) PetscCall(AddKinematics(contact, b, row, in[row], out));
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A unit at one level of row j goes through the sweep; the result is left in the outputs of the Neumann sides */
+static PetscErrorCode LinearSweep(Contact contact, PetscInt j, PetscInt level)
+{
+  Schwarz       *schwarz = (Schwarz *)contact->data;
+  const PetscInt n       = contact->n_all_rows;
+  PetscScalar   *unit;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceZero(schwarz->unit[p]));
+  PetscCall(TraceGetLevel(schwarz->unit[contact->all_row_pair[j]], level, &unit));
+  unit[j] = 1;
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     const PetscInt b = contact->order[k];
 
-    PetscCall(PetscArrayzero(schwarz->out, n));
+    PetscCall(TraceZero(schwarz->body_in[b]));
     for (PetscInt row = 0; row < n; row++) {
-      const ContactPair *pair  = &contact->pairs[contact->all_row_pair[row]];
-      PetscScalar        input = 0;
+      const PetscInt     p    = contact->all_row_pair[row];
+      const ContactPair *pair = &contact->pairs[p];
 
       if (!contact->all_active[row]) continue;
-      if (pair->body[0] == b) input = row == j;
-      else if (pair->body[1] == b) input = schwarz->traction_in[row];
-      if (input == 0) continue;
-      for (PetscInt i = 0; i < n; i++) schwarz->out[i] += input * responses[b][row * n + i];
-      if (pair->body[0] == b && schwarz->kinematic[contact->all_row_pair[row]]) PetscCall(AddKinematics(contact, b, row, input));
+      if (pair->body[0] == b) PetscCall(TraceResample(schwarz->unit[p], row, row + 1, 1, schwarz->body_in[b]));
+      if (pair->body[1] == b) PetscCall(TraceResample(schwarz->body_out[pair->body[0]], row, row + 1, -1, schwarz->body_in[b]));
     }
-    for (PetscInt row = 0; row < n; row++) {
-      const ContactPair *pair = &contact->pairs[contact->all_row_pair[row]];
+    PetscCall(Respond(contact, b));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-      if (!contact->all_active[row]) continue;
-      if (pair->body[0] == b) schwarz->traction_in[row] = -schwarz->out[row];
-      if (pair->body[1] == b) column[row] = schwarz->out[row];
+/* Column of I - dG/dx for row j at a level: the rows of this rank */
+static PetscErrorCode SetColumn(Contact contact, PetscInt j, PetscInt level, Mat J)
+{
+  Schwarz       *schwarz = (Schwarz *)contact->data;
+  const PetscInt column  = schwarz->all_offset[j] + level - 1;
+
+  PetscFunctionBegin;
+  for (PetscInt local = 0; local < contact->n_rows; local++) {
+    const PetscInt i = contact->row_begin + local, p = contact->all_row_pair[i], levels = schwarz->levels[p];
+    Trace          from = schwarz->body_out[contact->pairs[p].body[1]];
+    PetscInt       from_levels;
+    PetscScalar   *out;
+
+    PetscCall(TraceGetSizes(from, NULL, &from_levels));
+    for (PetscInt k = 1; k <= levels; k++) {
+      const PetscBool both = (PetscBool)(contact->all_active[i] && contact->all_active[j]);
+
+      PetscCall(TraceGetLevel(from, levels == 1 ? from_levels : k, &out));
+      PetscCall(MatSetValue(J, schwarz->all_offset[i] + k - 1, column, (i == j && k == level ? 1 : 0) - (both ? out[i] : 0), INSERT_VALUES));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -59,10 +138,8 @@ static PetscErrorCode LinearSweep(Contact contact, const PetscScalar *responses[
 /* I - dG/dx on active rows, I on the others */
 PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 {
-  Contact             contact = (Contact)ctx;
-  Schwarz            *schwarz = (Schwarz *)contact->data;
-  const PetscInt      n       = contact->n_all_rows;
-  const PetscScalar **responses = schwarz->responses;
+  Contact  contact = (Contact)ctx;
+  Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
   (void)snes;
@@ -70,26 +147,15 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   (void)P;
   if (!schwarz->stale) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactGatherActive(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeResponse(contact->bodies[b], &responses[b]));
-  for (PetscInt j = 0; j < n; j++) {
-    if (contact->all_active[j]) PetscCall(LinearSweep(contact, responses, j, schwarz->gain + j * n));
-    else PetscCall(PetscArrayzero(schwarz->gain + j * n, n));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodyComputeResponse(contact->bodies[b], &schwarz->responses[b]));
+    PetscCall(BodyGetWaveformResponse(contact->bodies[b], &schwarz->responses[b]));
   }
-  for (PetscInt local = 0; local < contact->n_rows; local++) {
-    const PetscInt i = contact->row_begin + local, levels_i = schwarz->levels[contact->all_row_pair[i]];
-
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscInt levels_j = schwarz->levels[contact->all_row_pair[j]];
-
-      for (PetscInt level_i = 0; level_i < levels_i; level_i++)
-        for (PetscInt level_j = 0; level_j < levels_j; level_j++) {
-          const PetscBool together = (PetscBool)(levels_i == levels_j ? level_i == level_j : level_i == levels_i - 1 && level_j == levels_j - 1);
-          const PetscScalar value  = (i == j && level_i == level_j ? 1 : 0) - (together ? schwarz->gain[j * n + i] : 0);
-
-          if (together || value != 0) PetscCall(MatSetValue(J, schwarz->all_offset[i] + level_i, schwarz->all_offset[j] + level_j, value, INSERT_VALUES));
-        }
+  for (PetscInt j = 0; j < contact->n_all_rows; j++)
+    for (PetscInt level = 1; level <= schwarz->levels[contact->all_row_pair[j]]; level++) {
+      if (contact->all_active[j]) PetscCall(LinearSweep(contact, j, level));
+      PetscCall(SetColumn(contact, j, level, J));
     }
-  }
   PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
   schwarz->stale = PETSC_FALSE;

@@ -48,7 +48,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   begin -= *unknowns;
   PetscCall(PetscMalloc1(contact->n_rows, &mine));
   for (PetscInt i = 0; i < contact->n_rows; i++) mine[i] = begin + schwarz->offset[i];
-  PetscCall(PetscCalloc6(contact->n_all_rows, &schwarz->all_offset, contact->n_bodies, &schwarz->responses, contact->n_all_rows, &schwarz->traction_in, contact->n_all_rows, &schwarz->out, contact->n_all_rows * contact->n_all_rows, &schwarz->gain, contact->n_rows, &schwarz->jacobian_active));
+  PetscCall(PetscCalloc2(contact->n_all_rows, &schwarz->all_offset, contact->n_rows, &schwarz->jacobian_active));
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
   PetscCall(PetscMalloc2((MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force));
@@ -105,6 +105,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
   PetscCall(SetUpUnknowns(contact, &unknowns));
+  PetscCall(SchwarzSetUpNewton(contact));
   PetscCall(SetUpReactionTraction(contact));
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
@@ -305,7 +306,8 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(PetscFree4(schwarz->levels, schwarz->trace, schwarz->offset, schwarz->kinematic));
-  PetscCall(PetscFree6(schwarz->all_offset, schwarz->responses, schwarz->traction_in, schwarz->out, schwarz->gain, schwarz->jacobian_active));
+  PetscCall(PetscFree2(schwarz->all_offset, schwarz->jacobian_active));
+  PetscCall(SchwarzDestroyNewton(contact));
   PetscCall(PetscFree2(schwarz->tried, schwarz->kept_force));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -34,9 +34,9 @@ typedef struct {
   PetscBool        stale;       /* the Jacobian belongs to another active set */
   PetscBool       *jacobian_active; /* per row: the set that it belongs to */
   PetscInt        *all_offset;  /* per row, all ranks: its first unknown */
-  PetscScalar     *traction_in, *out; /* work space of the Jacobian: all rows */
-  const PetscScalar **responses; /* per body */
-  PetscScalar     *gain;        /* dG/dx at the end of the step, all rows by all rows */
+  const PetscScalar **responses; /* per body: its waveform response */
+  Trace           *body_in, *body_out; /* per body: waveforms of all rows, on every rank */
+  Trace           *unit;        /* per pair: a unit at one of its unknowns */
   PetscReal        change, position; /* of the last sweep: the body with the worst ratio */
   PetscBool        converged;
   PetscReal        damping;     /* Aitken: relaxation of the last iteration */
@@ -48,6 +48,8 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
 PETSC_INTERN PetscErrorCode SchwarzStartTraces(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetUpNewton(Contact);
+PETSC_INTERN PetscErrorCode SchwarzDestroyNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzSetUpAitken(Contact);
 PETSC_INTERN PetscErrorCode SchwarzTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
