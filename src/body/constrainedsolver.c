@@ -12,6 +12,7 @@
 
 struct _n_ConstrainedSolver {
   KSP          ksp;
+  PC           direct;               /* the preconditioner where it is the whole solver, else NULL */
   Mat          B;
   PetscInt     local, global, begin; /* rows of B */
   PetscMPIInt *counts, *offsets;
@@ -65,6 +66,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
   PetscMPIInt       size;
   PetscInt          n;
+  PetscBool         direct;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
@@ -77,6 +79,8 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
   PetscCall(ChooseFactorisation(s->ksp, n));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(KSPSetUp(s->ksp));
+  PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));
+  if (direct) PetscCall(KSPGetPC(s->ksp, &s->direct));
 
   PetscCall(PetscObjectReference((PetscObject)B));
   s->B = B;
@@ -183,7 +187,8 @@ PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
   PetscBLASInt n, one = 1, info;
 
   PetscFunctionBegin;
-  PetscCall(KSPSolve(s->ksp, b, x));
+  if (s->direct) PetscCall(PCApply(s->direct, b, x));
+  else PetscCall(KSPSolve(s->ksp, b, x));
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GatherRows(s, x));
   for (PetscInt i = 0; i < s->n; i++) s->force[i] = -s->gathered[s->rows[i]];

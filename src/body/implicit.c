@@ -114,6 +114,7 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_TRUE));
   PetscCall(SNESGetLineSearch(snes, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHNONE));
+  PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */
   PetscCall(SNESGetKSP(snes, &ksp));
   /* the user's -<body>_ksp_... options are for the solver with the factors, inside */
   PetscCall(PetscSNPrintf(outer, sizeof(outer), "%sconstrained_", prefix));

@@ -2,8 +2,9 @@
 #include "element.h"
 
 typedef struct {
-  PetscReal  cross_section; /* m^2 */
-  PetscReal *length;        /* signed: coordinate of the second node less that of the first [m] */
+  PetscReal  cross_section;  /* m^2 */
+  PetscReal *inverse_length; /* of the coordinate of the second node less that of the first, so it may be negative [1/m] */
+  PetscReal *pull_area;      /* cross-section, with the sign of the length: an element may run against the axis [m^2] */
   PetscReal *strain, *stress;
 } Bar2;
 
@@ -24,12 +25,14 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
   Bar2 *bar = (Bar2 *)element->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(element->count, &bar->length, element->count, &bar->strain, element->count, &bar->stress));
+  PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain, element->count, &bar->stress));
   for (PetscInt e = 0; e < element->count; e++) {
-    const PetscInt *node = element->connectivity + 2 * e;
+    const PetscInt *node   = element->connectivity + 2 * e;
+    const PetscReal length = coordinates[node[1]] - coordinates[node[0]];
 
-    bar->length[e] = coordinates[node[1]] - coordinates[node[0]];
-    PetscCheck(bar->length[e] != 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "A bar element at x = %g has no length", (double)coordinates[node[0]]);
+    bar->inverse_length[e] = 1 / length;
+    bar->pull_area[e]      = length > 0 ? bar->cross_section : -bar->cross_section;
+    PetscCheck(length != 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "A bar element at x = %g has no length", (double)coordinates[node[0]]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -42,11 +45,10 @@ static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScal
   PetscReal      *strain = bar->strain, *stress = bar->stress;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < count; e++) strain[e] = (u[nodes[2 * e + 1]] - u[nodes[2 * e]]) / bar->length[e];
+  for (PetscInt e = 0; e < count; e++) strain[e] = (u[nodes[2 * e + 1]] - u[nodes[2 * e]]) * bar->inverse_length[e];
   PetscCall(MaterialComputeUniaxial(element->material, count, strain, stress));
   for (PetscInt e = 0; e < count; e++) {
-    /* a line element may run against the axis: its length is signed, and so is the direction in which it pulls */
-    const PetscReal pull = bar->length[e] > 0 ? bar->cross_section * stress[e] : -bar->cross_section * stress[e];
+    const PetscReal pull = bar->pull_area[e] * stress[e];
 
     f[nodes[2 * e]] -= pull;
     f[nodes[2 * e + 1]] += pull;
@@ -62,7 +64,7 @@ static PetscErrorCode ElementStiffness_Bar2(Element element, PetscInt e, const P
   PetscFunctionBegin;
   (void)u; /* the strain does not matter while all materials are linear at zero strain */
   PetscCall(MaterialGetUniaxialModulus(element->material, &modulus));
-  k    = modulus * bar->cross_section / PetscAbsReal(bar->length[e]);
+  k    = modulus * bar->cross_section * PetscAbsReal(bar->inverse_length[e]);
   K[0] = K[3] = k;
   K[1] = K[2] = -k;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,7 +77,7 @@ static PetscErrorCode ElementMass_Bar2(Element element, PetscInt e, PetscScalar 
 
   PetscFunctionBegin;
   PetscCall(MaterialGetDensity(element->material, &density));
-  mass = density * bar->cross_section * PetscAbsReal(bar->length[e]);
+  mass = density * bar->cross_section / PetscAbsReal(bar->inverse_length[e]);
   M[0] = M[3] = mass / 3;
   M[1] = M[2] = mass / 6;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -86,7 +88,7 @@ static PetscErrorCode ElementDestroy_Bar2(Element element)
   Bar2 *bar = (Bar2 *)element->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree3(bar->length, bar->strain, bar->stress));
+  PetscCall(PetscFree4(bar->inverse_length, bar->pull_area, bar->strain, bar->stress));
   PetscCall(PetscFree(element->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
