@@ -75,7 +75,7 @@ static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xn
   (void)gnorm;
   (void)ctx;
   *reason = it ? SNES_CONVERGED_ITS : SNES_CONVERGED_ITERATING;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FUNCTION_NANORINF;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,7 +113,7 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(SNESSetConvergenceTest(snes, StopAfterOneIteration, NULL, NULL));
   PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_TRUE));
   PetscCall(SNESGetLineSearch(snes, &line_search));
-  PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHNONE));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */
   PetscCall(SNESGetKSP(snes, &ksp));
   /* the user's -<body>_ksp_... options are for the solver with the factors, inside */

@@ -72,7 +72,7 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
   PetscCall(SNESSetType(solver->snes, type));
   /* after the type, which brings a line search of its own */
   PetscCall(SNESGetLineSearch(solver->snes, &line_search));
-  PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHNONE));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESSetTolerances(solver->snes, atol, rtol, 0, max_it, 1000000));
   if (anderson) {
     PetscCall(InsertDefault(prefix, "-snes_anderson_beta", "0.5", &beta));

@@ -7,6 +7,7 @@
    evaluation, which finds this out, only adds the change of force to the end state.
 */
 #include "../outersolver.h"
+#include <sys/petsccompat.h>
 
 typedef struct {
   OuterSolver  outer;
@@ -146,7 +147,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   (void)xnorm;
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FUNCTION_NANORINF;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
   else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude) *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, and one controller step. */
 #include "schwarzimpl.h"
+#include <sys/petsccompat.h>
 
 static const char *const ConvergenceTests[] = {"auto", "position", "mismatch", "ConvergenceTest", "CONVERGENCE_", NULL};
 static const char *const Relaxations[]      = {"fixed", "aitken", "Relaxation", "RELAXATION_", NULL};
@@ -139,7 +140,7 @@ static PetscErrorCode CheckConverged(Contact contact)
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTime(ts, &time));
-  PetscCheck(schwarz->unconverged == UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_FUNCTION_NANORINF, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen -schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept", (double)time, contact->counts_made.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol, (double)schwarz->rtol);
+  PetscCheck(schwarz->unconverged == UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen -schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept", (double)time, contact->counts_made.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol, (double)schwarz->rtol);
   contact->counts_made.unconverged_steps++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

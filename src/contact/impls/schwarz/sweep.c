@@ -3,6 +3,7 @@
    the Neumann sides -> their displacements, G(x). Written as the residual x - G(x) of the outer SNES.
 */
 #include "schwarzimpl.h"
+#include <sys/petsccompat.h>
 
 /* Before the first sweep of a step everything is as it was at its start ("last" predictor) */
 PetscErrorCode SchwarzStartTraces(Contact contact)
@@ -187,7 +188,7 @@ PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   (void)xnorm;
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FUNCTION_NANORINF;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
   else if (schwarz->converged) *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
