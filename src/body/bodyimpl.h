@@ -92,6 +92,7 @@ PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response;
 PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
 PETSC_INTERN PetscErrorCode BodyCreateVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
+PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodySetUpStiffness(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);

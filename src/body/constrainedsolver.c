@@ -15,7 +15,7 @@ struct _n_ConstrainedSolver {
   PC           direct;               /* the preconditioner where it is the whole solver, else NULL */
   Mat          B;
   PetscInt     local, global, begin; /* rows of B */
-  PetscMPIInt *counts, *offsets;
+  PetscMPIInt  size, *counts, *offsets;
   int         *mine, *constrained; /* 1 where a row is held: this rank's rows, and all rows */
   PetscInt     n;           /* how many of them */
   PetscInt    *rows;        /* which */
@@ -74,6 +74,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
   PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
   PetscCall(KSPSetOperators(s->ksp, A, A));
   PetscCallMPI(MPI_Comm_size(comm, &size));
+  s->size = size;
   PetscCall(MatGetSize(A, &n, NULL));
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
   PetscCall(ChooseFactorisation(s->ksp, n));
@@ -136,7 +137,7 @@ static PetscErrorCode GatherRows(ConstrainedSolver s, Vec z)
   PetscFunctionBegin;
   PetscCall(MatMult(s->B, z, s->row));
   PetscCall(VecGetArrayRead(s->row, &row));
-  if (s->local == s->global && s->counts[0] == s->global) PetscCall(PetscArraycpy(s->gathered, row, s->global));
+  if (s->size == 1) PetscCall(PetscArraycpy(s->gathered, row, s->global));
   else PetscCallMPI(MPI_Allgatherv(row, (PetscMPIInt)s->local, MPIU_SCALAR, s->gathered, s->counts, s->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)s->ksp)));
   PetscCall(VecRestoreArrayRead(s->row, &row));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -82,6 +82,7 @@ PetscErrorCode BodySetUpExplicit(Body body)
   PetscFunctionBegin;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &layer, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   if (layer) PetscCall(SetUpLayerBalance(body));
+  if (body->mass_matrix) PetscCall(BodySetUpMassSolver(body));
   PetscCall(TSCentralDifferenceSetAcceleration(body->ts, ComputeAcceleration, body));
   PetscCall(TSCentralDifferenceSetAccelerationVec(body->ts, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -111,7 +111,9 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(SNESSetLagPreconditioner(snes, -2));
   PetscCall(SNESSetLagPreconditionerPersists(snes, PETSC_TRUE));
   PetscCall(SNESSetConvergenceTest(snes, StopAfterOneIteration, NULL, NULL));
-  PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_TRUE));
+  /* BodyIntegrate() tells, with body and time */
+  PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_FALSE));
+  PetscCall(TSSetErrorIfStepFails(body->ts, PETSC_FALSE));
   PetscCall(SNESGetLineSearch(snes, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */

@@ -119,11 +119,11 @@ PetscErrorCode BodySetUpLayout(Body body)
   PetscCall(SetUpSection(body));
   PetscCall(DMPlexGetDepthStratum(body->dm, 0, &vstart, &vend));
   PetscCall(PetscMalloc1(vend - vstart, &node_of_vertex));
+  body->vertex_start   = vstart;
+  body->node_of_vertex = node_of_vertex; /* freed with the body, whatever happens next */
   PetscCall(NumberNodes(body, vstart, vend, node_of_vertex));
   PetscCall(SetUpCoordinates(body, vstart, vend, node_of_vertex));
   PetscCall(SetUpElements(body, vstart, vend, node_of_vertex));
-  body->vertex_start   = vstart;
-  body->node_of_vertex = node_of_vertex;
   PetscCall(PetscCalloc1(body->local_nodes, &body->in_layer));
   PetscCall(BodyCreateVec(body, &body->positions));
   PetscCall(VecGetArrayWrite(body->positions, &x));

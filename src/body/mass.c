@@ -113,9 +113,9 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The factors of a mass matrix that is not diagonal, with ones in place of the massless nodes. Explicit bodies keep them;
-   an implicit one needs them at most once, for its first acceleration. */
-static PetscErrorCode SetUpMassSolver(Body body)
+/* The factors of a mass matrix that is not diagonal, with ones in place of the massless nodes. Explicit bodies have them from
+   the start; an implicit one needs them at most once, for its first acceleration. */
+PetscErrorCode BodySetUpMassSolver(Body body)
 {
   Mat      solvable;
   char     prefix[128];
@@ -129,6 +129,7 @@ static PetscErrorCode SetUpMassSolver(Body body)
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
   PetscCall(ConstrainedSolverCreate(solvable, body->interface, prefix, &body->mass_solver));
+  PetscCall(BodySetConstraints(body)); /* rows may be prescribed already */
   PetscCall(MatDestroy(&solvable));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -153,7 +154,7 @@ PetscErrorCode BodySolveMass(Body body, Vec f, PetscReal position, PetscBool pre
   } else {
     PetscScalar *array;
 
-    if (!body->mass_solver) PetscCall(SetUpMassSolver(body));
+    if (!body->mass_solver) PetscCall(BodySetUpMassSolver(body));
     if (prescribed) {
       PetscCall(VecZeroEntries(body->work[1]));
       PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->work[1]));

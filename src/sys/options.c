@@ -138,13 +138,16 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &n_left, &names, &values));
   for (PetscInt i = 0; i < n_left; i++) {
-    PetscBool late = PETSC_FALSE;
-    char      nearest[128], line[512];
+    PetscBool late = PETSC_FALSE, known;
+    char      nearest[128], reason[256], line[512];
 
     for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++) PetscCall(PetscStrcmp(names[i], late_options[k], &late));
     if (late) continue;
     PetscCall(FindNearest(names[i], n, bodies, nearest, sizeof(nearest)));
-    PetscCall(PetscSNPrintf(line, sizeof(line), "%s-%s%s%s (the nearest known one is -%s)", unread ? ", " : "", names[i], values[i] ? " " : "", values[i] ? values[i] : "", nearest));
+    PetscCall(PetscStrcmp(names[i], nearest, &known));
+    if (known) PetscCall(PetscSNPrintf(reason, sizeof(reason), "it goes with another method or type than the one chosen"));
+    else PetscCall(PetscSNPrintf(reason, sizeof(reason), "the nearest known one is -%s", nearest));
+    PetscCall(PetscSNPrintf(line, sizeof(line), "%s-%s%s%s (%s)", unread ? ", " : "", names[i], values[i] ? " " : "", values[i] ? values[i] : "", reason));
     PetscCall(PetscStrlcat(message, line, sizeof(message)));
     unread++;
   }

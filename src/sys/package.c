@@ -98,7 +98,6 @@ PetscErrorCode ImpaktFinalize(void)
   PetscFunctionBegin;
   PetscCall(ContactFinalizePackage());
   PetscCall(BodyFinalizePackage());
-  PetscCall(PetscPopErrorHandler());
   PetscCall(PetscFinalize());
   /* PetscFunctionReturn() would need PETSc */
   return PETSC_SUCCESS;

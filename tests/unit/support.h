@@ -45,13 +45,13 @@ static inline PetscErrorCode NoteMessage(MPI_Comm comm, int line, const char *fu
 }
 
 /* refused(code, words, call): the call ends with that error, and its message has all the words (split by '|') in it */
-#define refused(code, words, ...) \
-  do { \
-    char           message_[2048] = ""; \
-    PetscErrorCode error_; \
-    ok(PetscPushErrorHandler(NoteMessage, message_)); \
-    error_ = (__VA_ARGS__); \
-    ok(PetscPopErrorHandler()); \
+#define refused(code, words, ...)                                      \
+  do {                                                                 \
+    char           message_[2048] = "";                                \
+    PetscErrorCode error_;                                             \
+    ok(PetscPushErrorHandler(NoteMessage, message_));                  \
+    error_ = (__VA_ARGS__);                                            \
+    ok(PetscPopErrorHandler());                                        \
     expect_message(error_, code, words, message_, __FILE__, __LINE__); \
   } while (0)
 static inline void expect_message(PetscErrorCode error, PetscErrorCode code, const char words[], const char message[], const char file[], int line)
@@ -91,7 +91,14 @@ static inline PetscOptions options_begin(const char format[], ...)
   return options;
 }
 
-/* ... all of which must have been read */
+/* For what ends with an error, and may not have read them all */
+static inline void options_drop(PetscOptions options)
+{
+  ok(PetscOptionsPop());
+  ok(PetscOptionsDestroy(&options));
+}
+
+/* All of them must have been read */
 static inline void options_end(PetscOptions options)
 {
   char   **names, **values;
@@ -101,8 +108,7 @@ static inline void options_end(PetscOptions options)
   for (PetscInt i = 0; i < n; i++) print_error("unread option -%s\n", names[i]);
   assert_int_equal(n, 0);
   ok(PetscOptionsLeftRestore(options, &n, &names, &values));
-  ok(PetscOptionsPop());
-  ok(PetscOptionsDestroy(&options));
+  options_drop(options);
 }
 
 /* Rows that each give the displacement of one node, along the first axis */
@@ -128,7 +134,7 @@ static inline void set_rows(Body body, PetscInt n, const PetscReal x[], Rows *ro
   ok(DMGetCoordinatesLocal(dm, &local));
   ok(DMGetGlobalSection(dm, &section));
   ok(BodyGetReferencePositions(body, &positions));
-  rows->n = n;
+  rows->n     = n;
   rows->local = 0;
   ok(VecGetArrayRead(local, &coordinates));
   for (PetscInt v = start; v < end; v++)

@@ -20,10 +20,10 @@ static PetscReal TotalArea(const SurfaceData *data)
 /* Each end of a line is a node and a face of area 1 with its normal away from the other end */
 static void CheckEnd(const SurfaceData *data, PetscInt node, PetscReal position, PetscReal normal)
 {
-  assert_near(data->positions[node], position, 1e-15); /* a corner of the box, but for one rounding */
-  assert_near(data->areas[node], 1, 0);
-  assert_near(data->normals[node], normal, 0);
-  assert_near(data->face_normals[node], normal, 0);
+  near(data->positions[node], position, 1e-15); /* a corner of the box, but for one rounding */
+  near(data->areas[node], 1, 0);
+  near(data->normals[node], normal, 0);
+  near(data->face_normals[node], normal, 0);
   assert_int_equal(data->faces[node], node);
 }
 
@@ -37,19 +37,19 @@ static void line_ends_by_name(void **state)
 
   (void)state;
   for (PetscInt i = 0; i < 4; i++) {
-    CHECK(SurfaceCreate(dm, names[i], &surface));
-    CHECK(SurfaceGetData(surface, &data));
+    ok(SurfaceCreate(dm, names[i], &surface));
+    ok(SurfaceGetData(surface, &data));
     assert_int_equal(data->dim, 1);
     assert_int_equal(data->face_nodes, 1);
     assert_int_equal(data->n_nodes, 1);
     assert_int_equal(data->n_faces, 1);
     CheckEnd(data, 0, positions[i], normals[i]);
-    assert_near(data->lower[0], 0, 0);
-    assert_near(data->upper[0], 1, 0);
-    CHECK(SurfaceDestroy(&surface));
+    near(data->lower[0], 0, 0);
+    near(data->upper[0], 1, 0);
+    ok(SurfaceDestroy(&surface));
     assert_null(surface);
   }
-  CHECK(DMDestroy(&dm));
+  ok(DMDestroy(&dm));
 }
 
 static void whole_boundary_of_a_line(void **state)
@@ -61,8 +61,8 @@ static void whole_boundary_of_a_line(void **state)
 
   (void)state;
   for (PetscInt i = 0; i < 3; i++) {
-    CHECK(SurfaceCreate(dm, names[i], &surface));
-    CHECK(SurfaceGetData(surface, &data));
+    ok(SurfaceCreate(dm, names[i], &surface));
+    ok(SurfaceGetData(surface, &data));
     assert_int_equal(data->n_nodes, 2);
     assert_int_equal(data->n_faces, 2);
     assert_true(data->dofs[0] < data->dofs[1]);
@@ -71,10 +71,10 @@ static void whole_boundary_of_a_line(void **state)
 
       CheckEnd(data, node, left ? 0 : 1, left ? -1 : 1);
     }
-    assert_near(data->positions[0] + data->positions[1], 1, 1e-15);
-    CHECK(SurfaceDestroy(&surface));
+    near(data->positions[0] + data->positions[1], 1, 1e-15);
+    ok(SurfaceDestroy(&surface));
   }
-  CHECK(DMDestroy(&dm));
+  ok(DMDestroy(&dm));
 }
 
 /* A label that somebody put on the mesh, with any values */
@@ -87,18 +87,18 @@ static void faces_of_a_label(void **state)
   DM                 dm = CreateBox(1, "5", PETSC_TRUE);
 
   (void)state;
-  CHECK(DMCreateLabel(dm, "nose"));
-  CHECK(DMGetLabel(dm, "nose", &label));
-  CHECK(DMGetLabel(dm, "Face Sets", &sets));
-  CHECK(DMLabelGetStratumIS(sets, 2, &points));
-  if (points) CHECK(DMLabelSetStratumIS(label, 7, points)); /* NULL on ranks without that end */
-  CHECK(ISDestroy(&points));
-  CHECK(SurfaceCreate(dm, "nose", &surface));
-  CHECK(SurfaceGetData(surface, &data));
+  ok(DMCreateLabel(dm, "nose"));
+  ok(DMGetLabel(dm, "nose", &label));
+  ok(DMGetLabel(dm, "Face Sets", &sets));
+  ok(DMLabelGetStratumIS(sets, 2, &points));
+  if (points) ok(DMLabelSetStratumIS(label, 7, points)); /* NULL on ranks without that end */
+  ok(ISDestroy(&points));
+  ok(SurfaceCreate(dm, "nose", &surface));
+  ok(SurfaceGetData(surface, &data));
   assert_int_equal(data->n_nodes, 1);
   CheckEnd(data, 0, 1, 1);
-  CHECK(SurfaceDestroy(&surface));
-  CHECK(DMDestroy(&dm));
+  ok(SurfaceDestroy(&surface));
+  ok(DMDestroy(&dm));
 }
 
 /* The side at 0 or 1, 2, 3 of one axis: its area is the product of the other two lengths, its normal along the axis */
@@ -114,22 +114,22 @@ static void CheckSides(DM dm, PetscInt dim, PetscInt face_nodes, const PetscInt 
     PetscReal       area = 1;
 
     for (PetscInt d = 0; d < dim; d++) area *= d == axis ? 1 : d + 1;
-    CHECK(SurfaceCreate(dm, names[side], &surface));
-    CHECK(SurfaceGetData(surface, &data));
+    ok(SurfaceCreate(dm, names[side], &surface));
+    ok(SurfaceGetData(surface, &data));
     assert_int_equal(data->face_nodes, face_nodes);
     assert_int_equal(data->n_faces, faces[axis]);
-    assert_near(TotalArea(data), area, 1e-14); /* round-off of a few additions of numbers of size 1 */
+    near(TotalArea(data), area, 1e-14); /* round-off of a few additions of numbers of size 1 */
     for (PetscInt i = 0; i < data->n_nodes; i++) {
-      assert_near(data->positions[i * dim + axis], sign > 0 ? axis + 1 : 0, 1e-14);
-      for (PetscInt d = 0; d < dim; d++) assert_near(data->normals[i * dim + d], d == axis ? sign : 0, 1e-14);
+      near(data->positions[i * dim + axis], sign > 0 ? axis + 1 : 0, 1e-14);
+      for (PetscInt d = 0; d < dim; d++) near(data->normals[i * dim + d], d == axis ? sign : 0, 1e-14);
     }
     for (PetscInt f = 0; f < data->n_faces; f++)
-      for (PetscInt d = 0; d < dim; d++) assert_near(data->face_normals[f * dim + d], d == axis ? sign : 0, 1e-14);
+      for (PetscInt d = 0; d < dim; d++) near(data->face_normals[f * dim + d], d == axis ? sign : 0, 1e-14);
     for (PetscInt d = 0; d < dim; d++) {
-      assert_near(data->lower[d], 0, 0);
-      assert_near(data->upper[d], d + 1, 0);
+      near(data->lower[d], 0, 0);
+      near(data->upper[d], d + 1, 0);
     }
-    CHECK(SurfaceDestroy(&surface));
+    ok(SurfaceDestroy(&surface));
   }
 }
 
@@ -139,10 +139,10 @@ static void CheckWholeBoundary(DM dm, PetscInt dim, PetscReal area, PetscInt nod
   const SurfaceData *data;
   Surface            surface;
 
-  CHECK(SurfaceCreate(dm, NULL, &surface));
-  CHECK(SurfaceGetData(surface, &data));
+  ok(SurfaceCreate(dm, NULL, &surface));
+  ok(SurfaceGetData(surface, &data));
   assert_int_equal(data->n_nodes, nodes);
-  assert_near(TotalArea(data), area, 1e-13);
+  near(TotalArea(data), area, 1e-13);
   for (PetscInt i = 0; i < data->n_nodes; i++) {
     PetscReal length = 0;
 
@@ -153,12 +153,12 @@ static void CheckWholeBoundary(DM dm, PetscInt dim, PetscReal area, PetscInt nod
       /* outward: away from the sides that the node lies on, and along none of the others */
       if (x < 1e-12) assert_true(n < 0);
       else if (x > d + 1 - 1e-12) assert_true(n > 0);
-      else assert_near(n, 0, 1e-14);
+      else near(n, 0, 1e-14);
     }
-    assert_near(length, 1, 1e-14);
+    near(length, 1, 1e-14);
     if (i) assert_true(data->dofs[i] > data->dofs[i - 1]);
   }
-  CHECK(SurfaceDestroy(&surface));
+  ok(SurfaceDestroy(&surface));
 }
 
 static void sides_of_a_rectangle(void **state)
@@ -171,7 +171,7 @@ static void sides_of_a_rectangle(void **state)
 
     CheckSides(dm, 2, 2, faces);
     CheckWholeBoundary(dm, 2, 6, 10); /* perimeter 2 (1 + 2); as many nodes as edges, 2 (2 + 3) */
-    CHECK(DMDestroy(&dm));
+    ok(DMDestroy(&dm));
   }
 }
 
@@ -183,7 +183,7 @@ static void sides_of_a_hexahedral_box(void **state)
   (void)state;
   CheckSides(dm, 3, 4, faces);
   CheckWholeBoundary(dm, 3, 22, 34); /* 2 (2 + 3 + 6); 3 x 3 x 4 nodes less the 1 x 1 x 2 inner ones */
-  CHECK(DMDestroy(&dm));
+  ok(DMDestroy(&dm));
 }
 
 /* A node's vertex is on the ranks that have it, and on one at least */
@@ -197,62 +197,64 @@ static void vertices_of_nodes(void **state)
   DM                 dm    = CreateBox(1, "5", PETSC_TRUE);
 
   (void)state;
-  CHECK(SurfaceCreate(dm, NULL, &surface));
-  CHECK(SurfaceGetData(surface, &data));
-  CHECK(SurfaceGetVertices(surface, 2, nodes, &n, &vertices));
+  ok(SurfaceCreate(dm, NULL, &surface));
+  ok(SurfaceGetData(surface, &data));
+  ok(SurfaceGetVertices(surface, 2, nodes, &n, &vertices));
   for (PetscInt i = 0; i < n; i++) {
     PetscInt supports;
 
-    CHECK(DMPlexGetSupportSize(dm, vertices[i], &supports));
+    ok(DMPlexGetSupportSize(dm, vertices[i], &supports));
     assert_int_equal(supports, 1); /* an end of the line */
   }
   found = (int)n;
-  CHECK(PetscFree(vertices));
+  ok(PetscFree(vertices));
   MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
   assert_int_equal(found, 2); /* with one element to each rank at least, no rank but its own has an end */
-  CHECK(SurfaceDestroy(&surface));
-  CHECK(DMDestroy(&dm));
+  ok(SurfaceDestroy(&surface));
+  ok(DMDestroy(&dm));
 }
 
 static void unknown_names_are_refused(void **state)
 {
-  const char *const names[]    = {"nose", "zmin", "99", "1x"}; /* no label, beyond the dimension, no such set, no number */
-  Simulation       *simulation = (Simulation *)*state;
+  const char *const names[] = {"nose", "zmin", "99", "1x"}; /* no label, beyond the dimension, no such set, no number */
+  char              words[64];
   Surface           surface;
   DM                dm = CreateBox(1, "5", PETSC_TRUE);
 
+  (void)state;
   for (PetscInt i = 0; i < 4; i++) {
-    expect_error(simulation, SurfaceCreate(dm, names[i], &surface), PETSC_ERR_USER_INPUT);
-    assert_message(simulation, names[i]);
-    assert_message(simulation, "'box'");
-    CHECK(SurfaceDestroy(&surface));
+    ok(PetscSNPrintf(words, sizeof(words), "'box'|surface '%s'", names[i]));
+    refused(PETSC_ERR_USER_INPUT, words, SurfaceCreate(dm, names[i], &surface));
+    ok(SurfaceDestroy(&surface));
   }
-  CHECK(DMDestroy(&dm));
+  ok(DMDestroy(&dm));
 }
 
 /* A label that marks no boundary face is no surface */
 static void empty_surfaces_are_refused(void **state)
 {
-  Simulation *simulation = (Simulation *)*state;
-  Surface     surface;
-  DM          dm = CreateBox(1, "5", PETSC_TRUE);
+  Surface surface;
+  DM      dm = CreateBox(1, "5", PETSC_TRUE);
 
-  CHECK(DMCreateLabel(dm, "nowhere"));
-  expect_error(simulation, SurfaceCreate(dm, "nowhere", &surface), PETSC_ERR_USER_INPUT);
-  assert_message(simulation, "'nowhere'");
-  CHECK(SurfaceDestroy(&surface));
-  CHECK(DMDestroy(&dm));
+  (void)state;
+  ok(DMCreateLabel(dm, "nowhere"));
+  refused(PETSC_ERR_USER_INPUT, "'box'|'nowhere'", SurfaceCreate(dm, "nowhere", &surface));
+  ok(SurfaceDestroy(&surface));
+  ok(DMDestroy(&dm));
 }
 
-static const struct CMUnitTest tests[] = {
-  simulation_test(line_ends_by_name),
-  simulation_test(whole_boundary_of_a_line),
-  simulation_test(faces_of_a_label),
-  simulation_test(sides_of_a_rectangle),
-  simulation_test(sides_of_a_hexahedral_box),
-  simulation_test(vertices_of_nodes),
-  simulation_test(unknown_names_are_refused),
-  simulation_test(empty_surfaces_are_refused),
-};
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      simulation_test(line_ends_by_name),
+      simulation_test(whole_boundary_of_a_line),
+      simulation_test(faces_of_a_label),
+      simulation_test(sides_of_a_rectangle),
+      simulation_test(sides_of_a_hexahedral_box),
+      simulation_test(vertices_of_nodes),
+      simulation_test(unknown_names_are_refused),
+      simulation_test(empty_surfaces_are_refused),
+  };
 
-SIMULATION_MAIN(tests)
+  return impakt_main(argc, argv, tests);
+}

@@ -107,7 +107,7 @@ static void is_linear_between_levels(void **state)
 static void refines(void **state)
 {
   const PetscReal values[] = {0, 4, 2}, expected[] = {0, 2, 4, 3, 2};
-  Trace           coarse   = make_trace(2, values), fine;
+  Trace           coarse = make_trace(2, values), fine;
   PetscScalar    *level;
 
   (void)state;
@@ -125,7 +125,7 @@ static void refines(void **state)
 static void coarsens(void **state)
 {
   const PetscReal values[] = {0, 9, 4, 9, 8}, expected[] = {0, 4, 8};
-  Trace           fine     = make_trace(4, values), coarse;
+  Trace           fine = make_trace(4, values), coarse;
   PetscScalar    *level;
 
   (void)state;
@@ -146,7 +146,7 @@ static void coarsens(void **state)
 static void refines_and_coarsens_to_the_same(void **state)
 {
   const PetscReal values[] = {0.1, -0.7, 1. / 3, 1e-7};
-  Trace           trace = make_trace(3, values), fine, back;
+  Trace           trace    = make_trace(3, values), fine, back;
   PetscScalar    *level;
 
   (void)state;
@@ -181,9 +181,14 @@ static void refuses_what_makes_no_sense(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(begins_with_zeros), cmocka_unit_test(may_be_empty), cmocka_unit_test(is_exact_at_levels),
-    cmocka_unit_test(is_linear_between_levels), cmocka_unit_test(refines), cmocka_unit_test(coarsens),
-    cmocka_unit_test(refines_and_coarsens_to_the_same), cmocka_unit_test(refuses_what_makes_no_sense),
+      cmocka_unit_test(begins_with_zeros),
+      cmocka_unit_test(may_be_empty),
+      cmocka_unit_test(is_exact_at_levels),
+      cmocka_unit_test(is_linear_between_levels),
+      cmocka_unit_test(refines),
+      cmocka_unit_test(coarsens),
+      cmocka_unit_test(refines_and_coarsens_to_the_same),
+      cmocka_unit_test(refuses_what_makes_no_sense),
   };
 
   return impakt_main(argc, argv, tests);

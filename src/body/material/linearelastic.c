@@ -15,11 +15,11 @@ static PetscErrorCode MaterialSetFromOptions_LinearElastic(Material material)
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)material);
   PetscCall(PetscOptionsReal("-youngs_modulus", "Young's modulus [Pa]", "", elastic->youngs_modulus, &elastic->youngs_modulus, &set));
+  PetscCall(PetscOptionsReal("-poissons_ratio", "Poisson's ratio", "", elastic->poissons_ratio, &elastic->poissons_ratio, NULL));
+  PetscOptionsEnd();
   PetscCheck(set, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus in Pa", prefix);
   PetscCheck(elastic->youngs_modulus > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is %g Pa; it must be positive", prefix, (double)elastic->youngs_modulus);
-  PetscCall(PetscOptionsReal("-poissons_ratio", "Poisson's ratio", "", elastic->poissons_ratio, &elastic->poissons_ratio, NULL));
   PetscCheck(elastic->poissons_ratio > -1 && elastic->poissons_ratio < 0.5, comm, PETSC_ERR_USER_INPUT, "-%spoissons_ratio is %g; it must lie between -1 and 0.5", prefix, (double)elastic->poissons_ratio);
-  PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

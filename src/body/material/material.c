@@ -160,11 +160,11 @@ PetscErrorCode MaterialSetFromOptions(Material material)
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
   PetscObjectOptionsBegin((PetscObject)material);
   PetscCall(PetscOptionsFList("-material_type", "Constitutive model", "MaterialSetType", MaterialList, type, type, sizeof(type), NULL));
-  PetscCall(MaterialSetType(material, type));
   PetscCall(PetscOptionsReal("-density", "Mass density [kg/m^3]", "MaterialGetDensity", material->density, &material->density, &set));
+  PetscOptionsEnd();
+  PetscCall(MaterialSetType(material, type));
   PetscCheck(set, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT, "-%sdensity is missing; give the mass density in kg/m^3", prefix);
   PetscCheck(material->density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT, "-%sdensity is %g kg/m^3; a density must be positive", prefix, (double)material->density);
-  PetscOptionsEnd();
   PetscTryTypeMethod(material, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

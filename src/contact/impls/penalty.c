@@ -208,6 +208,12 @@ static PetscErrorCode CheckConverged(Contact contact)
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTime(ts, &time));
+  for (PetscInt p = 0; reason == SNES_DIVERGED_NAN && p < contact->n_pairs; p++) {
+    ContactPairState state;
+
+    PetscCall(ContactGetPairState(contact, p, &state));
+    PetscCheck(!PetscIsInfOrNanReal(state.gap * penalty->penalty), PetscObjectComm((PetscObject)contact), PETSC_ERR_FP, "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step or -contact_penalty too large?", contact->pairs[p].name, (double)time);
+  }
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller -contact_penalty or -time_step", (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
 }
 

@@ -1,6 +1,6 @@
 """Runs that several tests look at: each is made once in a session of pytest, whichever of its processes asks first.
 
-Test files load it by `pytest_plugins = "shared"`.
+A plugin: test files load it by `pytest_plugins = "shared_runs"`.
 """
 
 import fcntl
@@ -12,16 +12,6 @@ from types import SimpleNamespace
 
 import pytest
 from conftest import IMPAKT, ROOT, Run, complaints, fail, start
-
-DEFAULTS = "-options_file options/impact-high-speed.opts"
-LUMPED = f"{DEFAULTS} -left_mass_type lumped -right_mass_type lumped"
-PAIRINGS = {
-    "EE": "-left_ts_type centraldifference -right_ts_type centraldifference",
-    "IE": "-right_ts_type centraldifference -right_ts_time_step 1e-8",
-    "EI": "-left_ts_type centraldifference -left_ts_time_step 1e-8",
-    # 1e-7 s / 7; on the explicit side
-    "IE7": "-right_ts_type centraldifference -right_ts_time_step 1.4285714285714286e-8",
-}
 
 
 def make(folder, options, ranks):
@@ -53,26 +43,16 @@ def shared_run(tmp_path_factory):
                     folder.mkdir()
                     make(folder, options, ranks)
             if not (folder / "done.json").exists():
-                pytest.fail(f"the run did not end in time: {options}", pytrace=False)
-            done = Run(SimpleNamespace(**json.loads((folder / "done.json").read_text())), folder)
-            runs[key] = done
+                pytest.fail(f"on {ranks} ranks, this did not end in time: {options}", pytrace=False)
+            runs[key] = Run(SimpleNamespace(**json.loads((folder / "done.json").read_text())), folder)
         done = runs[key]
         found = complaints(done.stdout + done.stderr)
         if done.returncode != 0 or found:
-            fail(f"exit code {done.returncode}" if done.returncode else "\n".join(found), done.command, done.stdout, done.stderr)
+            what = f"exit code {done.returncode}" if done.returncode else "memory not freed or options not used:\n" + "\n".join(found)
+            fail(what, done.command, done.stdout, done.stderr)
         return done
 
     yield run
     for done in runs.values():
         if "history" in done.__dict__:
             done.history.close()
-
-
-def worst_energy_error(summary):
-    """Of the system, relative to its initial energy, without sign."""
-    system = summary["system"]
-    return max(abs(system["energy_error_min"]), abs(system["energy_error_max"]))
-
-
-def force_scatter(summary):
-    return summary["contact"]["force_std"] / summary["contact"]["force_mean"]

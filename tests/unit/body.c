@@ -1,0 +1,259 @@
+/* A body from its options: what it takes, what it refuses, where it loses a number. */
+#include "support.h"
+
+#define MESH     "-dm_plex_box_faces 10 -dm_plex_box_lower 1 -dm_plex_box_upper 3 "
+#define MATERIAL "-density 4 -youngs_modulus 16 -cross_section 0.5 "
+
+/* c = 2 m/s, h = 0.2 m: a lumped explicit body is stable up to 0.1 s */
+
+static void is_made_from_options_alone(void **state)
+{
+  Body         body;
+  PetscOptions options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type centraldifference -ts_time_step 0.05 -initial_velocity 3 -initial_displacement -0.25");
+  PetscReal    mass, density;
+  PetscInt     substeps, dofs, dim;
+  PetscBool    is_explicit;
+  Material     material;
+  Vec          u, v, a, positions;
+  DM           dm;
+
+  (void)state;
+  ok(BodySetControllerStep(body, 0.5, 0.15));
+  ok(BodySetUp(body));
+  ok(BodySetUp(body)); /* a second time changes nothing */
+  ok(BodyGetMass(body, &mass));
+  near(mass, 4, 1e-14); /* 4 kg/m^3 * 0.5 m^2 * 2 m */
+  ok(BodyGetMaterial(body, &material));
+  ok(MaterialGetDensity(material, &density));
+  assert_true(density == 4);
+  ok(BodyIsExplicit(body, &is_explicit));
+  assert_true(is_explicit);
+  ok(BodyGetSubsteps(body, &substeps));
+  assert_int_equal(substeps, 3);
+  ok(BodyGetDM(body, &dm));
+  ok(DMGetDimension(dm, &dim));
+  assert_int_equal(dim, 1);
+  ok(BodyGetReferencePositions(body, &positions));
+  ok(VecGetSize(positions, &dofs));
+  assert_int_equal(dofs, 11);
+  ok(BodyGetSolution(body, &u, &v, &a));
+  for (PetscInt i = 0; i <= 10; i++) {
+    near(value_at(body, positions, 1 + 0.2 * i), 1 + 0.2 * i, 1e-15); /* one rounding */
+    assert_true(value_at(body, u, 1 + 0.2 * i) == -0.25);
+    assert_true(value_at(body, v, 1 + 0.2 * i) == 3);
+  }
+  ok(VecNorm(a, NORM_INFINITY, &mass));
+  near(mass, 0, 1e-12); /* a constant displacement; round-off of differences of 0.25, times E A / h / m */
+  bar_destroy(&body, options);
+}
+
+static void has_defaults(void **state)
+{
+  Body         body;
+  PetscOptions options = bar_create(&body, "-dm_plex_box_faces 10 -density 4 -youngs_modulus 16");
+  PetscBool    is_explicit, redistributed;
+  PetscInt     substeps;
+  PetscReal    mass;
+
+  (void)state;
+  ok(BodySetControllerStep(body, 0, 0.3));
+  ok(BodySetUp(body));
+  ok(BodyIsExplicit(body, &is_explicit));
+  ok(BodyIsRedistributed(body, &redistributed));
+  ok(BodyGetSubsteps(body, &substeps));
+  ok(BodyGetMass(body, &mass));
+  assert_false(is_explicit);
+  assert_true(redistributed);
+  assert_int_equal(substeps, 1);
+  near(mass, 4, 1e-14); /* cross section and length are 1 */
+  bar_destroy(&body, options);
+}
+
+/* The largest whole fraction of the controller step below 0.9 of the stable step */
+static void chooses_its_own_step(void **state)
+{
+  const PetscReal steps[] = {0.05, 0.09, 0.091, 0.5, 1, 7.3};
+
+  (void)state;
+  for (size_t k = 0; k < sizeof(steps) / sizeof(steps[0]); k++) {
+    Body         body;
+    PetscOptions options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type centraldifference -ts_time_step auto");
+    PetscReal    stable, step;
+    PetscInt     n;
+    TS           ts;
+
+    ok(BodySetControllerStep(body, 0, steps[k]));
+    ok(BodySetUp(body));
+    ok(BodyGetStableStep(body, &stable));
+    ok(BodyGetSubsteps(body, &n));
+    ok(BodyGetTS(body, &ts));
+    ok(TSGetTimeStep(ts, &step));
+    near(stable, 0.1, 1e-15);                   /* h / c */
+    near(n * step, steps[k], 1e-15 * steps[k]); /* divides, to the last place */
+    assert_true(step <= 0.9 * stable * (1 + 1e-11));
+    if (n > 1) assert_true(steps[k] / (n - 1) > 0.9 * stable); /* one less would be too large */
+    bar_destroy(&body, options);
+  }
+}
+
+/* Each is refused when options are read, or when the body is set up with a controller step of 0.3 s */
+static void refuses_bad_input(void **state)
+{
+  const struct {
+    const char    *options, *words;
+    PetscErrorCode code;
+    PetscBool      at_setup;
+  } cases[] = {
+      {MATERIAL, "'bar'|no mesh|-bar_dm_plex_box_faces|-bar_dm_plex_filename", PETSC_ERR_USER_INPUT, PETSC_FALSE},
+      {MESH "-youngs_modulus 16 -density -4", "-bar_density|-4|positive", PETSC_ERR_USER_INPUT, PETSC_FALSE},
+      {MESH "-youngs_modulus 16 -density 4 -cross_section -1", "-bar_cross_section|-1|positive", PETSC_ERR_USER_INPUT, PETSC_FALSE},
+      {MESH MATERIAL "-ts_type runge_kutta", "-bar_ts_type|runge_kutta|alpha2|centraldifference", PETSC_ERR_ARG_UNKNOWN_TYPE, PETSC_FALSE},
+      {MESH MATERIAL "-ts_type rk", "-bar_ts_type|'rk'", PETSC_ERR_ARG_UNKNOWN_TYPE, PETSC_FALSE}, /* PETSc's, but of first order */
+      {MESH MATERIAL "-ts_time_step -0.1", "-bar_ts_time_step|-0.1|positive", PETSC_ERR_USER_INPUT, PETSC_FALSE},
+      {MESH MATERIAL "-ts_alpha_beta 0", "-bar_ts_alpha|beta 0|centraldifference", PETSC_ERR_USER_INPUT, PETSC_FALSE},
+      {MESH MATERIAL "-initial_velocity 1,2", "-bar_initial_velocity|2 components|'bar'|1-dimensional", PETSC_ERR_USER_INPUT, PETSC_FALSE},
+      {MESH MATERIAL "-initial_displacement 1,2,3", "-bar_initial_displacement|3 components|'bar'", PETSC_ERR_USER_INPUT, PETSC_FALSE},
+      {MESH MATERIAL "-ts_time_step 0.07", "-bar_ts_time_step|0.07|does not divide|0.3|auto", PETSC_ERR_USER_INPUT, PETSC_TRUE},
+      {MESH MATERIAL "-ts_time_step 0.6", "-bar_ts_time_step|0.6|does not divide|0.3", PETSC_ERR_USER_INPUT, PETSC_TRUE}, /* twice it */
+      {MESH MATERIAL "-ts_time_step 1e-12", "-bar_ts_time_step|1e-12|too small", PETSC_ERR_USER_INPUT, PETSC_TRUE},
+      {MESH MATERIAL "-ts_type centraldifference -mass_type lumped", "-bar_ts_time_step|0.3 s|'bar'|stable step, 0.1 s|auto", PETSC_ERR_USER_INPUT, PETSC_TRUE},
+      {MESH MATERIAL "-ts_type centraldifference -mass_type consistent -ts_time_step 0.06", "-bar_ts_time_step 0.06|0.057735", PETSC_ERR_USER_INPUT, PETSC_TRUE}, /* 0.1 / sqrt(3) */
+      {MESH MATERIAL "-ts_adapt_type basic", "-bar_ts_adapt_type|not supported|none", PETSC_ERR_USER_INPUT, PETSC_TRUE},
+      {MESH MATERIAL "-ts_type centraldifference -ts_time_step auto -ts_adapt_type basic", "-bar_ts_adapt_type|none", PETSC_ERR_USER_INPUT, PETSC_TRUE},
+  };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    PetscOptions options = options_begin("-prefix_push bar_ -dm_plex_dim 1 %s -prefix_pop", cases[i].options);
+    Body         body;
+
+    if (i == 0) ok(PetscOptionsClearValue(options, "-bar_dm_plex_dim"));
+    ok(BodyCreate(PETSC_COMM_WORLD, "bar", &body));
+    if (cases[i].at_setup) {
+      ok(BodySetFromOptions(body));
+      ok(BodySetControllerStep(body, 0, 0.3));
+      refused(cases[i].code, cases[i].words, BodySetUp(body));
+    } else refused(cases[i].code, cases[i].words, BodySetFromOptions(body));
+    ok(BodyDestroy(&body));
+    assert_null(body);
+    options_drop(options);
+  }
+}
+
+static void refuses_cells_without_element(void **state)
+{
+  PetscOptions options = options_begin("-prefix_push bar_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 2,2 -density 1 -youngs_modulus 1 -prefix_pop");
+  Body         body;
+
+  (void)state;
+  ok(BodyCreate(PETSC_COMM_WORLD, "bar", &body));
+  refused(PETSC_ERR_SUP, "-bar_|quadrilateral|segment", BodySetFromOptions(body));
+  ok(BodyDestroy(&body));
+  options_drop(options);
+}
+
+static PetscErrorCode Nothing(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
+{
+  PetscFunctionBegin;
+  (void)dim;
+  (void)x;
+  (void)u;
+  (void)v;
+  (void)ctx;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Calls in the wrong order */
+static void is_set_up_in_order(void **state)
+{
+  PetscOptions options = options_begin("-prefix_push bar_ -dm_plex_dim 1 " MESH MATERIAL "-prefix_pop");
+  Body         body;
+
+  (void)state;
+  ok(BodyCreate(PETSC_COMM_WORLD, "bar", &body));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "BodySetFromOptions()", BodySetUp(body));
+  ok(BodySetFromOptions(body));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "'bar'|already", BodySetFromOptions(body));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "BodySetUp()", BodySetInitialState(body, Nothing, NULL));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "BodySetUp()", BodyView(body, PETSC_VIEWER_STDOUT_WORLD));
+  ok(BodySetControllerStep(body, 0, 0.1));
+  ok(BodySetUp(body));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "BodySetUp()", BodySetContactNodes(body, 0, NULL));
+  ok(BodyIntegrate(body));
+  ok(BodySave(body));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "first step", BodySetInitialState(body, Nothing, NULL));
+  bar_destroy(&body, options);
+}
+
+static void needs_a_controller_step(void **state)
+{
+  Body         body;
+  PetscOptions options = bar_create(&body, MESH MATERIAL);
+
+  (void)state;
+  refused(PETSC_ERR_ARG_WRONGSTATE, "BodySetControllerStep()", BodySetUp(body));
+  bar_destroy(&body, options);
+}
+
+static PetscErrorCode NotANumber(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
+{
+  PetscFunctionBegin;
+  (void)dim;
+  (void)ctx;
+  v[0] = x[0] > 1.9 && x[0] < 2.1 ? NAN : 0;
+  u[0] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In its fourth controller step of two substeps, at 0.7 + 4 * 0.1 s, by a force; or at once, by its initial velocity */
+static void tells_where_a_number_is_lost(void **state)
+{
+  const BodyCondition forced        = BODY_FORCED;
+  const char *const   integrators[] = {TSALPHA2, TSCENTRALDIFFERENCE};
+  const PetscReal     end           = 3;
+
+  (void)state;
+  for (PetscInt moved = 0; moved < 2; moved++)
+    for (PetscInt i = 0; i < 2; i++) {
+      Body         body;
+      PetscOptions options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type %s -ts_time_step 0.05 -mass_redistribute %d", integrators[i], (int)moved);
+      BodyTraces   traces;
+      Rows         rows;
+
+      set_rows(body, 1, &end, &rows);
+      ok(BodySetControllerStep(body, 0.7, 0.1));
+      ok(BodySetUp(body));
+      ok(BodyGetTraces(body, &traces));
+      set_conditions(body, &rows, &forced);
+      for (PetscInt k = 0; k < 3; k++) {
+        ok(BodyIntegrate(body));
+        ok(BodySave(body));
+      }
+      for (PetscInt level = 0; level <= 2; level++) set_level(&rows, traces.force_in, level, 0, NAN);
+      refused(PETSC_ERR_FP, "'bar'|not a number|time 1.|step ", BodyIntegrate(body));
+      bar_destroy(&body, options);
+
+      options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type %s -mass_redistribute %d", integrators[i], (int)moved);
+      ok(BodySetControllerStep(body, 0, 0.05));
+      ok(BodySetUp(body));
+      ok(BodySetInitialState(body, NotANumber, NULL));
+      refused(PETSC_ERR_FP, "'bar'|not a number|time 0.05|step 1", BodyIntegrate(body));
+      bar_destroy(&body, options);
+    }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(is_made_from_options_alone),
+      cmocka_unit_test(has_defaults),
+      cmocka_unit_test(chooses_its_own_step),
+      cmocka_unit_test(refuses_bad_input),
+      cmocka_unit_test(refuses_cells_without_element),
+      cmocka_unit_test(is_set_up_in_order),
+      cmocka_unit_test(needs_a_controller_step),
+      cmocka_unit_test(tells_where_a_number_is_lost),
+  };
+
+  return impakt_main(argc, argv, tests);
+}

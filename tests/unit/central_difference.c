@@ -1,0 +1,260 @@
+/*
+   The explicit integrator alone, on two masses and springs: K = [[2, -1], [-1, 2]] N/m, M = diag(m, m), m = 0.5 kg.
+   Modes (1, 1) and (1, -1) with omega^2 = 1/m = 2 and 3/m = 6 rad^2/s^2; stable for dt < 2/sqrt(6) = 0.816 s.
+*/
+#include "support.h"
+
+#define MASS 0.5
+
+static PetscErrorCode Accelerate(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
+{
+  const PetscScalar *u;
+  PetscScalar       *a;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  (void)V;
+  if (ctx) ++*(PetscInt *)ctx;
+  PetscCall(VecGetLocalSize(U, &n));
+  PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(VecGetArray(A, &a));
+  for (PetscInt i = 0; i + 1 < n; i += 2) {
+    a[i]     = -(2 * u[i] - u[i + 1]) / MASS;
+    a[i + 1] = -(2 * u[i + 1] - u[i]) / MASS;
+  }
+  PetscCall(VecRestoreArray(A, &a));
+  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  TS       ts;
+  Vec      u, v, a;
+  PetscInt evaluations;
+} Springs;
+
+/* Such a pair of springs on every rank, from rest at (1, 0), with the step given */
+static void create_springs(Springs *s, PetscReal step)
+{
+  PetscScalar *u;
+
+  s->evaluations = 0;
+  ok(VecCreateMPI(PETSC_COMM_WORLD, 2, PETSC_DETERMINE, &s->u));
+  ok(VecDuplicate(s->u, &s->v));
+  ok(VecDuplicate(s->u, &s->a));
+  ok(VecGetArray(s->u, &u));
+  u[0] = 1;
+  ok(VecRestoreArray(s->u, &u));
+  ok(TSCreate(PETSC_COMM_WORLD, &s->ts));
+  ok(TSSetType(s->ts, TSCENTRALDIFFERENCE)); /* by its name, from the registry */
+  ok(TS2SetSolution(s->ts, s->u, s->v));
+  ok(TSCentralDifferenceSetAcceleration(s->ts, Accelerate, &s->evaluations));
+  ok(TSCentralDifferenceSetAccelerationVec(s->ts, s->a));
+  ok(Accelerate(s->ts, 0, s->u, s->v, s->a, NULL));
+  ok(TSSetTimeStep(s->ts, step));
+  ok(TSSetMaxTime(s->ts, 1e300));
+  ok(TSSetMaxSteps(s->ts, 1000000));
+  ok(TSSetExactFinalTime(s->ts, TS_EXACTFINALTIME_STEPOVER));
+  ok(TSSetUp(s->ts));
+}
+
+static void destroy_springs(Springs *s)
+{
+  ok(TSDestroy(&s->ts));
+  ok(VecDestroy(&s->u));
+  ok(VecDestroy(&s->v));
+  ok(VecDestroy(&s->a));
+}
+
+static void step(Springs *s, PetscInt steps)
+{
+  for (PetscInt k = 0; k < steps; k++) ok(TSStep(s->ts));
+}
+
+static void get(Vec vec, PetscReal values[2])
+{
+  const PetscScalar *array;
+
+  ok(VecGetArrayRead(vec, &array));
+  values[0] = array[0];
+  values[1] = array[1];
+  ok(VecRestoreArrayRead(vec, &array));
+}
+
+/* Staggered energy 1/2 v'Mv - dt^2/8 a'Ma + 1/2 u'Ku of this rank's springs */
+static PetscReal energy(Springs *s, PetscReal dt)
+{
+  PetscReal u[2], v[2], a[2], sum = 0;
+
+  get(s->u, u);
+  get(s->v, v);
+  get(s->a, a);
+  for (PetscInt i = 0; i < 2; i++) sum += 0.5 * MASS * (v[i] * v[i] - 0.25 * dt * dt * a[i] * a[i]);
+  return sum + u[0] * u[0] - u[0] * u[1] + u[1] * u[1];
+}
+
+/* u1 = (cos sqrt(2) t + cos sqrt(6) t) / 2, u2 = (cos sqrt(2) t - cos sqrt(6) t) / 2. Halving dt divides the error by 4 */
+static void is_of_second_order(void **state)
+{
+  const PetscReal end = 2.3;
+  PetscReal       errors[4];
+
+  (void)state;
+  for (PetscInt k = 0; k < 4; k++) {
+    const PetscInt steps = 40 << k;
+    PetscReal      u[2], v[2];
+    Springs        s;
+
+    create_springs(&s, end / steps);
+    step(&s, steps);
+    get(s.u, u);
+    get(s.v, v);
+    errors[k] = PetscSqrtReal(PetscSqr(u[0] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) + PetscCosReal(PetscSqrtReal(6) * end))) + PetscSqr(u[1] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) - PetscCosReal(PetscSqrtReal(6) * end))) + PetscSqr(v[0] + 0.5 * (PetscSqrtReal(2) * PetscSinReal(PetscSqrtReal(2) * end) + PetscSqrtReal(6) * PetscSinReal(PetscSqrtReal(6) * end))));
+    assert_int_equal(s.evaluations, steps); /* one a step */
+    destroy_springs(&s);
+  }
+  /* error terms of order dt^4 change the ratio by about (omega dt)^2 = 0.02 at the first step */
+  for (PetscInt k = 1; k < 4; k++) near(errors[k - 1] / errors[k], 4, 0.2);
+}
+
+/* Mode (1, 1) alone follows u_n = cos(n phi), sin(phi / 2) = omega dt / 2: central differences' own frequency */
+static void has_the_frequency_of_central_differences(void **state)
+{
+  const PetscReal dt = 0.5, phi = 2 * PetscAsinReal(0.5 * dt * PetscSqrtReal(2));
+  PetscReal       u[2];
+  Springs         s;
+
+  (void)state;
+  create_springs(&s, dt);
+  ok(VecSet(s.u, 1));
+  ok(Accelerate(s.ts, 0, s.u, s.v, s.a, NULL));
+  for (PetscInt n = 1; n <= 100; n++) {
+    step(&s, 1);
+    get(s.u, u);
+    near(u[0], PetscCosReal(n * phi), 1e-12); /* round-off of 100 steps, each of some 1e-16 */
+    near(u[1], u[0], 1e-12);
+  }
+  destroy_springs(&s);
+}
+
+static void conserves_staggered_energy(void **state)
+{
+  const PetscReal dt = 0.4; /* half the stable step: the usual energy swings by several per cent */
+  PetscReal       start, lowest, highest;
+  Springs         s;
+
+  (void)state;
+  create_springs(&s, dt);
+  start = lowest = highest = energy(&s, dt);
+  near(start, 1 - dt * dt / 8 * MASS * (16 + 4), 1e-15); /* a = (-4, 2) */
+  for (PetscInt k = 0; k < 10000; k++) {
+    step(&s, 1);
+    lowest  = PetscMin(lowest, energy(&s, dt));
+    highest = PetscMax(highest, energy(&s, dt));
+  }
+  /* 1e4 steps, a few units in the last place of 1 J (1e-16 J) each, adding up at random to 1e2 or at worst to 1e4 of them */
+  near(lowest, start, 1e-12);
+  near(highest, start, 1e-12);
+  destroy_springs(&s);
+}
+
+static void rolls_back_bit_for_bit(void **state)
+{
+  PetscReal before[3][2], after[3][2], again[3][2], time;
+  Springs   s;
+
+  (void)state;
+  create_springs(&s, 0.25); /* a power of two: TSRollBack() makes the step anew, as a difference of times */
+  step(&s, 7);
+  get(s.u, before[0]);
+  get(s.v, before[1]);
+  get(s.a, before[2]);
+  step(&s, 1);
+  get(s.u, again[0]);
+  get(s.v, again[1]);
+  get(s.a, again[2]);
+  ok(TSRollBack(s.ts));
+  get(s.u, after[0]);
+  get(s.v, after[1]);
+  get(s.a, after[2]);
+  assert_memory_equal(before, after, sizeof(before));
+  ok(TSGetTime(s.ts, &time));
+  assert_true(time == 1.75);
+  step(&s, 1);
+  get(s.u, after[0]);
+  get(s.v, after[1]);
+  get(s.a, after[2]);
+  assert_memory_equal(again, after, sizeof(again));
+  destroy_springs(&s);
+}
+
+/* Another time, step and number of steps, and on from there */
+static void can_be_put_at_another_time(void **state)
+{
+  PetscReal time, u[2], expected[2];
+  PetscInt  n;
+  Springs   s, other;
+
+  (void)state;
+  create_springs(&s, 0.3);
+  create_springs(&other, 0.1);
+  ok(TSSecondOrderSetState(s.ts, 5, 0.1, 17));
+  step(&s, 2);
+  step(&other, 2);
+  ok(TSGetTime(s.ts, &time));
+  near(time, 5.2, 2e-15); /* two roundings */
+  ok(TSGetStepNumber(s.ts, &n));
+  assert_int_equal(n, 19);
+  get(s.u, u);
+  get(other.u, expected);
+  assert_memory_equal(u, expected, sizeof(u)); /* the force does not depend on time */
+  destroy_springs(&s);
+  destroy_springs(&other);
+}
+
+static void refuses_to_set_up_without_its_parts(void **state)
+{
+  Vec u, v, a;
+  TS  ts;
+
+  (void)state;
+  ok(VecCreateMPI(PETSC_COMM_WORLD, 2, PETSC_DETERMINE, &u));
+  ok(VecDuplicate(u, &v));
+  ok(VecDuplicate(u, &a));
+  ok(TSCreate(PETSC_COMM_WORLD, &ts));
+  ok(TSSetType(ts, TSCENTRALDIFFERENCE));
+  ok(TS2SetSolution(ts, u, v));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "TSCentralDifferenceSetAcceleration()", TSSetUp(ts));
+  ok(TSCentralDifferenceSetAcceleration(ts, Accelerate, NULL));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "TSCentralDifferenceSetAccelerationVec()", TSSetUp(ts));
+  ok(TSCentralDifferenceSetAccelerationVec(ts, a));
+  ok(TSSetUp(ts));
+  ok(TSDestroy(&ts));
+
+  ok(TSCreate(PETSC_COMM_WORLD, &ts));
+  ok(TSSetType(ts, TSCENTRALDIFFERENCE));
+  ok(TSSetSolution(ts, u)); /* displacements alone */
+  ok(TSCentralDifferenceSetAcceleration(ts, Accelerate, NULL));
+  ok(TSCentralDifferenceSetAccelerationVec(ts, a));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "TS2SetSolution()", TSSetUp(ts));
+  ok(TSDestroy(&ts));
+  ok(VecDestroy(&u));
+  ok(VecDestroy(&v));
+  ok(VecDestroy(&a));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(is_of_second_order),
+      cmocka_unit_test(has_the_frequency_of_central_differences),
+      cmocka_unit_test(conserves_staggered_energy),
+      cmocka_unit_test(rolls_back_bit_for_bit),
+      cmocka_unit_test(can_be_put_at_another_time),
+      cmocka_unit_test(refuses_to_set_up_without_its_parts),
+  };
+
+  return impakt_main(argc, argv, tests);
+}

@@ -1,0 +1,125 @@
+/* The penalty method: forces in proportion to the penetration, with any integrators. */
+#include "simulation.h"
+
+#define PENALTY 50.0 /* N/m, some times the stiffness of an element, 8 and 10 N/m */
+
+static const char *const integrators[] = {
+    "-left_ts_type alpha2 -right_ts_type alpha2",
+    "-left_ts_type alpha2 -right_ts_type centraldifference",
+    "-left_ts_type centraldifference -right_ts_type centraldifference",
+};
+
+/* Three steps in contact, compared with the gap at their ends */
+static void CheckSprings(Simulation *simulation)
+{
+  PetscReal last = 0;
+
+  for (PetscInt step = 0; step < 3; step++) {
+    const PetscReal  before[] = {Momentum(simulation, 0), Momentum(simulation, 1)};
+    ContactPairState pair     = Step(simulation);
+    PetscReal        energy;
+
+    assert_int_equal(pair.active, 1);
+    assert_true(pair.force > 0);
+    near(pair.force, -PENALTY * pair.gap, 1e-9 * pair.force); /* -penalty_snes_rtol */
+    ok(ContactGetPenaltyEnergy(simulation->contact, &energy));
+    near(energy, 0.5 * PENALTY * pair.gap * pair.gap, 3e-9 * energy); /* twice the relative error of the force */
+    /* both integrators change the momentum by dt/2 (F_0 + F_1) */
+    near(Momentum(simulation, 1) - before[1], 0.5 * COLLISION_STEP * (last + pair.force), 1e-15);
+    near(Momentum(simulation, 0) - before[0], -0.5 * COLLISION_STEP * (last + pair.force), 1e-15);
+    last = pair.force;
+  }
+}
+
+static void springs_with_massless_layers(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type penalty -contact_penalty 50");
+  for (PetscInt i = 0; i < 3; i++) {
+    SimulationRepeat(simulation, integrators[i]);
+    CheckSprings(simulation);
+  }
+}
+
+static void springs_with_mass_on_the_surface(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type penalty -contact_penalty 50 -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
+  for (PetscInt i = 0; i < 3; i++) {
+    SimulationRepeat(simulation, integrators[i]);
+    CheckSprings(simulation);
+  }
+}
+
+/* Explicit nodes with mass do not feel the force of the step in which they penetrate: they are where they fly to */
+static void first_explicit_step(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type penalty -contact_penalty 50 -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
+  SimulationRepeat(simulation, integrators[2]);
+  near(Step(simulation).force, PENALTY * (2 * COLLISION_SPEED * COLLISION_STEP - COLLISION_GAP), 1e-12);
+}
+
+/* The springs hold nothing before and after contact */
+static void energy_of_the_springs(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  PetscReal   energy, largest = 0, start;
+
+  AddCollision(4, 4, 0);
+  AddOptions("-left_dm_plex_box_lower -0.101 -right_dm_plex_box_upper 0.101 -contact_type penalty -contact_penalty 500");
+  ok(SimulationCreate(simulation));
+  start = TotalEnergy(simulation);
+  near(start, 0.5 * 0.2 * COLLISION_SPEED * COLLISION_SPEED, 1e-15); /* 0.2 kg in both bars */
+  ok(ContactGetPenaltyEnergy(simulation->contact, &energy));
+  near(energy, 0, 0);
+  for (PetscInt step = 0; step < 20; step++) {
+    Step(simulation);
+    ok(ContactGetPenaltyEnergy(simulation->contact, &energy));
+    largest = PetscMax(largest, energy);
+  }
+  assert_true(largest > 0);
+  near(energy, 0, 0); /* apart again after 0.2 s */
+}
+
+static void wrong_options_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type penalty");
+  refused(PETSC_ERR_USER_INPUT, "-contact_penalty|N/m", SimulationCreate(simulation));
+  ok(ControllerDestroy(&simulation->controller));
+  AddOptions("-contact_penalty -5");
+  refused(PETSC_ERR_USER_INPUT, "-contact_penalty -5|positive", SimulationCreate(simulation));
+}
+
+static void unconverged_steps_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type penalty -contact_penalty 50 -penalty_snes_type nrichardson -penalty_snes_max_it 1 -time_start 1 -time_end 1.2");
+  ok(SimulationCreate(simulation));
+  refused(PETSC_ERR_NOT_CONVERGED, "time 1.02 s|after 2 evaluations|-penalty_snes_max_it", ContactStep(simulation->contact));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      simulation_test(springs_with_massless_layers),
+      simulation_test(springs_with_mass_on_the_surface),
+      simulation_test(first_explicit_step),
+      simulation_test(energy_of_the_springs),
+      simulation_test(wrong_options_are_refused),
+      simulation_test(unconverged_steps_are_refused),
+  };
+
+  return impakt_main(argc, argv, tests);
+}

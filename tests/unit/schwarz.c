@@ -1,0 +1,195 @@
+/* The Schwarz alternating method: one controller step in which two bars hit each other, and what ends contact. */
+#include "simulation.h"
+
+/*
+   The step that ends in contact: the gap is closed to the tolerance of the iteration, and what the force does to one bar it does
+   to the other, reversed. Newmark's rule with gamma = 1/2 changes the momentum by dt/2 (F_0 + F_1), and there was no force before.
+*/
+static void CheckFirstStep(Simulation *simulation, PetscReal *force)
+{
+  const PetscReal  before[] = {Momentum(simulation, 0), Momentum(simulation, 1)};
+  ContactPairState pair     = Step(simulation);
+
+  assert_int_equal(pair.active, 1);
+  assert_true(pair.force > 0);
+  near(pair.gap, 0, 1e-12); /* -schwarz_snes_atol [m] */
+  near(pair.tension, 0, 0);
+  /* the gap may be off by 1e-12 m, the layer of stiffness 8 N/m and more that it acts on carries that into the force */
+  near(Momentum(simulation, 1) - before[1], 0.5 * COLLISION_STEP * pair.force, 1e-12);
+  near(Momentum(simulation, 0) - before[0], -0.5 * COLLISION_STEP * pair.force, 1e-12);
+  *force = pair.force;
+}
+
+static void all_pairings_of_integrators(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const types[]    = {"-left_ts_type alpha2 -right_ts_type alpha2", "-left_ts_type alpha2 -right_ts_type centraldifference", "-left_ts_type centraldifference -right_ts_type alpha2",
+                                  "-left_ts_type centraldifference -right_ts_type centraldifference"};
+
+  AddCollision(8, 10, 0);
+  for (PetscInt i = 0; i < 4; i++) {
+    PetscReal force;
+
+    SimulationRepeat(simulation, types[i]);
+    CheckFirstStep(simulation, &force);
+  }
+}
+
+/* One solution, however it is found */
+static void all_types_of_outer_iteration(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const types[]    = {"-schwarz_snes_type newtonls", "-schwarz_snes_type anderson", "-schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5",
+                                  "-schwarz_snes_type nrichardson -schwarz_relaxation aitken", "-schwarz_snes_type ngmres -schwarz_relaxation fixed", "-schwarz_snes_type qn"};
+  PetscReal         force[6];
+
+  AddCollision(8, 10, 0);
+  for (PetscInt i = 0; i < 6; i++) {
+    SimulationRepeat(simulation, types[i]);
+    CheckFirstStep(simulation, &force[i]);
+    near(force[i], force[0], 1e-9 * force[0]); /* 1e-12 m on layers of about 10 N/m, against some mN */
+  }
+}
+
+/* Its Jacobian is exact for linear bodies: one sweep to find F, one more to find that the step has made it zero. Unequal meshes
+   and a moving frame leave nothing to symmetry. */
+static void newton_needs_two_sweeps(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const variants[] = {"-left_ts_type alpha2", "-left_mass_type lumped -right_mass_type consistent", "-left_mass_redistribute 0 -right_mass_redistribute 0", "-schwarz_traction reaction"};
+
+  AddCollision(8, 13, 50);
+  for (PetscInt i = 0; i < 4; i++) {
+    SimulationRepeat(simulation, variants[i]);
+    for (PetscInt step = 0; step < 4; step++) {
+      ContactCounts counts;
+
+      assert_int_equal(Step(simulation).active, 1);
+      ok(ContactGetCounts(simulation->contact, &counts));
+      assert_int_equal(counts.sweeps, 2);
+      assert_int_equal(counts.unconverged_steps, 0);
+    }
+  }
+}
+
+static void unconverged_steps(void **state)
+{
+  Simulation   *simulation = (Simulation *)*state;
+  ContactCounts counts;
+
+  AddCollision(8, 13, 50);
+  AddOptions("-time_start 1 -time_end 1.2 -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5 -schwarz_snes_max_it 1");
+  ok(SimulationCreate(simulation));
+  /* one iteration is one sweep beyond the first, which found the residual that it began with */
+  refused(PETSC_ERR_NOT_CONVERGED, "time 1.02 s|after 2 sweeps|change of position is |absolute tolerance 1e-12 m|DIVERGED_MAX_IT|-schwarz_unconverged accept", ContactStep(simulation->contact));
+  SimulationRepeat(simulation, "-schwarz_unconverged accept");
+  for (PetscInt step = 1; step <= 2; step++) {
+    Step(simulation);
+    ok(ContactGetCounts(simulation->contact, &counts));
+    assert_int_equal(counts.unconverged_steps, step);
+    assert_int_equal(counts.sweeps, 2);
+    assert_int_equal(counts.total_sweeps, 2 * step);
+  }
+}
+
+/* Below round-off no step can converge */
+static void tolerances_below_round_off(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 13, 50);
+  AddOptions("-schwarz_snes_atol 1e-30 -schwarz_snes_rtol 1e-30 -schwarz_snes_max_it 4 -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.3");
+  ok(SimulationCreate(simulation));
+  refused(PETSC_ERR_NOT_CONVERGED, "time 0.02 s|after 5 sweeps|absolute tolerance 1e-30 m, relative 1e-30", ContactStep(simulation->contact));
+}
+
+/*
+   Bars of 0.1 m: the wave is back after 0.2 s, ten controller steps, and then pulls. With the recheck a node that is pulled lets go
+   in that step, and no force is ever tensile. Without it the step ends under tension, and the next one is free.
+*/
+static void pulled_pairs_let_go(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(4, 4, 0);
+  AddOptions("-left_dm_plex_box_lower -0.101 -right_dm_plex_box_upper 0.101");
+  for (PetscInt recheck = 0; recheck < 2; recheck++) {
+    PetscInt  contact = 0, tense = 0;
+    PetscReal gap = 0;
+
+    SimulationRepeat(simulation, recheck ? "-schwarz_recheck 1" : "-schwarz_recheck 0");
+    for (PetscInt step = 0; step < 20; step++) {
+      ContactPairState pair = Step(simulation);
+
+      if (pair.active) contact++;
+      if (pair.tension > 0) tense++;
+      /* a contact that is held has no gap, tensile or not; and no step ends in penetration */
+      if (pair.active) near(pair.gap, 0, 1e-12);
+      else near(pair.force, 0, 0);
+      assert_true(pair.gap > -1e-12);
+      gap = pair.gap;
+    }
+    between(contact, 8, 13); /* 10, but for what four elements do to the wave front */
+    assert_int_equal(tense > 0, !recheck);
+    /* at the end they fly apart as fast as they came, since 20 steps less 1/2 before impact and 10 in contact: 9 steps at least */
+    assert_true(gap > 0.5 * 9 * COLLISION_STEP * 2 * COLLISION_SPEED);
+  }
+}
+
+/* Nodes with mass, and the force that really holds them. In the step of the impact they take over the velocity of the partner,
+   an impulse that no force shows; from then on momentum is conserved. */
+static void reaction_of_nodes_with_mass(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  PetscReal   momentum   = 0;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-left_mass_redistribute 0 -right_mass_redistribute 0 -schwarz_traction reaction");
+  ok(SimulationCreate(simulation));
+  for (PetscInt step = 0; step < 3; step++) {
+    ContactPairState pair = Step(simulation);
+
+    assert_int_equal(pair.active, 1);
+    near(pair.gap, 0, 1e-12);
+    if (step) near(TotalMomentum(simulation), momentum, 1e-11); /* 2e-12 m in a^n = 4 u/dt^2 on a node of 0.06 kg, times dt */
+    momentum = TotalMomentum(simulation);
+  }
+}
+
+static void reaction_needs_an_implicit_partner(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-left_mass_redistribute 0 -right_mass_redistribute 0 -schwarz_traction reaction -right_ts_type centraldifference");
+  refused(PETSC_ERR_USER_INPUT, "-schwarz_traction reaction|'left' have mass|'right' must be implicit", SimulationCreate(simulation));
+}
+
+static void wrong_options_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-schwarz_relaxation aitken");
+  refused(PETSC_ERR_USER_INPUT, "aitken|nrichardson only", SimulationCreate(simulation));
+  ok(ControllerDestroy(&simulation->controller));
+  AddOptions("-schwarz_relaxation fixed -schwarz_snes_type newtontr");
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-schwarz_snes_type 'newtontr'|newtonls, anderson, nrichardson, ngmres, qn", SimulationCreate(simulation));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      simulation_test(all_pairings_of_integrators),
+      simulation_test(all_types_of_outer_iteration),
+      simulation_test(newton_needs_two_sweeps),
+      simulation_test(unconverged_steps),
+      simulation_test(tolerances_below_round_off),
+      simulation_test(pulled_pairs_let_go),
+      simulation_test(reaction_of_nodes_with_mass),
+      simulation_test(reaction_needs_an_implicit_partner),
+      simulation_test(wrong_options_are_refused),
+  };
+
+  return impakt_main(argc, argv, tests);
+}
