@@ -52,16 +52,17 @@ static PetscErrorCode CreateBodies(Controller controller)
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-bodies", names, &n, &set));
   PetscCheck(set && n, comm, PETSC_ERR_USER_INPUT, "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
-  for (PetscInt b = 0; b < n; b++)
-    for (PetscInt other = 0; other < b; other++) {
-      PetscCall(PetscStrcmp(names[b], names[other], &same));
-      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-bodies names '%s' twice", names[b]);
-    }
   controller->n_bodies = n;
   PetscCall(PetscCalloc1(n, &controller->bodies));
   for (PetscInt b = 0; b < n; b++) {
     PetscCall(BodyCreate(comm, names[b], &controller->bodies[b]));
     PetscCall(PetscFree(names[b]));
+  }
+  for (PetscInt b = 0; b < n; b++) {
+    for (PetscInt other = 0; other < b; other++) {
+      PetscCall(PetscStrcmp(((PetscObject)controller->bodies[b])->name, ((PetscObject)controller->bodies[other])->name, &same));
+      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-bodies names '%s' twice", ((PetscObject)controller->bodies[b])->name);
+    }
     PetscCall(BodySetFromOptions(controller->bodies[b]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -264,11 +264,12 @@ static PetscErrorCode SetUpNodes(Surface surface, PetscInt n_faces, const Face f
 @*/
 PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
 {
-  MPI_Comm    comm = PetscObjectComm((PetscObject)dm);
-  const char *body;
-  Selection   selection;
-  Face       *mine, *all;
-  PetscInt    n_mine = 0, n_all = 0;
+  MPI_Comm     comm = PetscObjectComm((PetscObject)dm);
+  const char  *body;
+  PetscSection section;
+  Selection    selection;
+  Face        *mine, *all;
+  PetscInt     n_mine = 0, n_all = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(surface));
@@ -276,6 +277,7 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
   (*surface)->dm = dm;
   PetscCall(DMGetCoordinateDim(dm, &(*surface)->data.dim));
   PetscCall(DMGetBoundingBox(dm, (*surface)->data.lower, (*surface)->data.upper));
+  PetscCall(DMGetGlobalSection(dm, &section)); /* made by all ranks together, also by those that have no face */
   PetscCall(FindSelection(dm, name, &selection));
   PetscCall(CollectFaces(*surface, &selection, &n_mine, &mine));
   PetscCall(GatherFaces(comm, n_mine, mine, &n_all, &all));

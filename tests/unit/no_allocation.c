@@ -1,5 +1,5 @@
-/* ranks: 1
-   Nothing is allocated in the time loop: the C library's allocator is replaced by one that counts. */
+/* ranks: 1 */
+/* Nothing is allocated in the time loop: the C library's allocator is replaced by one that counts. */
 #include <impakt.h>
 #include <stdarg.h>
 #include <stddef.h>
