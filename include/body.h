@@ -82,10 +82,10 @@ PETSC_EXTERN const char *const BodyTractionTypes[];
 .seealso: `BodyGetMeasures()`
 S*/
 typedef struct {
-  PetscReal kinetic;           /* J; staggered, for central differences */
-  PetscReal potential;         /* J */
-  PetscReal momentum[3];       /* kg m/s */
-  PetscReal mean_velocity[3];  /* mass-averaged, m/s */
+  PetscReal kinetic;          /* J; staggered, for central differences */
+  PetscReal potential;        /* J */
+  PetscReal momentum[3];      /* kg m/s */
+  PetscReal mean_velocity[3]; /* mass-averaged, m/s */
 } BodyMeasures;
 
 /*S

@@ -39,9 +39,9 @@ PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 .seealso: `ContactGetPairState()`
 S*/
 typedef struct {
-  PetscReal force;  /* resultant of the normal contact forces, compression positive [N] */
-  PetscReal gap;    /* smallest normal gap [m] */
-  PetscInt  active; /* nodes in contact */
+  PetscReal force;   /* resultant of the normal contact forces, compression positive [N] */
+  PetscReal gap;     /* smallest normal gap [m] */
+  PetscInt  active;  /* nodes in contact */
   PetscReal tension; /* largest tensile force of an active node, 0 if there is none [N] */
 } ContactPairState;
 
@@ -53,7 +53,7 @@ typedef struct {
 .seealso: `ContactGetCounts()`
 S*/
 typedef struct {
-  PetscInt       sweeps;            /* of the last step: each body integrated once; 0 without contact */
+  PetscInt       sweeps; /* of the last step: each body integrated once; 0 without contact */
   PetscInt64     total_sweeps;
   PetscInt       unconverged_steps; /* accepted by -schwarz_unconverged accept */
   PetscInt       set_changes;       /* rounds of the active set beyond the first, all steps */

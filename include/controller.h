@@ -28,12 +28,12 @@ typedef struct {
   PetscInt                steps; /* of the whole run */
   PetscReal               time;  /* s */
   PetscInt                n_bodies, n_pairs;
-  const BodyMeasures     *bodies;            /* per body */
-  const PetscReal        *contact_positions; /* per body: mean position of its contact nodes, 3 numbers [m] */
-  const PetscReal        *contact_velocities;/* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
-  const ContactPairState *pairs;             /* per pair */
-  PetscInt                sweeps;            /* of this step */
-  PetscReal               penalty_energy;    /* stored in penalty springs, 0 with other methods [J] */
+  const BodyMeasures     *bodies;             /* per body */
+  const PetscReal        *contact_positions;  /* per body: mean position of its contact nodes, 3 numbers [m] */
+  const PetscReal        *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
+  const ContactPairState *pairs;              /* per pair */
+  PetscInt                sweeps;             /* of this step */
+  PetscReal               penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
 } ControllerFrame;
 
 typedef PetscErrorCode ControllerMonitorFn(Controller, const ControllerFrame *, void *);

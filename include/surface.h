@@ -22,7 +22,7 @@ typedef struct _n_Surface *Surface;
 .seealso: `Surface`, `SurfaceGetData()`
 S*/
 typedef struct {
-  PetscInt         dim, face_nodes;    /* space dimension, nodes of one face */
+  PetscInt         dim, face_nodes; /* space dimension, nodes of one face */
   PetscInt         n_nodes, n_faces;
   const PetscInt  *dofs;               /* per node: global number of its first displacement; ascending */
   const PetscReal *positions;          /* per node: reference position, dim [m] */

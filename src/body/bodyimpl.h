@@ -32,17 +32,17 @@ struct _p_Body {
   Element    element;
   Material   material;
   /* mass */
-  BodyMassType mass_type;
-  PetscBool    mass_redistribute;
-  PetscBool   *in_layer;      /* per local node: belongs to a contact surface */
-  PetscInt     n_layer_dofs;  /* owned */
-  PetscInt    *layer_dofs;    /* owned dof (rank numbering) of massless nodes; empty unless redistributed */
-  Vec          mass_row_sum;  /* M 1: the lumped mass */
-  Vec          mass_diagonal; /* the mass matrix where it is diagonal, else NULL */
-  Mat          mass_matrix;   /* the mass matrix where it is not diagonal, else NULL */
-  Vec          inverse_mass;  /* diagonal: 1/m, 0 on massless nodes */
-  ConstrainedSolver mass_solver; /* not diagonal: made when first needed */
-  PetscReal    total_mass;
+  BodyMassType      mass_type;
+  PetscBool         mass_redistribute;
+  PetscBool        *in_layer;      /* per local node: belongs to a contact surface */
+  PetscInt          n_layer_dofs;  /* owned */
+  PetscInt         *layer_dofs;    /* owned dof (rank numbering) of massless nodes; empty unless redistributed */
+  Vec               mass_row_sum;  /* M 1: the lumped mass */
+  Vec               mass_diagonal; /* the mass matrix where it is diagonal, else NULL */
+  Mat               mass_matrix;   /* the mass matrix where it is not diagonal, else NULL */
+  Vec               inverse_mass;  /* diagonal: 1/m, 0 on massless nodes */
+  ConstrainedSolver mass_solver;   /* not diagonal: made when first needed */
+  PetscReal         total_mass;
   /* stiffness */
   Mat stiffness;
   /* time */
@@ -54,37 +54,37 @@ struct _p_Body {
   PetscReal alpha_m, alpha_f, gamma, beta;
   PetscReal stable_step;
   /* state */
-  PetscReal initial_velocity[3], initial_displacement[3];
-  BodyState state, saved, substep_start;
-  PetscReal time, saved_time;
-  PetscInt  step, saved_step;
-  Vec       internal_force; /* at state.u */
-  Vec       previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
-  PetscBool swept;          /* previous_u holds such a state */
-  Vec          kept[4]; /* displacement, velocity, acceleration, internal force put aside by BodyKeep() */
+  PetscReal    initial_velocity[3], initial_displacement[3];
+  BodyState    state, saved, substep_start;
+  PetscReal    time, saved_time;
+  PetscInt     step, saved_step;
+  Vec          internal_force; /* at state.u */
+  Vec          previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
+  PetscBool    swept;          /* previous_u holds such a state */
+  Vec          kept[4];        /* displacement, velocity, acceleration, internal force put aside by BodyKeep() */
   PetscScalar *kept_traces;
   Vec          work[3];
   /* interface rows */
-  Mat               interface;
-  BodyRows          rows;
-  BodyCondition    *conditions; /* local rows */
-  PetscBool        *held;       /* those that are prescribed */
-  PetscInt          n_prescribed, n_forced; /* over all ranks */
-  PetscBool         prescribed_mass; /* prescribed nodes carry mass */
-  BodyTractionType  traction;
-  BodyTraces        traces;
-  PetscReal         window_position; /* how far the current substep has come in the controller step, 0 to 1 */
-  PetscInt          substep;         /* 0 to substeps - 1 */
-  Vec               row_vec[2];
-  Mat               shifted;         /* implicit: stiffness + shift mass */
-  ConstrainedSolver solver;          /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
-  IS                layer_is;
-  Vec               layer_rhs, layer_solution;
-  VecScatter        layer_scatter;
+  Mat                   interface;
+  BodyRows              rows;
+  BodyCondition        *conditions;             /* local rows */
+  PetscBool            *held;                   /* those that are prescribed */
+  PetscInt              n_prescribed, n_forced; /* over all ranks */
+  PetscBool             prescribed_mass;        /* prescribed nodes carry mass */
+  BodyTractionType      traction;
+  BodyTraces            traces;
+  PetscReal             window_position; /* how far the current substep has come in the controller step, 0 to 1 */
+  PetscInt              substep;         /* 0 to substeps - 1 */
+  Vec                   row_vec[2];
+  Mat                   shifted; /* implicit: stiffness + shift mass */
+  ConstrainedSolver     solver;  /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
+  IS                    layer_is;
+  Vec                   layer_rhs, layer_solution;
+  VecScatter            layer_scatter;
   struct _BodyResponse *response;
-  PetscInt64     total_substeps;
-  PetscLogDouble seconds;
-  PetscBool      setup;
+  PetscInt64            total_substeps;
+  PetscLogDouble        seconds;
+  PetscBool             setup;
 };
 
 PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response;

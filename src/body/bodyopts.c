@@ -5,7 +5,7 @@
 static PetscErrorCode CheckDescribed(Body body)
 {
   const char *prefix = ((PetscObject)body)->prefix, *mesh[] = {"-dm_plex_filename", "-dm_plex_box_faces", "-dm_plex_dim"};
-  PetscBool   found  = PETSC_FALSE;
+  PetscBool   found = PETSC_FALSE;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < 3 && !found; i++) PetscCall(PetscOptionsHasName(NULL, prefix, mesh[i], &found));
@@ -51,8 +51,8 @@ static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
 
 static PetscErrorCode CreateTime(Body body)
 {
-  MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
-  const char *prefix = ((PetscObject)body)->prefix;
+  MPI_Comm    comm     = PetscObjectComm((PetscObject)body);
+  const char *prefix   = ((PetscObject)body)->prefix;
   char        type[64] = TSALPHA2, full[160];
   PetscBool   hidden, alpha2;
 

@@ -11,21 +11,21 @@
 #include <petscblaslapack.h>
 
 struct _n_ConstrainedSolver {
-  KSP          ksp;
-  PC           direct;               /* the preconditioner where it is the whole solver, else NULL */
-  Mat          B;
-  PetscInt     local, global, begin; /* rows of B */
-  PetscMPIInt  size, *counts, *offsets;
-  int         *mine, *constrained; /* 1 where a row is held: this rank's rows, and all rows */
-  PetscInt     n;           /* how many of them */
-  PetscInt    *rows;        /* which */
-  Vec         *columns;     /* per row: A^{-1} B^T e, or NULL until needed */
-  PetscScalar *compliance;  /* global x global, by columns; column j valid where columns[j] is */
-  PetscScalar *factor;      /* n x n, LU of the constrained part */
+  KSP           ksp;
+  PC            direct; /* the preconditioner where it is the whole solver, else NULL */
+  Mat           B;
+  PetscInt      local, global, begin; /* rows of B */
+  PetscMPIInt   size, *counts, *offsets;
+  int          *mine, *constrained; /* 1 where a row is held: this rank's rows, and all rows */
+  PetscInt      n;                  /* how many of them */
+  PetscInt     *rows;               /* which */
+  Vec          *columns;            /* per row: A^{-1} B^T e, or NULL until needed */
+  PetscScalar  *compliance;         /* global x global, by columns; column j valid where columns[j] is */
+  PetscScalar  *factor;             /* n x n, LU of the constrained part */
   PetscBLASInt *pivots;
-  PetscScalar *gathered, *force;
-  Vec         *active_columns; /* those of the constrained rows */
-  Vec          row, rhs;
+  PetscScalar  *gathered, *force;
+  Vec          *active_columns; /* those of the constrained rows */
+  Vec           row, rhs;
 };
 
 /* Bodies up to this size are factored whole on every rank; larger ones by MUMPS */

@@ -82,7 +82,7 @@ static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xn
 /* The effective matrix K + alpha_m / (alpha_f beta dt^2) M, factored once */
 PetscErrorCode BodySetUpImplicit(Body body)
 {
-  const PetscReal shift = body->alpha_m / (body->alpha_f * body->beta * PetscSqr(body->time_step));
+  const PetscReal shift  = body->alpha_m / (body->alpha_f * body->beta * PetscSqr(body->time_step));
   const char     *prefix = ((PetscObject)body)->prefix;
   SNES            snes;
   SNESLineSearch  line_search;

@@ -8,7 +8,7 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 {
   const PetscInt *nodes   = body->connectivity + e * body->element->nodes;
   const PetscInt  n_nodes = body->element->nodes, dim = body->dim, n = n_nodes * dim;
-  PetscInt        inner   = 0;
+  PetscInt        inner = 0;
 
   PetscFunctionBegin;
   PetscCall((*body->element->ops.mass)(body->element, e, M));

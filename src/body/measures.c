@@ -22,7 +22,7 @@
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  const PetscInt     n     = body->owned_nodes * body->dim;
+  const PetscInt     n       = body->owned_nodes * body->dim;
   const PetscReal    quarter = body->is_explicit ? 0.25 * PetscSqr(body->time_step) : 0;
   const PetscScalar *u, *v, *a, *force, *mass, *momentum_v, *momentum_a;
   PetscReal          kinetic = 0, potential = 0, sums[5] = {0};

@@ -24,23 +24,23 @@ typedef enum {
 typedef struct {
   PetscInt     row; /* global */
   InputKind    kind;
-  Vec          change[4]; /* of displacement, velocity, acceleration, internal force */
+  Vec          change[4];  /* of displacement, velocity, acceleration, internal force */
   PetscBool    changes[4]; /* whether they are not zero: a velocity, say, changes little but itself */
-  PetscScalar *rows; /* displacement, velocity, acceleration, reaction: 4 x local rows */
+  PetscScalar *rows;       /* displacement, velocity, acceleration, reaction: 4 x local rows */
 } Column;
 
 struct _BodyResponse {
-  PetscBool    made;         /* there is a matrix, for `conditions` */
-  PetscBool    valid;        /* these are the present conditions */
+  PetscBool      made;  /* there is a matrix, for `conditions` */
+  PetscBool      valid; /* these are the present conditions */
   BodyCondition *conditions;
-  PetscBool    window_valid; /* the present end state came from `inputs` */
-  PetscBool    condensed;    /* columns hold states */
+  PetscBool      window_valid; /* the present end state came from `inputs` */
+  PetscBool      condensed;    /* columns hold states */
   /* all rows by all rows, by columns: reaction of prescribed, displacement of other rows, for displacements and forces */
   PetscScalar *waveform;       /* at the end of each substep, for a hat in the first: substeps of them */
   PetscScalar *matrix;         /* at the end of the controller step, for inputs that rise linearly over it */
   PetscScalar *rate_matrix[2]; /* for velocities and accelerations, with one substep */
   PetscInt     n_columns;
-  Column      *columns;      /* at most 3 for each row */
+  Column      *columns;             /* at most 3 for each row */
   PetscScalar *inputs, *new_inputs; /* of all rows on every rank, 4 kinds each */
   PetscScalar *mine;
   /* what probing overwrites: present and saved state, internal force; all traces */
@@ -99,8 +99,8 @@ PetscErrorCode BodyInvalidateWindow(Body body)
 /* All inputs at the end of the controller step, on every rank */
 static PetscErrorCode GatherInputs(Body body, PetscScalar all[])
 {
-  const Trace traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
-  BodyRows   *rows     = &body->rows;
+  const Trace  traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
+  BodyRows    *rows     = &body->rows;
   PetscScalar *values, *mine = body->response->mine;
 
   PetscFunctionBegin;
@@ -271,7 +271,7 @@ static PetscErrorCode CopyTraces(Body body, PetscScalar buffer[], PetscBool stor
 
 static PetscErrorCode BeginProbing(Body body, Clock *clock)
 {
-  struct _BodyResponse *response = body->response;
+  struct _BodyResponse *response       = body->response;
   const Vec             vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
 
   PetscFunctionBegin;
@@ -289,7 +289,7 @@ static PetscErrorCode BeginProbing(Body body, Clock *clock)
 
 static PetscErrorCode EndProbing(Body body, const Clock *clock)
 {
-  struct _BodyResponse *response = body->response;
+  struct _BodyResponse *response       = body->response;
   const Vec             vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
 
   PetscFunctionBegin;

@@ -79,7 +79,7 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 {
   PetscInt  counts[2] = {0, 0};
-  PetscBool changed = PETSC_FALSE, known;
+  PetscBool changed   = PETSC_FALSE, known;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);

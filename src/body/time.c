@@ -6,8 +6,8 @@
    (Irons and Treharne 1971), whether its contact nodes are free or prescribed. */
 static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, PetscReal *largest)
 {
-  const PetscInt *nodes = body->connectivity + e * body->element->nodes;
-  const PetscInt  n     = body->element->nodes * body->dim;
+  const PetscInt *nodes                  = body->connectivity + e * body->element->nodes;
+  const PetscInt  n                      = body->element->nodes * body->dim;
   PetscScalar     zero[ELEMENT_MAX_DOFS] = {0}, K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], work[4 * ELEMENT_MAX_DOFS];
   PetscReal       eigenvalues[ELEMENT_MAX_DOFS];
   PetscInt        kept[ELEMENT_MAX_DOFS], n_kept = 0;

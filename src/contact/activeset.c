@@ -7,7 +7,7 @@ PetscErrorCode ContactSetConditions(Contact contact, ContactConditions condition
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+      const ContactPair *pair      = &contact->pairs[contact->row_pair[i]];
       BodyCondition      condition = BODY_FREE;
 
       if (conditions == CONDITIONS_FORCES && (pair->body[0] == b || pair->body[1] == b)) condition = BODY_FORCED;

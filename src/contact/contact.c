@@ -193,7 +193,7 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
   char      type[64] = CONTACT_SCHWARZ, *pairs[64];
-  PetscInt  n = 64;
+  PetscInt  n        = 64;
   PetscBool set;
 
   PetscFunctionBegin;

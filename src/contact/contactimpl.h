@@ -11,28 +11,28 @@ struct _ContactOps {
 };
 
 typedef struct {
-  char    *name;          /* as given: left:right */
-  PetscInt body[2];       /* Dirichlet and Neumann side, numbers in the contact's bodies */
-  char    *surface[2];    /* names of the surfaces, NULL for all that face each other */
-  PetscInt begin, end;    /* its rows of this rank */
-  PetscReal normal[3];    /* mean outward normal of the Dirichlet side */
+  char     *name;       /* as given: left:right */
+  PetscInt  body[2];    /* Dirichlet and Neumann side, numbers in the contact's bodies */
+  char     *surface[2]; /* names of the surfaces, NULL for all that face each other */
+  PetscInt  begin, end; /* its rows of this rank */
+  PetscReal normal[3];  /* mean outward normal of the Dirichlet side */
 } ContactPair;
 
 /* What the rows mean to the bodies */
 typedef enum {
-  CONDITIONS_FREE,      /* no row means anything */
-  CONDITIONS_SCHWARZ,   /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
-  CONDITIONS_FORCES     /* all rows forced on both sides */
+  CONDITIONS_FREE,    /* no row means anything */
+  CONDITIONS_SCHWARZ, /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
+  CONDITIONS_FORCES   /* all rows forced on both sides */
 } ContactConditions;
 
 struct _p_Contact {
   PETSCHEADER(struct _ContactOps);
   PetscInt     n_bodies, n_pairs, max_pairs;
   Body        *bodies;
-  BodyTraces  *traces;       /* per body */
-  Mat         *interfaces;   /* per body: rows of all pairs */
+  BodyTraces  *traces;     /* per body */
+  Mat         *interfaces; /* per body: rows of all pairs */
   ContactPair *pairs;
-  PetscInt    *order;        /* sweep order: Dirichlet sides before their Neumann sides */
+  PetscInt    *order; /* sweep order: Dirichlet sides before their Neumann sides */
   /* rows of this rank */
   PetscInt       n_rows, row_begin, n_all_rows;
   PetscInt      *row_pair;
@@ -40,12 +40,12 @@ struct _p_Contact {
   PetscReal     *force, *gap;             /* at the end of the controller step */
   PetscReal     *saved_force, *saved_gap; /* at its start */
   PetscBool     *active, *saved_active;
-  BodyCondition *conditions;              /* work space */
-  PetscInt      *all_row_pair;            /* of all rows, on every rank */
+  BodyCondition *conditions;   /* work space */
+  PetscInt      *all_row_pair; /* of all rows, on every rank */
   int           *mine_active, *all_active;
   PetscMPIInt    size, *counts, *offsets;
-  PetscReal      tolerance;               /* gaps above minus this are not penetration [m] */
-  PetscInt     **node_dofs;               /* per body: its owned contact nodes, first displacement, rank numbering */
+  PetscReal      tolerance; /* gaps above minus this are not penetration [m] */
+  PetscInt     **node_dofs; /* per body: its owned contact nodes, first displacement, rank numbering */
   PetscInt      *n_node_dofs, *n_all_nodes;
   ContactCounts  counts_made;
   PetscReal      penalty_energy;

@@ -160,7 +160,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
 @*/
 PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
 {
-  const ContactPair *p = &contact->pairs[pair];
+  const ContactPair *p       = &contact->pairs[pair];
   PetscReal          sums[2] = {0, 0}, maxima[2] = {-PETSC_MAX_REAL, 0};
 
   PetscFunctionBegin;

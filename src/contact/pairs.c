@@ -76,7 +76,7 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
 /* Bodies in an order in which every Dirichlet side comes before its Neumann side */
 static PetscErrorCode OrderBodies(Contact contact)
 {
-  PetscInt  done = 0;
+  PetscInt  done  = 0;
   PetscBool moved = PETSC_TRUE, *placed;
 
   PetscFunctionBegin;
@@ -175,7 +175,7 @@ static PetscErrorCode AllocateRows(Contact contact)
 
 static PetscErrorCode FillRows(Contact contact, Transfer transfers[])
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  MPI_Comm comm  = PetscObjectComm((PetscObject)contact);
   PetscInt local = 0;
 
   PetscFunctionBegin;

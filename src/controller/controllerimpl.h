@@ -22,7 +22,7 @@ struct _p_Controller {
   ContactPairState *pair_states;
   /* cost */
   PetscLogDouble setup_seconds, wall_seconds, cpu_seconds;
-  PetscBool setup;
+  PetscBool      setup;
 };
 
 PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);

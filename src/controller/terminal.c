@@ -25,8 +25,8 @@ static PetscErrorCode FreeContext(void **ctx)
 
 static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *frame, void *ctx)
 {
-  Lines    *lines = (Lines *)ctx;
-  MPI_Comm  comm  = PetscObjectComm((PetscObject)controller);
+  Lines    *lines  = (Lines *)ctx;
+  MPI_Comm  comm   = PetscObjectComm((PetscObject)controller);
   PetscReal energy = 0, force = 0, gap = PETSC_MAX_REAL;
   PetscInt  active = 0;
 

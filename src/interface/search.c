@@ -4,8 +4,8 @@
    |x - sum_k w_k p_k| over weights that sum to one and are not negative. The distance is returned. */
 static PetscReal ProjectOnFace(const SurfaceData *data, PetscInt face, const PetscReal x[], PetscReal weights[])
 {
-  const PetscInt  dim = data->dim, n = data->face_nodes, *nodes = data->faces + face * n;
-  PetscReal        distance = 0;
+  const PetscInt dim = data->dim, n = data->face_nodes, *nodes = data->faces + face * n;
+  PetscReal      distance = 0;
 
   for (PetscInt k = 0; k < n; k++) weights[k] = k == 0;
   /* exact minimisation along one edge after the other, which ends in the minimum since the problem is convex; a segment

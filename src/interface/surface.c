@@ -99,7 +99,7 @@ static PetscErrorCode DescribeFace(DM dm, PetscInt face, PetscInt dim, PetscInt 
   Vec                coordinates;
   const PetscScalar *x;
   const PetscInt    *support;
-  PetscInt          *closure = NULL, n_points, vstart, vend;
+  PetscInt          *closure     = NULL, n_points, vstart, vend;
   PetscReal          centroid[3] = {0}, cell_centroid[3] = {0};
 
   PetscFunctionBegin;

@@ -28,7 +28,7 @@ static PetscBool BoxesMeet(const SurfaceData *a, const SurfaceData *b)
    looks at it too, but across both bodies: then the gap is negative though the bodies are apart. */
 static PetscErrorCode FindRows(Transfer transfer, const SurfaceData *dirichlet, const SurfaceData *neumann)
 {
-  const PetscInt  dim  = dirichlet->dim, n = neumann->face_nodes;
+  const PetscInt  dim = dirichlet->dim, n = neumann->face_nodes;
   const PetscBool meet = BoxesMeet(dirichlet, neumann);
 
   PetscFunctionBegin;

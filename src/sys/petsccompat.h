@@ -3,18 +3,18 @@
 #include <petscversion.h>
 
 #if PETSC_VERSION_LT(3, 21, 0)
-  #error "Impakt needs PETSc 3.21 or newer (TSAlpha2SetPredictor)"
+#  error "Impakt needs PETSc 3.21 or newer (TSAlpha2SetPredictor)"
 #endif
 
 /* the full step, without a search */
 #if PETSC_VERSION_LT(3, 26, 0)
-  #define LINESEARCH_FULL_STEP SNESLINESEARCHBASIC
+#  define LINESEARCH_FULL_STEP SNESLINESEARCHBASIC
 #else
-  #define LINESEARCH_FULL_STEP SNESLINESEARCHNONE
+#  define LINESEARCH_FULL_STEP SNESLINESEARCHNONE
 #endif
 
 #if PETSC_VERSION_LT(3, 25, 0)
-  #define SNES_DIVERGED_NAN SNES_DIVERGED_FNORM_NAN
+#  define SNES_DIVERGED_NAN SNES_DIVERGED_FNORM_NAN
 #else
-  #define SNES_DIVERGED_NAN SNES_DIVERGED_FUNCTION_NANORINF
+#  define SNES_DIVERGED_NAN SNES_DIVERGED_FUNCTION_NANORINF
 #endif

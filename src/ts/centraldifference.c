@@ -9,7 +9,7 @@
 typedef struct {
   TSCentralDifferenceFn *acceleration;
   void                  *ctx;
-  Vec                    A;         /* acceleration at ts->ptime, owned by the caller of TSCentralDifferenceSetAccelerationVec() */
+  Vec                    A;          /* acceleration at ts->ptime, owned by the caller of TSCentralDifferenceSetAccelerationVec() */
   Vec                    U0, V0, A0; /* state at the start of the step, for TSRollBack() */
 } TS_CentralDifference;
 
@@ -166,12 +166,12 @@ static PetscErrorCode TSCreate_CentralDifference(TS ts)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&cd));
-  ts->data            = cd;
-  ts->ops->setup      = TSSetUp_CentralDifference;
-  ts->ops->step       = TSStep_CentralDifference;
-  ts->ops->rollback   = TSRollBack_CentralDifference;
-  ts->ops->reset      = TSReset_CentralDifference;
-  ts->ops->destroy    = TSDestroy_CentralDifference;
+  ts->data               = cd;
+  ts->ops->setup         = TSSetUp_CentralDifference;
+  ts->ops->step          = TSStep_CentralDifference;
+  ts->ops->rollback      = TSRollBack_CentralDifference;
+  ts->ops->reset         = TSReset_CentralDifference;
+  ts->ops->destroy       = TSDestroy_CentralDifference;
   ts->default_adapt_type = TSADAPTNONE;
   PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C", TSCentralDifferenceSetAcceleration_CentralDifference));
   PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C", TSCentralDifferenceSetAccelerationVec_CentralDifference));

@@ -197,8 +197,8 @@ static bool PositionsConverged(const Body *b)
 /* For central differences the staggered energy, which is what the scheme conserves */
 static void Energies(const Body *b, double *kinetic, double *potential)
 {
-  const State *s = b->now;
-  const double w = b->implicit ? 0 : 0.25 * b->dt * b->dt;
+  const State *s   = b->now;
+  const double w   = b->implicit ? 0 : 0.25 * b->dt * b->dt;
   double       mvv = 0, maa = 0, dudu = 0;
 
   for (int i = 0; i < NODES; i++) {

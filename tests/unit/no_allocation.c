@@ -61,7 +61,7 @@ static void RunCase(const char options[])
   static const char common[] = "-bodies left,right -time_end 5.2e-4 -time_step 1e-6 "
                                "-left_dm_plex_dim 1 -left_dm_plex_box_faces 50 -left_dm_plex_box_lower -0.2503 -left_dm_plex_box_upper -3.5e-4 -left_density 1000 -left_youngs_modulus 1e9 -left_cross_section 1e-6 -left_initial_velocity 100 "
                                "-right_dm_plex_dim 1 -right_dm_plex_box_faces 40 -right_dm_plex_box_lower 3.5e-4 -right_dm_plex_box_upper 0.2503 -right_density 1000 -right_youngs_modulus 1e9 -right_cross_section 1e-6 -right_initial_velocity -100 ";
-  Controller controller;
+  Controller        controller;
 
   assert_int_equal(PetscOptionsClear(NULL), PETSC_SUCCESS);
   assert_int_equal(PetscOptionsInsertString(NULL, common), PETSC_SUCCESS);
@@ -113,11 +113,11 @@ static void LagrangeDoesNotAllocate(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(DefaultsDoNotAllocate),
-    cmocka_unit_test(ExplicitDoesNotAllocate),
-    cmocka_unit_test(PaperDoesNotAllocate),
-    cmocka_unit_test(PenaltyDoesNotAllocate),
-    cmocka_unit_test(LagrangeDoesNotAllocate),
+      cmocka_unit_test(DefaultsDoNotAllocate),
+      cmocka_unit_test(ExplicitDoesNotAllocate),
+      cmocka_unit_test(PaperDoesNotAllocate),
+      cmocka_unit_test(PenaltyDoesNotAllocate),
+      cmocka_unit_test(LagrangeDoesNotAllocate),
   };
   int failed;
 

@@ -9,10 +9,10 @@ typedef struct _n_Element *Element;
 
 typedef struct {
   PetscErrorCode (*setfromoptions)(Element, MPI_Comm, const char[]);
-  PetscErrorCode (*setup)(Element, const PetscReal[]);                                      /* coordinates of the rank's nodes */
-  PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]);             /* adds to the second */
-  PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[], PetscScalar[]);       /* tangent of one element, row by row */
-  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]);                                 /* consistent mass of one element */
+  PetscErrorCode (*setup)(Element, const PetscReal[]);                                /* coordinates of the rank's nodes */
+  PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]);       /* adds to the second */
+  PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[], PetscScalar[]); /* tangent of one element, row by row */
+  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]);                           /* consistent mass of one element */
   PetscErrorCode (*destroy)(Element);
 } ElementOps;
 

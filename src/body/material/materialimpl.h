@@ -6,8 +6,8 @@ struct _MaterialOps {
   PetscErrorCode (*setfromoptions)(Material);
   PetscErrorCode (*view)(Material, PetscViewer);
   PetscErrorCode (*destroy)(Material);
-  PetscErrorCode (*uniaxialmodulus)(Material, PetscReal *);                                /* at zero strain */
-  PetscErrorCode (*uniaxial)(Material, PetscInt, const PetscReal[], PetscReal[]);          /* strain -> stress, a batch of points */
+  PetscErrorCode (*uniaxialmodulus)(Material, PetscReal *);                       /* at zero strain */
+  PetscErrorCode (*uniaxial)(Material, PetscInt, const PetscReal[], PetscReal[]); /* strain -> stress, a batch of points */
 };
 
 struct _p_Material {

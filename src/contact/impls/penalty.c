@@ -155,8 +155,8 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 /* The spring alone, between the masses of explicit bodies, must be stable: tau A dt^2 B M^{-1} B^T < 4 */
 static PetscErrorCode CheckStability(Contact contact)
 {
-  Penalty    *penalty = (Penalty *)contact->data;
-  PetscReal  *compliance, worst = 0;
+  Penalty   *penalty = (Penalty *)contact->data;
+  PetscReal *compliance, worst = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(contact->n_rows, &compliance));

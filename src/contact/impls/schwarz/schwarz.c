@@ -342,13 +342,13 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&schwarz));
-  schwarz->traction           = BODY_TRACTION_INTERNAL;
-  schwarz->recheck            = PETSC_TRUE;
-  contact->data               = schwarz;
+  schwarz->traction            = BODY_TRACTION_INTERNAL;
+  schwarz->recheck             = PETSC_TRUE;
+  contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
-  contact->ops->setup         = ContactSetUp_Schwarz;
-  contact->ops->step          = ContactStep_Schwarz;
-  contact->ops->view          = ContactView_Schwarz;
-  contact->ops->destroy       = ContactDestroy_Schwarz;
+  contact->ops->setup          = ContactSetUp_Schwarz;
+  contact->ops->step           = ContactStep_Schwarz;
+  contact->ops->view           = ContactView_Schwarz;
+  contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,8 +15,8 @@ PetscErrorCode SchwarzStartTraces(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
   PetscCall(VecGetArrayWrite(schwarz->outer.x, &x));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];
-    PetscScalar       *start;
+    const PetscInt p = contact->row_pair[i], levels = schwarz->levels[p];
+    PetscScalar   *start;
 
     /* a gap that is open at the start closes linearly over the step */
     PetscCall(TraceGetLevel(contact->traces[contact->pairs[p].body[1]].displacement, 0, &start));
