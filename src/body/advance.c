@@ -31,6 +31,8 @@ PetscErrorCode BodySave(Body body)
       PetscCall(PetscArraycpy(start, end, body->rows.local));
     }
   }
+  /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
+  if (body->step != body->saved_step) PetscCall(TSMonitor(body->ts, body->step, body->time, body->state.u));
   body->saved_time = body->time;
   body->saved_step = body->step;
   body->swept      = PETSC_FALSE;

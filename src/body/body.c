@@ -211,6 +211,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpSubsteps(body));
   PetscCall(CreateTraces(body));
   PetscCall(BodySetUpTime(body));
+  PetscCall(TSViewFromOptions(body->ts, NULL, "-ts_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);

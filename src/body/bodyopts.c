@@ -21,6 +21,7 @@ static PetscErrorCode CreateMesh(Body body)
   PetscCall(DMSetOptionsPrefix(body->dm, ((PetscObject)body)->prefix));
   PetscCall(DMSetFromOptions(body->dm));
   PetscCall(PetscObjectSetName((PetscObject)body->dm, body->hdr.name)); /* error messages about surfaces name the mesh */
+  PetscCall(DMViewFromOptions(body->dm, NULL, "-dm_view"));
   PetscCall(DMGetCoordinateDim(body->dm, &body->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

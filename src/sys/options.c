@@ -61,8 +61,8 @@ static const KnownOption body_options[] = {
     {"ts_alpha_beta", "b", "Newmark's beta, default 1/4"},
 };
 
-/* These are read by PETSc when it finalises, so they are unread before the run */
-static const char *const late_options[] = {"options_left", "options_view", "malloc_dump", "malloc_view", "malloc_debug", "objects_dump", "memory_view", "log_view", "log_trace", "log_view_memory", "log_view_gpu_time", "log_nested", "get_total_flops", "mpidump", "citations", "petsc_mpi", "x_virtual", "on_error_abort", "on_error_mpiabort"};
+/* These are read by PETSc when it solves or finalises, so they are unread before the run */
+static const char *const late_options[] = {"schwarz_snes_view", "schwarz_snes_view_pre", "schwarz_snes_view_solution", "penalty_snes_view", "penalty_snes_view_pre", "penalty_snes_view_solution", "options_left", "options_view", "malloc_dump", "malloc_view", "malloc_debug", "objects_dump", "memory_view", "log_view", "log_trace", "log_view_memory", "log_view_gpu_time", "log_nested", "get_total_flops", "mpidump", "citations", "petsc_mpi", "x_virtual", "on_error_abort", "on_error_mpiabort"};
 
 /* Levenshtein's distance between two short words */
 static PetscInt EditDistance(const char a[], const char b[])
