@@ -41,7 +41,7 @@ struct _p_Body {
   Vec               mass_diagonal; /* the mass matrix where it is diagonal, else NULL */
   Mat               mass_matrix;   /* the mass matrix where it is not diagonal, else NULL */
   Vec               inverse_mass;  /* diagonal: 1/m, 0 on massless nodes */
-  ConstrainedSolver mass_solver;   /* not diagonal: made when first needed */
+  ConstrainedSolver mass_solver;   /* not diagonal; an implicit body makes it when first needed */
   PetscReal         total_mass;
   /* stiffness */
   Mat stiffness;
@@ -73,8 +73,7 @@ struct _p_Body {
   PetscBool             prescribed_mass;        /* prescribed nodes carry mass */
   BodyTractionType      traction;
   BodyTraces            traces;
-  PetscReal             window_position; /* how far the current substep has come in the controller step, 0 to 1 */
-  PetscInt              substep;         /* 0 to substeps - 1 */
+  PetscInt              substep; /* 0 to substeps - 1 */
   Vec                   row_vec[2];
   Mat                   shifted; /* implicit: stiffness + shift mass */
   ConstrainedSolver     solver;  /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
@@ -101,7 +100,6 @@ PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodySetUpImplicit(Body);
 PETSC_INTERN PetscErrorCode BodySetUpExplicit(Body);
 PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
-PETSC_INTERN PetscErrorCode BodySetUpInitialState(Body);
 PETSC_INTERN PetscErrorCode BodyFinishSubstepImplicit(Body);
 PETSC_INTERN PetscErrorCode BodyFinishSubstepExplicit(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);

@@ -22,6 +22,32 @@ PetscErrorCode ContactSetConditions(Contact contact, ContactConditions condition
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a flag (0 or 1) is up on any rank */
+PetscErrorCode ContactOr(Contact contact, int *flag)
+{
+  PetscFunctionBegin;
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds what a body does to all gaps under unit contact forces; `displacement` is its rows' displacement under unit forces on
+   them, all rows by all rows. A contact force pushes Neumann sides along the rows and Dirichlet sides against them, and so their
+   displacements open and close the gap. */
+PetscErrorCode ContactAddCompliance(Contact contact, PetscInt b, const PetscScalar displacement[], PetscScalar compliance[])
+{
+  const PetscInt n = contact->n_all_rows;
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const ContactPair *pair_i = &contact->pairs[contact->all_row_pair[i]], *pair_j = &contact->pairs[contact->all_row_pair[j]];
+      const PetscInt     sign_i = (pair_i->body[1] == b) - (pair_i->body[0] == b), sign_j = (pair_j->body[1] == b) - (pair_j->body[0] == b);
+
+      compliance[j * n + i] += sign_i * sign_j * displacement[j * n + i];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether any row on any rank is active (penetrating = false), or penetrates without being active (true) */
 PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any)
 {
@@ -30,7 +56,7 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->n_rows; i++)
     if (penetrating ? !contact->active[i] && contact->gap[i] < -contact->tolerance : contact->active[i]) found = 1;
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactOr(contact, &found));
   *any = (PetscBool)(found > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,6 +59,8 @@ PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactOr(Contact, int *);
+PETSC_INTERN PetscErrorCode ContactAddCompliance(Contact, PetscInt, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactGatherActive(Contact);
 

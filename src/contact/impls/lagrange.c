@@ -49,13 +49,7 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
     PetscScalar *body;
 
     PetscCall(BodyComputeForwardCompliance(contact->bodies[b], &body));
-    for (PetscInt j = 0; j < n; j++)
-      for (PetscInt i = 0; i < n; i++) {
-        const ContactPair *pair_i = &contact->pairs[contact->all_row_pair[i]], *pair_j = &contact->pairs[contact->all_row_pair[j]];
-        const PetscInt     sign_i = (pair_i->body[1] == b) - (pair_i->body[0] == b), sign_j = (pair_j->body[1] == b) - (pair_j->body[0] == b);
-
-        lagrange->compliance[j * n + i] += sign_i * sign_j * body[j * n + i];
-      }
+    PetscCall(ContactAddCompliance(contact, b, body, lagrange->compliance));
     PetscCall(PetscFree(body));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -126,7 +120,7 @@ static PetscErrorCode ContactStep_Lagrange(Contact contact)
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, &penetrating));
   for (PetscInt i = 0; i < contact->n_rows; i++) any |= contact->gap[i] < 0 && (penetrating || contact->saved_active[i]);
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
   PetscCallMPI(MPI_Allgatherv(contact->gap, (PetscMPIInt)contact->n_rows, MPIU_SCALAR, lagrange->gaps, contact->counts, contact->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)contact)));

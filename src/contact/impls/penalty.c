@@ -97,13 +97,7 @@ static PetscErrorCode ComputeCompliance(Contact contact)
     const PetscScalar *response;
 
     PetscCall(BodyComputeResponse(contact->bodies[b], &response));
-    for (PetscInt j = 0; j < n; j++)
-      for (PetscInt i = 0; i < n; i++) {
-        const ContactPair *pair_i = &contact->pairs[contact->all_row_pair[i]], *pair_j = &contact->pairs[contact->all_row_pair[j]];
-        const PetscInt     sign_i = (pair_i->body[1] == b) - (pair_i->body[0] == b), sign_j = (pair_j->body[1] == b) - (pair_j->body[0] == b);
-
-        penalty->compliance[j * n + i] += sign_i * sign_j * response[j * n + i];
-      }
+    PetscCall(ContactAddCompliance(contact, b, response, penalty->compliance));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -119,7 +113,7 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   (void)X;
   (void)P;
   for (PetscInt i = 0; i < contact->n_rows; i++) differs |= penalty->jacobian_penetrating[i] != penalty->penetrating[i];
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactOr(contact, &differs));
   if (penalty->have_jacobian && !differs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(penalty->jacobian_penetrating, penalty->penetrating, contact->n_rows));
   penalty->have_jacobian = PETSC_TRUE;

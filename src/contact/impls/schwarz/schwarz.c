@@ -156,7 +156,7 @@ static PetscErrorCode SolveActive(Contact contact)
     int differs = 0;
 
     for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->jacobian_active[i] != contact->active[i];
-    if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+    PetscCall(ContactOr(contact, &differs));
     if (differs) {
       PetscCall(PetscArraycpy(schwarz->jacobian_active, contact->active, contact->n_rows));
       schwarz->stale = PETSC_TRUE;
@@ -191,7 +191,7 @@ static PetscErrorCode FindActiveSet(Contact contact, PetscBool *seen, PetscBool 
     int differs = 0;
 
     for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->tried[k * contact->n_rows + i] != contact->active[i];
-    if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+    PetscCall(ContactOr(contact, &differs));
     if (differs) continue;
     *seen = PETSC_TRUE;
     *last = (PetscBool)(k == schwarz->n_tried - 1);
@@ -214,7 +214,7 @@ static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
     contact->active[i] = joins;
     any                = 1;
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactOr(contact, &any));
   *changed = (PetscBool)(any > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
