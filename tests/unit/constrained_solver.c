@@ -117,7 +117,7 @@ static void destroy_system(System *s)
 
 static void hold(System *s, const PetscBool held[ROWS])
 {
-  ok(ConstrainedSolverSetConstraints(s->solver, held + s->begin));
+  ok(ConstrainedSolverSetConstraints(s->solver, held + s->begin, NULL));
 }
 
 /* Round-off: A has a condition number of 3, numbers are of the order of 1 */
@@ -204,7 +204,7 @@ static void refuses_rows_that_are_not_independent(void **state)
 
   (void)state;
   create_system(&s, -1);
-  refused(PETSC_ERR_MAT_LU_ZRPVT, "not independent|two contact pairs", ConstrainedSolverSetConstraints(s.solver, both + s.begin));
+  refused(PETSC_ERR_MAT_LU_ZRPVT, "not independent|two contact pairs", ConstrainedSolverSetConstraints(s.solver, both + s.begin, NULL));
   hold(&s, sets[2]);
   check_solution(&s, sets[2], 3);
   destroy_system(&s);
