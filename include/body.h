@@ -27,8 +27,7 @@ PETSC_EXTERN PetscClassId BODY_CLASSID;
 + `BODY_FREE`       - nothing: the row is not of this body, or not in contact
 . `BODY_PRESCRIBED` - displacement, velocity and acceleration of the row follow their input traces
 . `BODY_FORCED`     - the force in its input trace acts along the row
-- `BODY_ROBIN`      - the force in its input trace less that of a spring or dashpot between the row and a fixed point acts along
-                      the row
+- `BODY_ROBIN`      - the force in its input trace less that of a spring between the row and a fixed point acts along the row
 
    Level: developer
 
@@ -117,7 +116,7 @@ PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
 PETSC_EXTERN PetscErrorCode BodySetTractionType(Body, BodyTractionType);
-PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[], PetscBool);
+PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *), void *);
 
 PETSC_EXTERN PetscErrorCode BodyGetDM(Body, DM *);

@@ -191,7 +191,6 @@ PetscErrorCode BodyIntegrateWindow(Body body)
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
-    PetscCall(BodyStartDashpots(body));
     PetscCall(TSStep(body->ts));
     body->step++;
     body->time = body->saved_time + (body->substep + 1) * body->time_step;

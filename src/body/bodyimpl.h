@@ -71,11 +71,9 @@ struct _p_Body {
   PetscBool            *held;                   /* those that are prescribed, or Robin rows */
   PetscReal            *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
   PetscReal            *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
-  PetscReal            *robin_origin;           /* per local row: displacement at which that spring is unstressed [m] */
-  PetscBool             robin_rate;             /* that is where it was at the start of the substep: a dashpot */
   PetscInt              n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
   PetscInt              n_robin;
-  PetscBool             prescribed_mass;        /* prescribed nodes carry mass */
+  PetscBool             prescribed_mass; /* prescribed nodes carry mass */
   BodyTractionType      traction;
   BodyTraces            traces;
   PetscInt              substep; /* 0 to substeps - 1 */
@@ -113,7 +111,6 @@ PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, PetscReal, PetscBool, Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodyStartDashpots(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyIntegrateWindow(Body);
 PETSC_INTERN PetscErrorCode BodyIntegrateByResponse(Body, PetscBool *);

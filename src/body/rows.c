@@ -61,31 +61,27 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 }
 
 /*@
-  BodySetRobin - sets the springs or dashpots of Robin rows
+  BodySetRobin - sets the springs of Robin rows
 
   Logically Collective
 
   Input Parameters:
 + body      - the `Body`, set up
-. stiffness - one for each row of this rank [N/m], positive on rows that are to be Robin rows
-- rate      - the spring of a row is unstressed where the row was at the start of each substep: with a stiffness of z / dt it is
-              a dashpot of impedance z; otherwise where the displacement is zero
+- stiffness - one for each row of this rank [N/m], positive on rows that are to be Robin rows
 
   Level: developer
 
   Note:
-  The force along the row is r - stiffness (B u - origin), with r from the input trace. Set before `BodySetConditions()` makes
-  Robin rows.
+  The force along the row is r - stiffness B u, with r from the input trace. Set before `BodySetConditions()` makes Robin rows.
 
 .seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
 @*/
-PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[], PetscBool rate)
+PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   PetscCall(PetscArraycpy(body->robin, stiffness, body->rows.local));
-  body->robin_rate = rate;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,20 +173,6 @@ PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the springs of Robin rows are unstressed in the substep that begins */
-PetscErrorCode BodyStartDashpots(Body body)
-{
-  const PetscScalar *row;
-
-  PetscFunctionBegin;
-  if (!body->n_robin || !body->robin_rate) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(body->interface, body->state.u, body->row_vec[0]));
-  PetscCall(VecGetArrayRead(body->row_vec[0], &row));
-  for (PetscInt i = 0; i < body->rows.local; i++) body->robin_origin[i] = PetscRealPart(row[i]);
-  PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* f += scale B^T lambda on forced and Robin rows, with the force trace at that position of the controller step and the springs of
    Robin rows at displacement u */
 PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar scale, Vec u, Vec f)
@@ -206,7 +188,7 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
     PetscCall(MatMult(body->interface, u, body->row_vec[1]));
     PetscCall(VecGetArrayRead(body->row_vec[1], &at));
     for (PetscInt i = 0; i < body->rows.local; i++)
-      if (body->conditions[i] == BODY_ROBIN) row[i] -= body->robin[i] * (at[i] - body->robin_origin[i]);
+      if (body->conditions[i] == BODY_ROBIN) row[i] -= body->robin[i] * at[i];
     PetscCall(VecRestoreArrayRead(body->row_vec[1], &at));
   }
   for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED || body->conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
@@ -255,7 +237,7 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
   for (PetscInt i = 0; i < body->rows.local; i++) {
-    if (body->conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->robin[i] * (displacement[i] - body->robin_origin[i]);
+    if (body->conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->robin[i] * displacement[i];
     else if (body->conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

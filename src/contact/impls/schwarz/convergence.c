@@ -5,8 +5,8 @@
 /* How far the contact nodes of a body on one side of the pairs have moved since the last sweep, and where they are [m] */
 static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *change, PetscReal *position)
 {
-  Schwarz     *schwarz = (Schwarz *)contact->data;
-  PetscReal    sums[2] = {0, 0};
+  Schwarz     *schwarz  = (Schwarz *)contact->data;
+  PetscReal    sums[2]  = {0, 0};
   PetscScalar *previous = schwarz->previous + side * contact->n_rows, *end;
 
   PetscFunctionBegin;
@@ -56,7 +56,8 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
 {
   Schwarz       *schwarz  = (Schwarz *)contact->data;
-  const PetscInt measures = schwarz->convergence == CONVERGENCE_MISMATCH ? 1 : schwarz->convergence == CONVERGENCE_CONTACT_POSITION ? 2 : contact->n_bodies;
+  const PetscInt measures = schwarz->convergence == CONVERGENCE_MISMATCH ? 1 : schwarz->convergence == CONVERGENCE_CONTACT_POSITION ? 2
+                                                                                                                                    : contact->n_bodies;
   PetscReal      worst    = -1;
 
   PetscFunctionBegin;

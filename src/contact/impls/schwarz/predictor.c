@@ -64,20 +64,16 @@ PetscErrorCode SchwarzPredict(Contact contact)
     const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];
     const ContactPair *pair = &contact->pairs[p];
     const PetscReal    sign = NeumannSign(pair), width = schwarz->controller_step / levels;
-    PetscScalar       *unknown = x + schwarz->offset[i], *start, *reaction, last;
+    PetscScalar       *unknown = x + schwarz->offset[i], *reaction;
 
-    PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].displacement, 0, &start));
-    last = start[i];
     for (PetscInt level = 1; level <= levels; level++) {
-      const PetscReal part = (PetscReal)level / levels;
+      const PetscReal part     = (PetscReal)level / levels;
       PetscScalar     position = 0;
 
       PetscCall(PredictNeumann(contact, i, level * width, part, &position));
       position += sign * SchwarzOffset(contact, i, part);
       if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
-      else if (schwarz->transmission == TRANSMISSION_ROBIN) unknown[level - 1] = -sign * contact->saved_force[i] + schwarz->weight[i] * position;
-      else unknown[level - 1] = -sign * contact->saved_force[i] + schwarz->weight[i] * (position - last) / width;
-      last = position;
+      else unknown[level - 1] = -sign * contact->saved_force[i] + schwarz->weight[i] * position;
     }
     /* what has been a Neumann side until now has no reaction yet */
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));

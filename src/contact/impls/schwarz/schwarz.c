@@ -17,10 +17,12 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "", Transmissions, (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
   /* only where it has an effect, so that it is an unused option elsewhere */
-  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "BodySetTractionType", BodyTractionTypes, (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
+  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) {
+    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "BodySetTractionType", BodyTractionTypes, (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
+    PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course", "", Waveforms, (PetscEnum)schwarz->waveform, (PetscEnum *)&schwarz->waveform, NULL));
+  }
   if (schwarz->transmission == TRANSMISSION_ROBIN) PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]", "", schwarz->robin_parameter, &schwarz->robin_parameter, &set));
   PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "", Predictors, (PetscEnum)schwarz->predictor, (PetscEnum *)&schwarz->predictor, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course", "", Waveforms, (PetscEnum)schwarz->waveform, (PetscEnum *)&schwarz->waveform, NULL));
   PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "", schwarz->swap, &schwarz->swap, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "", Relaxations, (PetscEnum)schwarz->relaxation, (PetscEnum *)&schwarz->relaxation, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "", ConvergenceTests, (PetscEnum)schwarz->convergence, (PetscEnum *)&schwarz->convergence, NULL));
@@ -158,7 +160,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 .  -schwarz_transmission (dirichlet_neumann|robin|impedance)    - what is prescribed on both sides
 .  -schwarz_robin_parameter alpha                               - stiffness of Robin conditions [N/m for each unit of area], E/h of the
                                                                   Neumann side's contact elements
-.  -schwarz_predictor (last|trial|extrapolate|inelastic)        - where the first sweep starts from
+.  -schwarz_predictor (last|trial|extrapolate|inelastic)        - where the first sweep starts from, inelastic
 .  -schwarz_traction_waveform (linear|constant)                 - traction of a partner with longer substeps in the course of them
 .  -contact_swap_sides (true|false)                             - whether the sides change with every controller step
 .  -schwarz_convergence (auto|position|contact_position|mismatch) - change of all positions from sweep to sweep (the paper's), of those
@@ -181,6 +183,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscNew(&schwarz));
   schwarz->traction            = BODY_TRACTION_INTERNAL;
+  schwarz->predictor           = PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;

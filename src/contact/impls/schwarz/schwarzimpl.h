@@ -53,31 +53,31 @@ typedef struct {
   Transmission        transmission;
   Predictor           predictor;
   TractionWaveform    waveform;
-  PetscReal           controller_step; /* [s] */
-  PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
-  PetscBool           recheck;         /* tensile reactions leave the active set within the step */
-  PetscBool           swap;            /* sides change with every controller step */
-  PetscInt            side;            /* 0, or 1 while they are swapped */
-  PetscBool           started;         /* a step has been made */
-  PetscInt           *levels;          /* per pair: times in the controller step at which its trace is an unknown */
-  PetscInt           *side_levels[2];  /* the same for each choice of sides */
-  PetscInt           *offset;          /* per row: its first unknown on this rank */
-  PetscInt           *room;            /* per pair: unknowns that each of its rows has room for */
-  Trace              *trace;           /* per pair and side: what its unknowns put on the Dirichlet side */
-  Trace              *exchange;        /* per body: what it hands to its partners */
-  Trace               rate[2];  /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
-  PetscBool          *kinematic; /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
-  PetscReal          *weight;    /* per row: Robin stiffness [N/m] or impedance [N s/m] */
-  PetscReal          *mass[2];   /* per row: of the contact element of its body and of the partner's [kg] */
-  PetscScalar        *previous;  /* displacements of the rows of both bodies of each pair in the last sweep */
-  PetscBool           swept;     /* they are of this step */
-  PetscBool           stale;     /* the Jacobian belongs to another active set */
+  PetscReal           controller_step;    /* [s] */
+  PetscReal           robin_parameter;    /* N/m for each unit of area; 0: from the stiffness of the elements */
+  PetscBool           recheck;            /* tensile reactions leave the active set within the step */
+  PetscBool           swap;               /* sides change with every controller step */
+  PetscInt            side;               /* 0, or 1 while they are swapped */
+  PetscBool           started;            /* a step has been made */
+  PetscInt           *levels;             /* per pair: times in the controller step at which its trace is an unknown */
+  PetscInt           *side_levels[2];     /* the same for each choice of sides */
+  PetscInt           *offset;             /* per row: its first unknown on this rank */
+  PetscInt           *room;               /* per pair: unknowns that each of its rows has room for */
+  Trace              *trace;              /* per pair and side: what its unknowns put on the Dirichlet side */
+  Trace              *exchange;           /* per body: what it hands to its partners */
+  Trace               rate[2];            /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
+  PetscBool          *kinematic;          /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
+  PetscReal          *weight;             /* per row: Robin stiffness [N/m] */
+  PetscReal          *mass[2];            /* per row: of the contact element of its body and of the partner's [kg] */
+  PetscScalar        *previous;           /* displacements of the rows of both bodies of each pair in the last sweep */
+  PetscBool           swept;              /* they are of this step */
+  PetscBool           stale;              /* the Jacobian belongs to another active set */
   PetscBool          *jacobian_active;    /* per row: the set that it belongs to */
   PetscInt           *all_offset;         /* per row, all ranks: its first unknown */
   const PetscScalar **responses;          /* per body: its waveform response */
   Trace              *body_in, *body_out; /* per body: waveforms of all rows, on every rank */
   Trace              *body_exchange;
-  Trace              *unit; /* per pair and side: a unit at one of its unknowns */
+  Trace              *unit;             /* per pair and side: a unit at one of its unknowns */
   PetscReal           change, position; /* of the last sweep: the body with the worst ratio */
   PetscBool           converged;
   PetscReal           damping; /* Aitken: relaxation of the last iteration */
@@ -122,7 +122,6 @@ PETSC_INTERN PetscErrorCode SchwarzResampleForce(const Schwarz *, Trace, PetscIn
 PETSC_INTERN PetscReal      SchwarzOffset(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscErrorCode SchwarzPredict(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpTransmission(Contact);
-PETSC_INTERN PetscReal      SchwarzGapForce(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscReal      SchwarzResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);

@@ -107,7 +107,7 @@ PetscErrorCode SchwarzSwapSides(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies / 2; b++) {
     const PetscInt first = contact->order[b];
 
-    contact->order[b]                          = contact->order[contact->n_bodies - 1 - b];
+    contact->order[b]                         = contact->order[contact->n_bodies - 1 - b];
     contact->order[contact->n_bodies - 1 - b] = first;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -92,19 +92,19 @@ static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScal
   const ContactPair *pair    = &contact->pairs[p];
   const BodyTraces  *to      = &contact->traces[DirichletBody(pair)];
   Trace              trace   = schwarz->trace[SideIndex(schwarz, p)];
-  PetscScalar       *force, *rate, *values;
+  PetscScalar       *force, *displacement, *values;
 
   PetscFunctionBegin;
   PetscCall(TraceGetLevel(to->reaction, 0, &force));
-  PetscCall(TraceGetLevel(schwarz->transmission == TRANSMISSION_ROBIN ? to->displacement : to->velocity, 0, &rate));
+  PetscCall(TraceGetLevel(to->displacement, 0, &displacement));
   PetscCall(TraceGetLevel(trace, 0, &values));
-  for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = force[i] + schwarz->weight[i] * rate[i];
+  for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = force[i] + schwarz->weight[i] * displacement[i];
   PetscCall(CopyUnknowns(contact, p, x, trace));
   PetscCall(TraceResample(trace, pair->begin, pair->end, 1, to->force_in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Right-hand side of the Neumann side from what the Dirichlet side has answered: r' = r - 2 f - s (gap term) */
+/* Right-hand side of the Neumann side from what the Dirichlet side has answered: r' = r - 2 f - s alpha o */
 static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
 {
   Schwarz           *schwarz = (Schwarz *)contact->data;
@@ -120,9 +120,9 @@ static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
     PetscCall(TraceGetLevel(from->force_in, level, &r));
     PetscCall(TraceGetLevel(from->reaction, level, &f));
     PetscCall(TraceGetLevel(to, level, &values));
-    for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = r[i] - 2 * f[i] - NeumannSign(pair) * SchwarzGapForce(contact, i, (PetscReal)level / levels);
+    for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = r[i] - 2 * f[i] - NeumannSign(pair) * schwarz->weight[i] * SchwarzOffset(contact, i, (PetscReal)level / levels);
   }
-  PetscCall(SchwarzResampleForce(schwarz, to, pair->begin, pair->end, 1, contact->traces[NeumannBody(pair)].force_in));
+  PetscCall(TraceResample(to, pair->begin, pair->end, 1, contact->traces[NeumannBody(pair)].force_in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,7 +172,7 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
       PetscScalar    answer;
 
       if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) answer = displacement[i] + sign * SchwarzOffset(contact, i, part);
-      else answer = r[i] - 2 * force[i] + sign * SchwarzGapForce(contact, i, part);
+      else answer = r[i] - 2 * force[i] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
       f[unknown] = contact->active[i] ? x[unknown] - answer : 0;
     }
   }

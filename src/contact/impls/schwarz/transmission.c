@@ -1,18 +1,21 @@
 /*
    Robin transmission conditions: each side of the contact boundary gets, in place of a displacement or a force, a mixture of both,
 
-     robin:      f + alpha w = r,   impedance:   f + z dw/dt = r,
+     f + alpha w = r,
 
    with the force f along the row and its displacement w. From what one side answers to its r, the partner's is
 
-     r' = r - 2 f - s alpha o   or   r - 2 f - s z do/dt,
+     r' = r - 2 f - s alpha o,
 
    o being the offset between the displacements of both sides of a closed gap, s the sign with which it counts. When the sides agree,
    f' = -f and the gap is closed, as under Dirichlet and Neumann conditions: the conditions change the way there, not the goal.
+
+   An impedance condition, f + z dw/dt = r, is one with alpha = z / dt as soon as time is discrete: dt is the controller step here,
+   so that it is the mean velocity over it that counts, and the gap closes whatever the substeps.
 */
 #include "schwarzimpl.h"
 
-/* Stiffness or impedance of each row: as given, or that of the partner, which answers best */
+/* Stiffness of the springs of each row: as given, or that of the partner, which answers best */
 static PetscErrorCode SetUpWeights(Contact contact)
 {
   Schwarz   *schwarz = (Schwarz *)contact->data;
@@ -33,7 +36,7 @@ static PetscErrorCode SetUpWeights(Contact contact)
       if (pair->body[0] == b) schwarz->mass[0][i] = z * z / stiffness[i];
       if (pair->body[1] != b) continue;
       schwarz->mass[1][i] = z * z / stiffness[i];
-      if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = z;
+      if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = z / schwarz->controller_step;
       else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->area[i] : stiffness[i];
     }
   }
@@ -51,16 +54,15 @@ static PetscErrorCode CheckBodies(Contact contact)
 
     PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
     PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    PetscCheck(!is_explicit || massless, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_transmission robin and impedance put springs and dashpots on the contact nodes, and those of the explicit body '%s' have mass, so that they do not feel them in the step in which they act; give it -%s_mass_redistribute true, or choose -schwarz_transmission dirichlet_neumann", name, name);
+    PetscCheck(!is_explicit || massless, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_transmission robin and impedance put springs on the contact nodes, and those of the explicit body '%s' have mass, so that they do not feel them in the step in which they act; give it -%s_mass_redistribute true, or choose -schwarz_transmission dirichlet_neumann", name, name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Masses for the inelastic predictor; weights, and springs or dashpots of the bodies, for Robin conditions */
+/* Masses for the inelastic predictor; weights, and springs of the bodies, for Robin conditions */
 PetscErrorCode SchwarzSetUpTransmission(Contact contact)
 {
-  Schwarz   *schwarz = (Schwarz *)contact->data;
-  PetscReal *stiffness;
+  Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc3(contact->n_rows, &schwarz->weight, contact->n_rows, &schwarz->mass[0], contact->n_rows, &schwarz->mass[1]));
@@ -68,35 +70,14 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
   PetscCall(SetUpWeights(contact));
   if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckBodies(contact));
-  PetscCall(PetscMalloc1(contact->n_rows, &stiffness));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal dt;
-    TS        ts;
-
-    PetscCall(BodyGetTS(contact->bodies[b], &ts));
-    PetscCall(TSGetTimeStep(ts, &dt));
-    for (PetscInt i = 0; i < contact->n_rows; i++) stiffness[i] = schwarz->transmission == TRANSMISSION_IMPEDANCE ? schwarz->weight[i] / dt : schwarz->weight[i];
-    PetscCall(BodySetRobin(contact->bodies[b], stiffness, (PetscBool)(schwarz->transmission == TRANSMISSION_IMPEDANCE)));
-  }
-  PetscCall(PetscFree(stiffness));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRobin(contact->bodies[b], schwarz->weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the offset of a closed gap adds to r in row i at a part (0 to 1) of the controller step. The offset is linear in time. */
-PetscReal SchwarzGapForce(Contact contact, PetscInt i, PetscReal part)
-{
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-
-  if (schwarz->transmission == TRANSMISSION_ROBIN) return schwarz->weight[i] * SchwarzOffset(contact, i, part);
-  return schwarz->weight[i] * (SchwarzOffset(contact, i, 1) - SchwarzOffset(contact, i, 0)) / schwarz->controller_step;
-}
-
-/* Metres of mismatch between both sides for a unit of the residual in row i, whose force is known at so many levels */
+/* Metres of mismatch between both sides for a unit of the residual in row i */
 PetscReal SchwarzResidualScale(Contact contact, PetscInt i)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
-  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) return 1;
-  if (schwarz->transmission == TRANSMISSION_ROBIN) return 1 / (2 * schwarz->weight[i]);
-  return schwarz->controller_step / (2 * schwarz->weight[i] * schwarz->levels[contact->row_pair[i]]);
+  return schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? 1 : 1 / (2 * schwarz->weight[i]);
 }
