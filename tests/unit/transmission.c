@@ -136,8 +136,12 @@ static void one_solution(void **state)
   Simulation       *simulation = (Simulation *)*state;
   const char *const ways[]     = {"-schwarz_transmission robin", "-schwarz_transmission robin -schwarz_robin_parameter 3", "-schwarz_transmission impedance", "-schwarz_transmission robin -schwarz_snes_type nrichardson -schwarz_convergence mismatch",
                                   "-schwarz_predictor last", "-schwarz_predictor trial", "-schwarz_predictor extrapolate", "-schwarz_predictor inelastic"};
+  const size_t      n          = sizeof(pairings) / sizeof(pairings[0]);
+  PetscMPIInt       size;
 
-  for (size_t p = 0; p < sizeof(pairings) / sizeof(pairings[0]); p++) {
+  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
+  /* the last alone on several ranks, which is implicit on one side and explicit on the other */
+  for (size_t p = size > 1 ? n - 1 : 0; p < n; p++) {
     Outcome reference = {0};
 
     for (PetscInt way = -1; way < (PetscInt)(sizeof(ways) / sizeof(ways[0])); way++)
