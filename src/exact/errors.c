@@ -1,4 +1,4 @@
-/* How far a run is from the closed-form solution. */
+/* How far a run is from the exact solution. */
 #include "exactimpl.h"
 #include <math.h>
 
@@ -10,33 +10,33 @@ static PetscReal Along(const PetscReal normal[], const PetscReal x[])
 }
 
 /*@
-  ExactImpactMonitor - compares the state at the end of a controller step with the solution
+  ExactMonitor - compares the state at the end of a controller step with the solution
 
   Logically Collective
 
   Input Parameters:
 + controller - the `Controller`
 . frame      - the state of everything
-- context    - the `ExactImpact`
+- context    - the `Exact`
 
   Level: intermediate
 
-.seealso: `ExactImpact`, `ExactImpactGetErrors()`, `ControllerMonitorSet()`
+.seealso: `Exact`, `ExactGetErrors()`, `ControllerMonitorSet()`
 @*/
-PetscErrorCode ExactImpactMonitor(Controller controller, const ControllerFrame *frame, void *context)
+PetscErrorCode ExactMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
-  ExactImpact         exact  = (ExactImpact)context;
-  const BodyMeasures *body   = &frame->bodies[exact->body];
+  Exact               exact  = (Exact)context;
+  const BodyMeasures *body   = &frame->bodies[exact->body[0]];
   const PetscReal     origin = exact->impact_position + exact->frame_velocity * (frame->time - exact->start);
   ExactSolution       solution, computed;
 
   PetscFunctionBegin;
   (void)controller;
   if (frame->step == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ExactImpactEvaluate(exact, frame->time, &solution));
+  PetscCall(ExactEvaluate(exact, 0, frame->time, &solution));
   solution.contact_position -= origin;
-  computed.contact_position = Along(exact->normal, &frame->contact_positions[3 * exact->body]) - origin;
-  computed.contact_velocity = Along(exact->normal, &frame->contact_velocities[3 * exact->body]);
+  computed.contact_position = Along(exact->normal, &frame->contact_positions[3 * exact->body[0]]) - origin;
+  computed.contact_velocity = Along(exact->normal, &frame->contact_velocities[3 * exact->body[0]]);
   computed.contact_force    = frame->pairs[0].force;
   computed.kinetic          = body->kinetic;
   computed.potential        = body->potential;
@@ -51,18 +51,18 @@ PetscErrorCode ExactImpactMonitor(Controller controller, const ControllerFrame *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal RelativeNorm(ExactImpact exact, PetscInt quantity)
+static PetscReal RelativeNorm(Exact exact, PetscInt quantity)
 {
   return exact->squares[quantity] > 0 ? PetscSqrtReal(exact->errors[quantity] / exact->squares[quantity]) : NAN;
 }
 
 /*@
-  ExactImpactGetErrors - the distance between the run and the solution
+  ExactGetErrors - the distance between the run and the solution
 
   Not Collective
 
   Input Parameter:
-. exact - the `ExactImpact`, told of every step by `ExactImpactMonitor()`
+. exact - the `Exact`, told of every step by `ExactMonitor()`
 
   Output Parameter:
 . errors - see `ExactErrors`
@@ -72,12 +72,10 @@ static PetscReal RelativeNorm(ExactImpact exact, PetscInt quantity)
   Note:
   The peak of the potential energy is not told of a run that ends before it, the release not of one that ends in contact.
 
-.seealso: `ExactImpact`, `ExactImpactMonitor()`
+.seealso: `Exact`, `ExactMonitor()`
 @*/
-PetscErrorCode ExactImpactGetErrors(ExactImpact exact, ExactErrors *errors)
+PetscErrorCode ExactGetErrors(Exact exact, ExactErrors *errors)
 {
-  const PetscReal peak = 0.5 * exact->mass * PetscSqr(exact->speed);
-
   PetscFunctionBegin;
   errors->contact_position = RelativeNorm(exact, 0);
   errors->contact_velocity = RelativeNorm(exact, 1);
@@ -85,7 +83,7 @@ PetscErrorCode ExactImpactGetErrors(ExactImpact exact, ExactErrors *errors)
   errors->kinetic          = RelativeNorm(exact, 3);
   errors->potential        = RelativeNorm(exact, 4);
   errors->mean_velocity    = RelativeNorm(exact, 5);
-  errors->peak_potential   = exact->last_time >= exact->turn ? (exact->peak_potential - peak) / peak : NAN;
+  errors->peak_potential   = exact->last_time >= exact->turn ? (exact->peak_potential - exact->peak) / exact->peak : NAN;
   errors->release_time     = exact->last_contact < exact->last_time ? (exact->last_contact - exact->release) / (exact->release - exact->impact) : NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,18 +3,41 @@
 
 #define EXACT_QUANTITIES 6 /* members of ExactSolution */
 
-struct _n_ExactImpact {
+typedef struct {
+  PetscErrorCode (*evaluate)(Exact, PetscInt, PetscReal, ExactSolution *);
+  PetscErrorCode (*destroy)(Exact);
+} ExactOps;
+
+/* A bar in its initial state, along the contact normal */
+typedef struct {
+  const char *name;
+  PetscReal   density, modulus, mass; /* kg/m^3, Pa, kg */
+  PetscReal   length;                 /* m */
+  PetscReal   lower, upper;           /* its ends as it lies at the start [m] */
+  PetscReal   velocity;               /* m/s */
+} ExactBar;
+
+struct _n_Exact {
+  ExactType type;
+  ExactOps  ops;
+  void     *data; /* of the type */
   /* the problem */
-  PetscInt  body;                  /* the bar on the Dirichlet side, among the controller's bodies */
-  PetscReal normal[3];             /* of its contact face, outward */
-  PetscReal start;                 /* s */
-  PetscReal speed;                 /* half the speed of approach [m/s] */
-  PetscReal frame_velocity;        /* mean of both bars [m/s] */
-  PetscReal impact_position;       /* point of impact along the normal, as it lies at the start [m] */
-  PetscReal mass, force;           /* of one bar [kg]; during contact [N] */
-  PetscReal impact, turn, release; /* first contact, all energy potential, last contact [s] */
+  PetscInt  body[2];         /* the bars on the Dirichlet and the Neumann side, among the controller's bodies */
+  ExactBar  bars[2];         /* in the same order */
+  PetscReal normal[3];       /* of the contact face on the Dirichlet side, outward */
+  PetscReal start;           /* s */
+  PetscReal frame_velocity;  /* of the centre of mass [m/s] */
+  PetscReal impact_position; /* point of impact along the normal, as it lies at the start [m] */
+  /* the solution, in short; each type fills it in */
+  PetscReal impact, release; /* first contact, end of the last contact [s] */
+  PetscReal turn, peak;      /* when the bar on the Dirichlet side has its largest potential energy [s], and that [J] */
+  PetscReal force, impulse;  /* mean over the middle three fifths from impact to release [N]; over all of it [N s] */
   /* the run */
   PetscReal squares[EXACT_QUANTITIES], errors[EXACT_QUANTITIES]; /* sums of the squares of the solution and of the error */
   PetscReal peak_potential;                                      /* J */
   PetscReal last_contact, last_time;                             /* end of the last step in contact, and of the last step [s] */
 };
+
+PETSC_INTERN PetscErrorCode ExactSetUpBars(Exact, Controller);
+
+PETSC_INTERN PetscErrorCode ExactCreate_Impact(Controller, Exact);

@@ -7,11 +7,11 @@
 #include "summary.h"
 
 struct _n_Output {
-  Controller  controller; /* borrowed */
-  Statistics  statistics;
-  History     history;
-  ExactImpact exact;
-  char        summary[PETSC_MAX_PATH_LEN]; /* its path; empty: none */
+  Controller controller; /* borrowed */
+  Statistics statistics;
+  History    history;
+  Exact      exact;
+  char       summary[PETSC_MAX_PATH_LEN]; /* its path; empty: none */
 };
 
 /*@
@@ -39,17 +39,15 @@ PetscErrorCode OutputCreate(Controller controller, Output *output)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateExact(Output output, const char name[])
+static PetscErrorCode CreateExact(Output output, const char type[])
 {
-  PetscBool none, impact;
+  PetscBool none;
 
   PetscFunctionBegin;
-  PetscCall(PetscStrcmp(name, "none", &none));
+  PetscCall(PetscStrcmp(type, "none", &none));
   if (none) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscStrcmp(name, "impact", &impact));
-  PetscCheck(impact, PetscObjectComm((PetscObject)output->controller), PETSC_ERR_USER_INPUT, "Unknown -exact '%s'; known: none impact", name);
-  PetscCall(ExactImpactCreate(output->controller, &output->exact));
-  PetscCall(ControllerMonitorSet(output->controller, ExactImpactMonitor, output->exact, NULL));
+  PetscCall(ExactCreate(output->controller, type, &output->exact));
+  PetscCall(ControllerMonitorSet(output->controller, ExactMonitor, output->exact, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,14 +62,14 @@ static PetscErrorCode CreateExact(Output output, const char name[])
   Options Database Keys:
 + -output_history path - HDF5 file with every controller step
 . -output_summary path - JSON file with the figures of the run
-- -exact (none|impact) - closed-form solution to compare with
+- -exact (none|impact) - exact solution to compare with
 
   Level: beginner
 
   Note:
   Missing directories of the paths are made. What is at the paths stays until there is something new to put there.
 
-.seealso: `Output`, `OutputReport()`, `ExactImpactCreate()`
+.seealso: `Output`, `OutputReport()`, `ExactCreate()`
 @*/
 PetscErrorCode OutputSetFromOptions(Output output)
 {
@@ -81,7 +79,7 @@ PetscErrorCode OutputSetFromOptions(Output output)
 
   PetscFunctionBegin;
   PetscOptionsBegin(comm, NULL, "Output", "Output");
-  PetscCall(PetscOptionsString("-exact", "Closed-form solution to compare with (none|impact)", "ExactImpactCreate", exact, exact, sizeof(exact), NULL));
+  PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact)", "ExactCreate", exact, exact, sizeof(exact), NULL));
   PetscCall(PetscOptionsString("-output_history", "HDF5 file with every controller step", "OutputSetFromOptions", history, history, sizeof(history), &has_history));
   PetscCall(PetscOptionsString("-output_summary", "JSON file with the figures of the run", "OutputSetFromOptions", output->summary, output->summary, sizeof(output->summary), &has_summary));
   PetscOptionsEnd();
@@ -147,7 +145,7 @@ PetscErrorCode OutputDestroy(Output *output)
   if (!*output) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StatisticsDestroy(&(*output)->statistics));
   PetscCall(HistoryDestroy(&(*output)->history));
-  PetscCall(ExactImpactDestroy(&(*output)->exact));
+  PetscCall(ExactDestroy(&(*output)->exact));
   PetscCall(PetscFree(*output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -28,16 +28,17 @@ static PetscErrorCode PrintPercent(PetscViewer viewer, const char name[], PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *results, ExactImpact exact, PetscViewer viewer)
+static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *results, Exact exact, PetscViewer viewer)
 {
   const ContactStatistics *c      = &results->contact;
-  PetscReal                impact = NAN, release = NAN, force = NAN;
+  PetscReal                impact = NAN, release = NAN, force = NAN, impulse = NAN;
   ContactType              type;
 
   PetscFunctionBegin;
   if (exact) {
-    PetscCall(ExactImpactGetTimes(exact, &impact, &release));
-    PetscCall(ExactImpactGetForce(exact, &force));
+    PetscCall(ExactGetTimes(exact, &impact, &release));
+    PetscCall(ExactGetForce(exact, &force));
+    PetscCall(ExactGetImpulse(exact, &impulse));
     if (PetscAbsReal(impact) < 1e-12 * (release - impact)) impact = 0; /* round-off of start + gap / speed */
   }
   PetscCall(ContactGetType(contact, &type));
@@ -49,7 +50,7 @@ static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *resu
   PetscCall(PrintValue(viewer, "force, mean", c->force_mean, "N", force));
   PetscCall(PrintValue(viewer, "force, standard deviation", c->force_std, "N", NAN));
   PetscCall(PrintValue(viewer, "force, peak", c->force_peak, "N", NAN));
-  PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", exact ? force * (release - impact) : NAN));
+  PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", impulse));
   PetscCall(PrintValue(viewer, "largest penetration", c->max_penetration, "m", NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -87,12 +88,12 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewErrors(ExactImpact exact, PetscViewer viewer)
+static PetscErrorCode ViewErrors(Exact exact, PetscViewer viewer)
 {
   ExactErrors errors;
 
   PetscFunctionBegin;
-  PetscCall(ExactImpactGetErrors(exact, &errors));
+  PetscCall(ExactGetErrors(exact, &errors));
   PetscCall(PetscViewerASCIIPrintf(viewer, "errors against the exact solution\n"));
   PetscCall(PrintPercent(viewer, "contact position", errors.contact_position));
   PetscCall(PrintPercent(viewer, "contact force", errors.contact_force));
@@ -114,7 +115,7 @@ static PetscErrorCode ViewErrors(ExactImpact exact, PetscViewer viewer)
 . exact      - what it was compared with, or `NULL`
 - viewer     - an ASCII viewer
 */
-PetscErrorCode ReportView(Controller controller, const StatisticsResults *results, ExactImpact exact, PetscViewer viewer)
+PetscErrorCode ReportView(Controller controller, const StatisticsResults *results, Exact exact, PetscViewer viewer)
 {
   Contact        contact;
   const Body    *bodies;

@@ -3,4 +3,4 @@
 #include <exact.h>
 #include "statistics.h"
 
-PETSC_INTERN PetscErrorCode ReportView(Controller, const StatisticsResults *, ExactImpact, PetscViewer);
+PETSC_INTERN PetscErrorCode ReportView(Controller, const StatisticsResults *, Exact, PetscViewer);

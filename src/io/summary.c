@@ -133,13 +133,13 @@ static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddErrors(json_t *root, ExactImpact exact)
+static PetscErrorCode AddErrors(json_t *root, Exact exact)
 {
   json_t     *object;
   ExactErrors errors;
 
   PetscFunctionBegin;
-  PetscCall(ExactImpactGetErrors(exact, &errors));
+  PetscCall(ExactGetErrors(exact, &errors));
   PetscCall(SetObject(root, "errors", &object));
   PetscCall(SetReal(object, "contact_position", errors.contact_position));
   PetscCall(SetReal(object, "contact_velocity", errors.contact_velocity));
@@ -214,7 +214,7 @@ static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact con
 . exact      - what it was compared with, or `NULL`
 - path       - the file
 */
-PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, ExactImpact exact, const char path[])
+PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const char path[])
 {
   char        part[PETSC_MAX_PATH_LEN];
   json_t     *root;

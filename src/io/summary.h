@@ -3,4 +3,4 @@
 #include <exact.h>
 #include "statistics.h"
 
-PETSC_INTERN PetscErrorCode SummaryWrite(Controller, const StatisticsResults *, ExactImpact, const char[]);
+PETSC_INTERN PetscErrorCode SummaryWrite(Controller, const StatisticsResults *, Exact, const char[]);

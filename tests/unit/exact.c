@@ -16,30 +16,30 @@ static void AddPaperBars(PetscReal frame)
 }
 
 /* Everything but a rounding or two of numbers of size `scale` */
-static void CheckSolution(ExactImpact exact, PetscReal time, const PetscReal expected[6])
+static void CheckSolution(Exact exact, PetscReal time, const PetscReal expected[6])
 {
   ExactSolution    solution;
   const PetscReal *values = (const PetscReal *)&solution, scales[] = {0.3, 200, 100, 10, 10, 200};
 
-  ok(ExactImpactEvaluate(exact, time, &solution));
+  ok(ExactEvaluate(exact, 0, time, &solution));
   for (PetscInt i = 0; i < 6; i++) near(values[i], expected[i], 1e-12 * scales[i]);
 }
 
 static void times_and_force(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
-  ExactImpact exact;
+  Exact       exact;
   PetscReal   impact, release, force;
 
   AddPaperBars(0);
   ok(SimulationCreate(simulation));
-  ok(ExactImpactCreate(simulation->controller, &exact));
-  ok(ExactImpactGetTimes(exact, &impact, &release));
-  ok(ExactImpactGetForce(exact, &force));
+  ok(ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
+  ok(ExactGetTimes(exact, &impact, &release));
+  ok(ExactGetForce(exact, &force));
   near(impact, 0, 1e-18);
   near(release, 5e-4, 1e-17);
   near(force, 100, 1e-11);
-  ok(ExactImpactDestroy(&exact));
+  ok(ExactDestroy(&exact));
   assert_null(exact);
 }
 
@@ -59,13 +59,13 @@ static void solution_of_the_paper(void **state)
       {6e-4, {-0.01, -100, 0, 1.25, 0, -100}},
   };
   Simulation *simulation = (Simulation *)*state;
-  ExactImpact exact;
+  Exact       exact;
 
   AddPaperBars(0);
   ok(SimulationCreate(simulation));
-  ok(ExactImpactCreate(simulation->controller, &exact));
+  ok(ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) CheckSolution(exact, cases[i].time, cases[i].expected);
-  ok(ExactImpactDestroy(&exact));
+  ok(ExactDestroy(&exact));
 }
 
 /*
@@ -77,14 +77,14 @@ static void moving_frame(void **state)
 {
   const PetscReal before[] = {-0.02, 150, 0, 2.8125, 0, 150}, half[] = {0.01 + 50 * 1.25e-4, 50, 100, 1.5625, 0.625, 100};
   Simulation     *simulation = (Simulation *)*state;
-  ExactImpact     exact;
+  Exact           exact;
 
   AddPaperBars(50);
   ok(SimulationCreate(simulation));
-  ok(ExactImpactCreate(simulation->controller, &exact));
+  ok(ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
   CheckSolution(exact, -2e-4, before);
   CheckSolution(exact, 1.25e-4, half);
-  ok(ExactImpactDestroy(&exact));
+  ok(ExactDestroy(&exact));
 }
 
 /* Told of the right bar, along its own normal, to the left: the mirror image */
@@ -92,15 +92,15 @@ static void sides_swapped(void **state)
 {
   const PetscReal before[] = {-0.02, 100, 0, 1.25, 0, 100}, after[] = {-0.01, -100, 0, 1.25, 0, -100};
   Simulation     *simulation = (Simulation *)*state;
-  ExactImpact     exact;
+  Exact           exact;
 
   AddPaperBars(0);
   AddOptions("-contact_pairs right:left");
   ok(SimulationCreate(simulation));
-  ok(ExactImpactCreate(simulation->controller, &exact));
+  ok(ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
   CheckSolution(exact, -2e-4, before);
   CheckSolution(exact, 6e-4, after);
-  ok(ExactImpactDestroy(&exact));
+  ok(ExactDestroy(&exact));
 }
 
 /* A run that is the solution times 1.1 is wrong by 0.1 in everything that has a size */
@@ -112,17 +112,17 @@ static void errors_of_a_run(void **state)
   ContactPairState pair  = {0};
   ControllerFrame  frame = {.n_bodies = 2, .n_pairs = 1, .bodies = bodies, .contact_positions = positions, .contact_velocities = velocities, .pairs = &pair};
   ExactSolution    solution;
-  ExactImpact      exact;
+  Exact            exact;
   ExactErrors      errors;
 
   AddPaperBars(0);
   ok(SimulationCreate(simulation));
-  ok(ExactImpactCreate(simulation->controller, &exact));
-  ok(ExactImpactGetErrors(exact, &errors));
+  ok(ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
+  ok(ExactGetErrors(exact, &errors));
   assert_true(PetscIsNanReal(errors.contact_force) && PetscIsNanReal(errors.release_time) && PetscIsNanReal(errors.peak_potential));
   for (frame.step = 0; frame.step <= 16; frame.step++) {
     frame.time = -2e-4 + frame.step * 5e-5;
-    ok(ExactImpactEvaluate(exact, frame.time, &solution));
+    ok(ExactEvaluate(exact, 0, frame.time, &solution));
     positions[0]               = 1.1 * solution.contact_position; /* the point of impact is 0 */
     velocities[0]              = 1.1 * solution.contact_velocity;
     bodies[0].kinetic          = 1.1 * solution.kinetic;
@@ -130,9 +130,9 @@ static void errors_of_a_run(void **state)
     bodies[0].mean_velocity[0] = 1.1 * solution.mean_velocity;
     pair.force                 = 1.1 * solution.contact_force;
     pair.active                = frame.time > 0 && frame.time < 4.4e-4; /* three steps of 1e-5 s too early */
-    ok(ExactImpactMonitor(simulation->controller, &frame, exact));
+    ok(ExactMonitor(simulation->controller, &frame, exact));
   }
-  ok(ExactImpactGetErrors(exact, &errors));
+  ok(ExactGetErrors(exact, &errors));
   near(errors.contact_position, 0.1, 1e-12);
   near(errors.contact_velocity, 0.1, 1e-12);
   near(errors.contact_force, 0.1, 1e-12);
@@ -141,7 +141,7 @@ static void errors_of_a_run(void **state)
   near(errors.mean_velocity, 0.1, 1e-12);
   near(errors.peak_potential, 0.1, 1e-12); /* 2.5e-4 s, when all energy is potential, is the end of a step */
   near(errors.release_time, -0.2, 1e-12);  /* the last step in contact ends at 4e-4 s: (4e-4 - 5e-4) / 5e-4 */
-  ok(ExactImpactDestroy(&exact));
+  ok(ExactDestroy(&exact));
 }
 
 static void other_problems_are_refused(void **state)
@@ -157,12 +157,12 @@ static void other_problems_are_refused(void **state)
       {"-right_initial_velocity -100 -bodies left,right,third -contact_pairs left:right,right:third -third_dm_plex_dim 1 -third_dm_plex_box_faces 4 -third_dm_plex_box_lower 0.3 -third_dm_plex_box_upper 0.4 -third_density 1 -third_youngs_modulus 1", "3 bodies and 2 pairs"},
   };
   Simulation *simulation = (Simulation *)*state;
-  ExactImpact exact;
+  Exact       exact;
 
   AddPaperBars(0);
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
     SimulationRepeat(simulation, cases[i].options);
-    refused(PETSC_ERR_USER_INPUT, cases[i].words, ExactImpactCreate(simulation->controller, &exact));
+    refused(PETSC_ERR_USER_INPUT, cases[i].words, ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
   }
 }
 

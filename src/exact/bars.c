@@ -1,0 +1,101 @@
+/* What exact solutions need to know of the bodies, in their initial state. */
+#include "exactimpl.h"
+
+/* Smallest and largest of positions . normal over all nodes */
+static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal normal[], PetscReal *lower, PetscReal *upper)
+{
+  const PetscScalar *x;
+  PetscInt           n;
+  PetscReal          extremes[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(positions, &n));
+  PetscCall(VecGetArrayRead(positions, &x));
+  for (PetscInt i = 0; i < n; i += dim) {
+    PetscReal along = 0;
+
+    for (PetscInt d = 0; d < dim; d++) along += normal[d] * PetscRealPart(x[i + d]);
+    extremes[0] = PetscMax(extremes[0], -along);
+    extremes[1] = PetscMax(extremes[1], along);
+  }
+  PetscCall(VecRestoreArrayRead(positions, &x));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPIU_REAL, MPI_MAX, PetscObjectComm((PetscObject)positions)));
+  *lower = -extremes[0];
+  *upper = extremes[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar, BodyMeasures *measures)
+{
+  Material  material;
+  DM        dm;
+  PetscInt  dim;
+  Vec       reference, displacement, positions;
+  PetscReal lower, upper;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectGetName((PetscObject)body, &bar->name));
+  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(MaterialGetDensity(material, &bar->density));
+  PetscCall(MaterialGetUniaxialModulus(material, &bar->modulus));
+  PetscCall(BodyGetMass(body, &bar->mass));
+  PetscCall(BodyGetDM(body, &dm));
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetReferencePositions(body, &reference));
+  PetscCall(GetExtent(reference, dim, normal, &lower, &upper));
+  bar->length = upper - lower;
+  PetscCall(BodyGetSolution(body, &displacement, NULL, NULL));
+  PetscCall(VecDuplicate(reference, &positions));
+  PetscCall(VecWAXPY(positions, 1, reference, displacement));
+  PetscCall(GetExtent(positions, dim, normal, &bar->lower, &bar->upper));
+  PetscCall(VecDestroy(&positions));
+  PetscCall(BodyGetMeasures(body, measures));
+  bar->velocity = 0;
+  for (PetscInt d = 0; d < dim; d++) bar->velocity += normal[d] * measures->mean_velocity[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Two bars, undeformed, that fly towards each other along the normal without turning */
+static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar bars[2], const BodyMeasures measures[2])
+{
+  PetscFunctionBegin;
+  PetscCheck(bars[0].velocity > bars[1].velocity, comm, PETSC_ERR_USER_INPUT, "-exact %s needs bars that approach each other, but along the contact normal '%s' moves at %g m/s and '%s' at %g m/s; change an initial velocity, or leave -exact out", type, bars[0].name, (double)bars[0].velocity, bars[1].name, (double)bars[1].velocity);
+  for (PetscInt i = 0; i < 2; i++) {
+    const PetscReal scale   = bars[i].mass * (PetscSqr(bars[0].velocity) + PetscSqr(bars[1].velocity));
+    const PetscReal kinetic = 0.5 * bars[i].mass * PetscSqr(bars[i].velocity);
+
+    PetscCheck(PetscAbsReal(measures[i].potential) <= 1e-9 * scale && PetscAbsReal(measures[i].kinetic - kinetic) <= 1e-9 * scale, comm, PETSC_ERR_USER_INPUT, "-exact %s needs bars that start undeformed and move as a whole along the contact normal, but '%s' starts with %g J potential and %g J kinetic energy, where its mean velocity makes %g J; change its initial state, or leave -exact out", type, bars[i].name, (double)measures[i].potential, (double)measures[i].kinetic, (double)kinetic);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The two bars, where and when they first touch, and the velocity of their centre of mass */
+PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
+{
+  MPI_Comm     comm = PetscObjectComm((PetscObject)controller);
+  PetscInt     n_bodies, n_pairs;
+  const Body  *bodies;
+  Body         sides[2];
+  Contact      contact;
+  const char  *pair;
+  BodyMeasures measures[2];
+  ExactBar    *bars = exact->bars;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ContactGetNumPairs(contact, &n_pairs));
+  PetscCheck(n_bodies == 2 && n_pairs == 1, comm, PETSC_ERR_USER_INPUT, "-exact %s is known for two bodies and one contact pair, but there are %" PetscInt_FMT " bodies and %" PetscInt_FMT " pairs; leave -exact out", exact->type, n_bodies, n_pairs);
+  PetscCall(ContactGetPair(contact, 0, &pair, &sides[0], &sides[1]));
+  PetscCall(ContactGetPairNormal(contact, 0, exact->normal));
+  for (PetscInt i = 0; i < 2; i++) {
+    exact->body[i] = sides[i] == bodies[0] ? 0 : 1;
+    PetscCall(GetBar(sides[i], exact->normal, &bars[i], &measures[i]));
+  }
+  PetscCall(CheckBars(comm, exact->type, bars, measures));
+  PetscCall(ControllerGetTimes(controller, &exact->start, NULL, NULL));
+  exact->frame_velocity  = (bars[0].mass * bars[0].velocity + bars[1].mass * bars[1].velocity) / (bars[0].mass + bars[1].mass);
+  exact->impact          = exact->start + (bars[1].lower - bars[0].upper) / (bars[0].velocity - bars[1].velocity);
+  exact->impact_position = bars[0].upper + (bars[0].velocity - exact->frame_velocity) * (exact->impact - exact->start);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
