@@ -7,6 +7,7 @@ static const struct {
   PetscErrorCode (*create)(Controller, Exact);
 } Types[] = {
     {EXACT_IMPACT, ExactCreate_Impact},
+    {EXACT_CHARACTERISTICS, ExactCreate_Characteristics},
 };
 
 /*@
@@ -22,7 +23,7 @@ static const struct {
 . exact - the solution
 
   Options Database Key:
-. -exact (none|impact) - compare the run with it
+. -exact (none|impact|characteristics) - compare the run with it
 
   Level: intermediate
 
@@ -92,7 +93,7 @@ PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSo
 
   Output Parameters:
 + impact  - first contact [s]
-- release - end of the last contact force [s]
+- release - end of the last contact force [s]; not-a-number where the run does not last until then
 
   Level: intermediate
 
@@ -147,6 +148,28 @@ PetscErrorCode ExactGetImpulse(Exact exact, PetscReal *impulse)
 {
   PetscFunctionBegin;
   *impulse = exact->impulse;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ExactGetBodies - names of the two bars
+
+  Not Collective
+
+  Input Parameter:
+. exact - the `Exact`
+
+  Output Parameter:
+. names - two: of the bar on the Dirichlet side, and of its partner; owned by the bodies
+
+  Level: intermediate
+
+.seealso: `Exact`, `ExactGetErrors()`
+@*/
+PetscErrorCode ExactGetBodies(Exact exact, const char *names[])
+{
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < 2; side++) names[side] = exact->bars[side].name;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

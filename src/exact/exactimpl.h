@@ -17,6 +17,12 @@ typedef struct {
   PetscReal   velocity;               /* m/s */
 } ExactBar;
 
+/* Between the run and the solution, over the steps so far */
+typedef struct {
+  PetscReal square, largest;     /* of the solution: sum of its squares, and largest without sign */
+  PetscReal error_square, worst; /* the same of the error */
+} ExactDistance;
+
 struct _n_Exact {
   ExactType type;
   ExactOps  ops;
@@ -33,11 +39,12 @@ struct _n_Exact {
   PetscReal turn, peak;      /* when the bar on the Dirichlet side has its largest potential energy [s], and that [J] */
   PetscReal force, impulse;  /* mean over the middle three fifths from impact to release [N]; over all of it [N s] */
   /* the run */
-  PetscReal squares[EXACT_QUANTITIES], errors[EXACT_QUANTITIES]; /* sums of the squares of the solution and of the error */
-  PetscReal peak_potential;                                      /* J */
-  PetscReal last_contact, last_time;                             /* end of the last step in contact, and of the last step [s] */
+  ExactDistance distance[2][EXACT_QUANTITIES]; /* of each bar, of each member of ExactSolution */
+  PetscReal     peak_potential;                /* of the bar on the Dirichlet side [J] */
+  PetscReal     last_contact, last_time;       /* end of the last step in contact, and of the last step [s] */
 };
 
 PETSC_INTERN PetscErrorCode ExactSetUpBars(Exact, Controller);
 
 PETSC_INTERN PetscErrorCode ExactCreate_Impact(Controller, Exact);
+PETSC_INTERN PetscErrorCode ExactCreate_Characteristics(Controller, Exact);

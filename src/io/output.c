@@ -62,7 +62,7 @@ static PetscErrorCode CreateExact(Output output, const char type[])
   Options Database Keys:
 + -output_history path - HDF5 file with every controller step
 . -output_summary path - JSON file with the figures of the run
-- -exact (none|impact) - exact solution to compare with
+- -exact (none|impact|characteristics) - exact solution to compare with
 
   Level: beginner
 
@@ -79,7 +79,7 @@ PetscErrorCode OutputSetFromOptions(Output output)
 
   PetscFunctionBegin;
   PetscOptionsBegin(comm, NULL, "Output", "Output");
-  PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact)", "ExactCreate", exact, exact, sizeof(exact), NULL));
+  PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact|characteristics)", "ExactCreate", exact, exact, sizeof(exact), NULL));
   PetscCall(PetscOptionsString("-output_history", "HDF5 file with every controller step", "OutputSetFromOptions", history, history, sizeof(history), &has_history));
   PetscCall(PetscOptionsString("-output_summary", "JSON file with the figures of the run", "OutputSetFromOptions", output->summary, output->summary, sizeof(output->summary), &has_summary));
   PetscOptionsEnd();

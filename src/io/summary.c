@@ -135,8 +135,9 @@ static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
 
 static PetscErrorCode AddErrors(json_t *root, Exact exact)
 {
-  json_t     *object;
+  json_t     *object, *bodies;
   ExactErrors errors;
+  const char *names[2];
 
   PetscFunctionBegin;
   PetscCall(ExactGetErrors(exact, &errors));
@@ -149,6 +150,18 @@ static PetscErrorCode AddErrors(json_t *root, Exact exact)
   PetscCall(SetReal(object, "mean_velocity", errors.mean_velocity));
   PetscCall(SetReal(object, "peak_potential", errors.peak_potential));
   PetscCall(SetReal(object, "release_time", errors.release_time));
+  PetscCall(ExactGetBodies(exact, names));
+  PetscCall(SetObject(object, "bodies", &bodies));
+  for (PetscInt side = 0; side < 2; side++) {
+    const ExactBodyErrors *body = &errors.bodies[side];
+
+    PetscCall(SetObject(bodies, names[side], &object));
+    PetscCall(SetReal(object, "kinetic", body->kinetic));
+    PetscCall(SetReal(object, "potential", body->potential));
+    PetscCall(SetReal(object, "mean_velocity", body->mean_velocity));
+    PetscCall(SetReal(object, "kinetic_max", body->kinetic_max));
+    PetscCall(SetReal(object, "potential_max", body->potential_max));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,4 +1,4 @@
-/* The closed-form impact of two equal bars: Hoy, Tezaur, Mota, eqs. (4.1) to (4.7). */
+/* Exact solutions: the closed form for two equal bars, Hoy, Tezaur, Mota, eqs. (4.1) to (4.7), and the method of characteristics. */
 #include "simulation.h"
 
 /*
@@ -144,6 +144,242 @@ static void errors_of_a_run(void **state)
   ok(ExactDestroy(&exact));
 }
 
+/* The same as the closed form, everywhere, also for the partner */
+static void characteristics_of_equal_bars(void **state)
+{
+  Simulation     *simulation = (Simulation *)*state;
+  const PetscReal scales[]   = {0.3, 200, 100, 10, 10, 200};
+  Exact           closed, general;
+  PetscReal       times[2][2], force[2], impulse[2];
+
+  AddPaperBars(50);
+  ok(SimulationCreate(simulation));
+  ok(ExactCreate(simulation->controller, EXACT_IMPACT, &closed));
+  ok(ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &general));
+  for (PetscInt side = 0; side < 2; side++)
+    for (PetscInt k = 0; k <= 1000; k++) { /* 0, 2.5e-4 and 5e-4 s, where the waves are reflected, are among the times */
+      ExactSolution expected, solution;
+
+      ok(ExactEvaluate(closed, side, -2e-4 + k * 1e-6, &expected));
+      ok(ExactEvaluate(general, side, -2e-4 + k * 1e-6, &solution));
+      for (PetscInt i = 0; i < 6; i++) near(((PetscReal *)&solution)[i], ((PetscReal *)&expected)[i], 1e-12 * scales[i]);
+    }
+  ok(ExactGetTimes(closed, &times[0][0], &times[0][1]));
+  ok(ExactGetTimes(general, &times[1][0], &times[1][1]));
+  ok(ExactGetForce(closed, &force[0]));
+  ok(ExactGetForce(general, &force[1]));
+  ok(ExactGetImpulse(closed, &impulse[0]));
+  ok(ExactGetImpulse(general, &impulse[1]));
+  for (PetscInt i = 0; i < 2; i++) near(times[1][i], times[0][i], 1e-12 * 1e-3);
+  near(force[1], force[0], 1e-12 * 100);
+  near(impulse[1], impulse[0], 1e-12 * 0.05);
+  ok(ExactDestroy(&closed));
+  ok(ExactDestroy(&general));
+}
+
+/* Energy and momentum of both bars, and the momentum against the impulse so far, at many times of a long run */
+static void CheckConservation(Simulation *simulation, const PetscReal mass[2], PetscReal start, PetscReal end)
+{
+  PetscReal energy = 0, momentum = 0, momentum_scale = 0;
+  Exact     exact;
+
+  ok(ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
+  for (PetscInt k = 0; k <= 3000; k++) {
+    ExactSolution bars[2];
+    PetscReal     energy_now = 0, momentum_now = 0;
+
+    for (PetscInt side = 0; side < 2; side++) {
+      ok(ExactEvaluate(exact, side, start + (end - start) * k / 3000, &bars[side]));
+      energy_now += bars[side].kinetic + bars[side].potential;
+      momentum_now += mass[side] * bars[side].mean_velocity;
+      if (!k) momentum_scale += PetscAbsReal(mass[side] * bars[side].mean_velocity);
+      assert_true(bars[side].contact_force >= 0 && bars[side].potential >= 0);
+    }
+    assert_true(bars[1].contact_position - bars[0].contact_position >= -1e-12); /* no penetration; positions are a few metres at most */
+    if (bars[0].contact_force > 0) {
+      near(bars[1].contact_position, bars[0].contact_position, 1e-12);
+      near(bars[1].contact_velocity, bars[0].contact_velocity, 1e-10); /* of 100 m/s */
+    }
+    if (!k) {
+      energy   = energy_now;
+      momentum = momentum_now;
+    }
+    near(energy_now, energy, 1e-11 * energy); /* some hundred reflections, each with a rounding or two */
+    near(momentum_now, momentum, 1e-11 * momentum_scale);
+  }
+  ok(ExactDestroy(&exact));
+}
+
+/* Lengths whose waves never arrive together, different impedances; a stiff right bar, and a soft one that flies along and is pushed
+   in many steps of decreasing force */
+static void characteristics_conserve(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddPaperBars(0);
+  AddOptions("-right_dm_plex_box_upper 0.3871 -right_youngs_modulus 3.3e9 -right_density 1700 -right_cross_section 1.7e-6 -time_end 1e-2");
+  ok(SimulationCreate(simulation));
+  CheckConservation(simulation, (const PetscReal[2]){1000 * 1e-6 * 0.25, 1700 * 1.7e-6 * 0.3671}, -2e-4, 1e-2);
+  SimulationRepeat(simulation, "-left_initial_velocity 100 -right_initial_velocity 20 -right_youngs_modulus 2e7");
+  CheckConservation(simulation, (const PetscReal[2]){1000 * 1e-6 * 0.25, 1700 * 1.7e-6 * 0.3671}, -2e-4, 1e-2);
+}
+
+/*
+   The same by marching: in each step of 1e-6 s waves move on by one point of arrays that are the bars. Everything falls on the grid, and so only
+   round-off of 3200 steps may differ. Left: c = 1000 m/s, 0.25 m, 250 points, Z = 1 kg/s. The gap of 0.04 m closes at 200 m/s, after 200 steps.
+*/
+typedef struct {
+  PetscInt  n;
+  PetscReal impedance, out[500], in[500]; /* from the contact face on */
+} Grid;
+
+static void GridStep(Grid bars[2], PetscReal *gap, PetscReal step, PetscReal *force)
+{
+  PetscReal in[2], velocity[2];
+
+  for (PetscInt side = 0; side < 2; side++) in[side] = bars[side].in[0];
+  *force = *gap <= 1e-9 ? PetscMax(0, 2 * (in[0] - in[1]) / (1 / bars[0].impedance + 1 / bars[1].impedance)) : 0;
+  for (PetscInt side = 0; side < 2; side++) {
+    Grid           *bar = &bars[side];
+    const PetscReal out = in[side] + (side ? 1 : -1) * *force / bar->impedance;
+
+    velocity[side] = in[side] + out;
+    for (PetscInt i = 0; i + 1 < bar->n; i++) bar->in[i] = bar->in[i + 1];
+    bar->in[bar->n - 1] = bar->out[bar->n - 1]; /* a free end */
+    for (PetscInt i = bar->n - 1; i > 0; i--) bar->out[i] = bar->out[i - 1];
+    bar->out[0] = out;
+  }
+  *gap += step * (velocity[1] - velocity[0]);
+}
+
+static void GridMeasure(const Grid *bar, PetscReal step, PetscReal *kinetic, PetscReal *potential, PetscReal *mean)
+{
+  *kinetic = *potential = *mean = 0;
+  for (PetscInt i = 0; i < bar->n; i++) {
+    *kinetic += 0.5 * bar->impedance * step * PetscSqr(bar->out[i] + bar->in[i]);
+    *potential += 0.5 * bar->impedance * step * PetscSqr(bar->out[i] - bar->in[i]);
+    *mean += (bar->out[i] + bar->in[i]) / bar->n;
+  }
+}
+
+static void March(Simulation *simulation, PetscInt points, PetscReal impedance, PetscReal release)
+{
+  const PetscReal step    = 1e-6;
+  Grid            bars[2] = {{.n = 250, .impedance = 1}, {.n = points, .impedance = impedance}};
+  PetscReal       gap = 0.04, impulse = 0, expected, times[2];
+  Exact           exact;
+
+  for (PetscInt i = 0; i < 500; i++) {
+    bars[0].out[i] = bars[0].in[i] = 90;
+    bars[1].out[i] = bars[1].in[i] = -10;
+  }
+  ok(ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
+  for (PetscInt k = 0; k < 3200; k++) {
+    PetscReal force;
+
+    for (PetscInt side = 0; side < 2; side++) {
+      ExactSolution solution;
+      PetscReal     kinetic, potential, mean;
+
+      ok(ExactEvaluate(exact, side, -2e-4 + k * step, &solution));
+      GridMeasure(&bars[side], step, &kinetic, &potential, &mean);
+      near(kinetic, solution.kinetic, 1e-10); /* of some J */
+      near(potential, solution.potential, 1e-10);
+      near(mean, solution.mean_velocity, 1e-9); /* of 100 m/s */
+    }
+    GridStep(bars, &gap, step, &force);
+    impulse += force * step;
+    for (PetscInt side = 0; side < 2; side++) {
+      ExactSolution solution;
+
+      ok(ExactEvaluate(exact, side, -2e-4 + (k + 0.5) * step, &solution));
+      near(force, solution.contact_force, 1e-9); /* of 100 N */
+    }
+  }
+  ok(ExactGetTimes(exact, &times[0], &times[1]));
+  ok(ExactGetImpulse(exact, &expected));
+  near(times[0], 0, 1e-15);
+  near(times[1], release, 1e-15);
+  near(impulse, expected, 1e-12); /* of 0.05 N s */
+  ok(ExactDestroy(&exact));
+}
+
+static void characteristics_by_marching(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddPaperBars(0);
+  AddOptions("-left_initial_velocity 180 -right_initial_velocity -20 -time_end 3e-3");
+  /* c = 2000 m/s, 0.3 m, Z = 2 kg/s: the left bar has turned round when its own wave is back, at 2 L/c = 5e-4 s */
+  SimulationRepeat(simulation, "-right_dm_plex_box_upper 0.32 -right_youngs_modulus 4e9");
+  March(simulation, 150, 2, 5e-4);
+  /* c = 1000 m/s, 0.4 m, Z = 0.25 kg/s: the left bar pushes on, with less force after 5e-4 s, and is left when the right bar's wave is back, after 8e-4 s */
+  SimulationRepeat(simulation, "-right_dm_plex_box_upper 0.42 -right_youngs_modulus 1e9 -right_cross_section 0.25e-6");
+  March(simulation, 400, 0.25, 8e-4);
+}
+
+/*
+   Equal impedances, 0.25 and 0.5 m: the left bar's wave is back after 5e-4 s, and the force ends, with both faces at -100 m/s, where they
+   stay side by side until the right bar's wave is back, after 1e-3 s. Its face then flies at 100 m/s.
+*/
+static void characteristics_of_grazing(void **state)
+{
+  Simulation   *simulation = (Simulation *)*state;
+  Exact         exact;
+  ExactSolution bars[2];
+  PetscReal     impact, release, impulse;
+
+  AddPaperBars(0);
+  AddOptions("-right_dm_plex_box_upper 0.52 -time_end 1.1e-3");
+  ok(SimulationCreate(simulation));
+  ok(ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
+  ok(ExactGetTimes(exact, &impact, &release));
+  ok(ExactGetImpulse(exact, &impulse));
+  near(impact, 0, 1e-18);
+  near(release, 5e-4, 1e-15);
+  near(impulse, 0.05, 1e-14);
+  for (PetscInt k = 1; k <= 50; k++) {
+    for (PetscInt side = 0; side < 2; side++) ok(ExactEvaluate(exact, side, 5e-4 + k * 1e-5, &bars[side]));
+    near(bars[0].contact_force, 0, 0);
+    near(bars[1].contact_position, bars[0].contact_position, 1e-15); /* and no gap */
+    near(bars[0].contact_velocity, -100, 1e-10);
+    near(bars[1].contact_velocity, -100, 1e-10);
+  }
+  for (PetscInt side = 0; side < 2; side++) ok(ExactEvaluate(exact, side, 1.1e-3, &bars[side]));
+  near(bars[1].contact_position - bars[0].contact_position, 200 * 1e-4, 1e-13);
+  /* nothing moves along with the left bar; of 0.5 m, 0.4 m fly at -100 m/s, and the wave has come back through 0.1 m, at 100 m/s */
+  near(bars[0].mean_velocity, -100, 1e-10);
+  near(bars[1].contact_velocity, 100, 1e-10);
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "0.0011 s|not at 0.0012 s", ExactEvaluate(exact, 0, 1.2e-3, &bars[0]));
+  ok(ExactDestroy(&exact));
+}
+
+/* Bars that touch at the start, and a run that ends before release */
+static void characteristics_from_touching(void **state)
+{
+  Simulation   *simulation = (Simulation *)*state;
+  Exact         exact;
+  ExactSolution solution;
+  PetscReal     impact, release, force;
+
+  AddBar("left", -0.25, 0, 4, 1);
+  AddBar("right", 0, 0.5, 4, -1);
+  AddOptions("-bodies left,right -time_step 0.01 -time_end 0.3");
+  ok(SimulationCreate(simulation));
+  ok(ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
+  ok(ExactGetTimes(exact, &impact, &release));
+  ok(ExactGetForce(exact, &force));
+  near(impact, 0, 0);
+  assert_true(PetscIsNanReal(release) && PetscIsNanReal(force));
+  /* all of the left bar is at rest and compressed after 0.25 s; then, from the free end, 0.05 m of it fly back */
+  ok(ExactEvaluate(exact, 0, 0.3, &solution));
+  near(solution.contact_force, 1, 1e-14);
+  near(solution.mean_velocity, -0.2, 1e-14);
+  near(solution.kinetic, 0.5 * 0.05, 1e-14);
+  near(solution.potential, 0.5 * 0.2, 1e-14);
+  ok(ExactDestroy(&exact));
+}
+
 static void other_problems_are_refused(void **state)
 {
   const struct {
@@ -164,6 +400,10 @@ static void other_problems_are_refused(void **state)
     SimulationRepeat(simulation, cases[i].options);
     refused(PETSC_ERR_USER_INPUT, cases[i].words, ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
   }
+  refused(PETSC_ERR_USER_INPUT, "Unknown -exact 'wave'|none impact characteristics", ExactCreate(simulation->controller, "wave", &exact));
+  /* waves that arrive more often than anyone can use: 2 L/c = 1.3e-8 s and more, for 1 ms */
+  SimulationRepeat(simulation, "-bodies left,right -contact_pairs left:right -right_cross_section 1e-6 -right_dm_plex_box_lower 0.02 -right_dm_plex_box_upper 0.0200127 -left_dm_plex_box_lower -0.0200061 -right_density 1 -left_density 1.3");
+  refused(PETSC_ERR_USER_INPUT, "arrive at the contact more than 20000 times|-time_end", ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
 }
 
 int main(int argc, char **argv)
@@ -174,6 +414,11 @@ int main(int argc, char **argv)
       simulation_test(moving_frame),
       simulation_test(sides_swapped),
       simulation_test(errors_of_a_run),
+      simulation_test(characteristics_of_equal_bars),
+      simulation_test(characteristics_conserve),
+      simulation_test(characteristics_by_marching),
+      simulation_test(characteristics_of_grazing),
+      simulation_test(characteristics_from_touching),
       simulation_test(other_problems_are_refused),
   };
 
