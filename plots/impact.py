@@ -2,7 +2,8 @@
 
     python plots/impact.py history.h5 figure.png
 
-The exact solution (dashed) is drawn for runs made with `-exact impact`; it is computed from the options in the file.
+The exact solution (dashed) is drawn for runs made with `-exact impact` or `-exact characteristics`; it is computed from the options in
+the file.
 """
 
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import h5py
 import matplotlib
 import numpy as np
+from characteristics import Impact
 from matplotlib.figure import Figure
 
 # Okabe and Ito's colours, told apart with any colour vision
@@ -79,37 +81,39 @@ def numbers(options, name):
     return np.array([float(number) for number in options[name].split(",")])
 
 
+def bar(history, name, axis):
+    """A bar of the pair: material and size from the options, position and velocity as the run starts."""
+    options, body = history["options"], history["bodies"][name]
+    density, modulus = (float(options[f"-{name}_{key}"]) for key in ("density", "youngs_modulus"))
+    lengths = numbers(options, f"-{name}_dm_plex_box_upper") - numbers(options, f"-{name}_dm_plex_box_lower")
+    length = lengths[axis or 0]
+    area = float(options.get(f"-{name}_cross_section", 1)) if axis is None else np.prod(np.delete(lengths, axis))
+    return {
+        "impedance": np.sqrt(density * modulus) * area,
+        "period": 2 * length * np.sqrt(density / modulus),
+        "velocity": along(body["mean_velocity"], axis)[0],
+        "position": along(body["contact_position"], axis)[0],
+    }
+
+
 def exact_solution(history, axis):
-    """Hoy, Tezaur, Mota, eqs. (4.1) to (4.7), in the frame of the run; None where the options do not tell."""
-    options, time = history["options"], history["time"]
-    if options.get("-exact") != "impact":
+    """By characteristics, which for two equal bars is what -exact impact has; None where the options do not tell."""
+    time = history["time"]
+    if history["options"].get("-exact") not in ("impact", "characteristics"):
         return None
-    name, partner = history["pair"]
     try:
-        density, modulus = (float(options[f"-{name}_{key}"]) for key in ("density", "youngs_modulus"))
-        lengths = numbers(options, f"-{name}_dm_plex_box_upper") - numbers(options, f"-{name}_dm_plex_box_lower")
-        length = lengths[axis or 0]
-        area = float(options.get(f"-{name}_cross_section", 1)) if axis is None else np.prod(np.delete(lengths, axis))
+        bars = [bar(history, name, axis) for name in history["pair"]]
     except (KeyError, ValueError) as error:
         print(f"no exact solution: the options in the file do not give {error}", file=sys.stderr)
         return None
-    bar, other = history["bodies"][name], history["bodies"][partner]
-    x, x_other = (along(body["contact_position"], axis)[0] for body in (bar, other))
-    v, v_other = (along(body["mean_velocity"], axis)[0] for body in (bar, other))
-    speed, frame = (v - v_other) / 2, (v + v_other) / 2
-    impact = time[0] + (x_other - x) / (v - v_other)
-    crossing = length * np.sqrt(density / modulus)
-    release = impact + 2 * crossing
-    part = np.clip((time - impact) / crossing, 0, 2)
-    touching = (time > impact) & (time <= release)
-    energy = density * area * length * speed**2 / 2
-    potential = energy * np.minimum(part, 2 - part)
-    origin = (x + x_other) / 2 + frame * (time - time[0])
-    deviation = np.where(time <= impact, time - impact, np.where(time > release, release - time, 0)) * speed
+    sign = 1 if bars[1]["position"] > bars[0]["position"] or bars[0]["velocity"] > bars[1]["velocity"] else -1
+    gap = sign * (bars[1]["position"] - bars[0]["position"])
+    impact = Impact([{**each, "velocity": sign * each["velocity"]} for each in bars], gap, time[0], time[-1])
+    kinetic, potential = impact.energies(0, time).T
     return {
-        "position": {name: origin + deviation, partner: origin - deviation},
-        "force": np.where(touching, abs(speed) * np.sqrt(modulus * density) * area, 0),
-        "kinetic": density * area * length * frame * (frame / 2 + speed * (1 - part)) + energy - potential,
+        "position": {name: bars[side]["position"] + sign * impact.travelled(side, time) for side, name in enumerate(history["pair"])},
+        "force": impact.force(time),
+        "kinetic": kinetic,
         "potential": potential,
     }
 
