@@ -10,12 +10,18 @@ from conftest import ROOT
 pytest_plugins = "shared_runs"
 
 COMMAND = [sys.executable, ROOT / "plots/impact.py"]
+FIGURES = {
+    "schwarz": DEFAULTS,
+    "penalty": "-options_file options/impact-penalty.opts",
+    "characteristics": "-options_file options/two-materials.opts",
+    "three": "-options_file options/three-bars.opts",
+}
 ENVIRONMENT = {**os.environ, "MPLBACKEND": "Agg"}
 
 
-@pytest.mark.parametrize("options", [DEFAULTS, "-options_file options/impact-penalty.opts", "-options_file options/three-bars.opts"], ids=["schwarz", "penalty", "three"])
-def test_figure(options, shared_run, launch, tmp_path):
-    history = shared_run(options).folder / "history.h5"
+@pytest.mark.parametrize("name", list(FIGURES))
+def test_figure(name, shared_run, launch, tmp_path):
+    history = shared_run(FIGURES[name]).folder / "history.h5"
     figure = tmp_path / "new/figure.png"
     run = launch([*COMMAND, history, figure], env=ENVIRONMENT)
     assert run.returncode == 0, run.stderr
