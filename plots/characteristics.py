@@ -1,6 +1,7 @@
 """Impact of two elastic bars by the method of characteristics, as src/exact/characteristics.c has it, whose head says how.
 
-A bar is a dict of `impedance` sqrt(E rho) A, `period` 2 L/c, and `velocity`; the contact normal points from the first bar to the second.
+A bar is a dict of `impedance` sqrt(E rho) A, `period` 2 L/c, and `velocity`, along the contact normal, which points from the first
+bar to the second.
 """
 
 from bisect import bisect_left

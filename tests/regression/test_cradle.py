@@ -1,8 +1,9 @@
 """Equal bars in a row: Newton's cradle in one dimension, and two bars that hit a resting one from both sides.
 
-A wave runs through a bar in L/c = 2.5e-4 s; impact is at t = 0. The first bar of a cradle pushes with v0/2 sqrt(E rho) A = 50 N for 2 L/c. The front of
-this push comes to the i-th pair (from 0) after i L/c, its end after (i + 2) L/c. At the free end of the last bar the front turns round, as
-tension, and is at the last of the n - 1 pairs after n L/c, with the end of the push: there the last bar leaves, with all of the momentum.
+A wave runs through a bar in L/c = 2.5e-4 s; impact is at t = 0. The first bar of a cradle pushes with v0/2 sqrt(E rho) A = 50 N
+for 2 L/c. The front of this push comes to the i-th pair (from 0) after i L/c, its end after (i + 2) L/c. At the free end of the
+last bar the front turns round, as tension, and is at the last of the n - 1 pairs after n L/c, with the end of the push: there
+the last bar leaves, with all of the momentum.
 """
 
 import numpy as np
@@ -38,7 +39,7 @@ def check_system(run):
     assert worst_energy_error(run.summary) <= 1e-4
     assert run.summary["contact"]["max_penetration"] <= 1e-9
     assert schwarz["unconverged_steps"] == 0
-    print(f"mean iterations {schwarz['mean_all_steps']:.3f} in all steps, {schwarz['mean_contact_steps']:.4f} in contact, at most {schwarz['max']}")
+    print("mean iterations: {mean_all_steps:.3f} in all steps, {mean_contact_steps:.4f} in contact; most: {max}".format(**schwarz))
     assert schwarz["mean_contact_steps"] <= 2.2
     for pair in run.summary["pairs"]:
         assert never_tensile(run, pair), pair
@@ -74,8 +75,10 @@ def test_cradle(case, shared_run):
 
 @pytest.mark.parametrize("case", list(SIDES))
 def test_two_sided(case, shared_run):
-    """b is pushed from both sides, with 50 N; what each push makes is at the other side after L/c, as if b were hit by its mirror image: 100 N
-    against v0; and after 2 L/c the waves in a and c are back, and 50 N are left. After 3 L/c, a and c fly back with the speed that they had."""
+    """b is pushed from both sides, with 50 N. What each push makes is at the other side after L/c, as if b were hit by its mirror
+    image: 100 N against v0. After 2 L/c the waves in a and c are back, and 50 N are left. After 3 L/c, a and c fly back with the
+    speed that they had.
+    """
     run = shared_run(*SIDES[case])
     check_system(run)
     assert velocities(run, "abc") == pytest.approx([-SPEED, 0, SPEED], abs=0.01 * SPEED)

@@ -50,8 +50,11 @@ SUMMARY = {
     },
     "system": {key: float for key in ("energy_error_min", "energy_error_max", "energy_error_final", "momentum_error_max", "penalty_energy_max")},
     "errors": {
-        key: float
-        for key in ("contact_position", "contact_velocity", "contact_force", "kinetic", "potential", "mean_velocity", "peak_potential", "release_time")
+        **{
+            key: float
+            for key in ("contact_position", "contact_velocity", "contact_force", "kinetic", "potential", "mean_velocity", "peak_potential", "release_time")
+        },
+        "bodies": {name: {key: float for key in ("kinetic", "potential", "mean_velocity", "kinetic_max", "potential_max")} for name in ("left", "right")},
     },
     "timing": {
         "wall": float,

@@ -36,11 +36,11 @@ def check(run, step, ratio):
     # Newton on the waveform response: one sweep to measure, one to confirm; a change of the set costs as much again
     assert schwarz["mean_contact_steps"] <= 2.2
     assert schwarz["max"] <= 4
-    # The force at impact and release is known to a step: F v0 dt for each bar is what a whole step would cost. A quarter of that, which
-    # is the 1e-4 for steps of 1e-7 s.
+    # The force at impact and release is known to a step: F v0 dt for each bar is what a whole step would cost. A quarter of
+    # that, which is the 1e-4 for steps of 1e-7 s.
     assert worst_energy_error(run.summary) <= 0.25 * FORCE * SPEED * step / ENERGY
-    # Both sides see the same force at the ends of equal substeps. Otherwise the force is a waveform for one and its values at the ends for the
-    # other, and where it jumps, at impact and release, they may differ by half of a step's impulse.
+    # Both sides see the same force at the ends of equal substeps. Otherwise the force is a waveform for one and its values at
+    # the ends for the other, and where it jumps, at impact and release, they may differ by half of a step's impulse.
     assert system["momentum_error_max"] <= (1e-10 if ratio[0] == ratio[1] else 0.5 * FORCE * step / MOMENTUM)
 
 

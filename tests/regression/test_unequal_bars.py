@@ -54,13 +54,14 @@ def test_grazing(case, shared_run):
     assert schwarz["unconverged_steps"] == 0
     assert schwarz["mean_contact_steps"] <= 2.2
     assert contact["impulse"] == pytest.approx(0.05, rel=5e-3)  # 100 N over 5e-4 s; the end of the force is a few elements wide
-    # Late by that width; a wave needs 2.5e-3 of the contact time for an element. Fronts are wider with lumped mass, and with implicit steps
-    # of 0.8 elements, whose dispersion is as strong: (k h)^2 / 24, and (w dt)^2 / 12.
+    # Late by that width; a wave needs 2.5e-3 of the contact time for an element. Fronts are wider with lumped mass, and with
+    # implicit steps of 0.8 elements, whose dispersion is as strong: (k h)^2 / 24, and (w dt)^2 / 12.
     assert 0 <= errors["release_time"] <= (0.02 if "lumped" in case or case == "coarse-step" else 0.01)
     # the faces do not touch again once the force has ended
     late = run.history["time"][()] > 5.1e-4
     assert not run.history[f"contact/{pair}/force"][()][late].any()
-    # The exact gap is 0. That of the run is what the width of the front leaves, and may be a hundredth of what it is in a collision without grazing.
+    # The exact gap is 0. That of the run is what the width of the front leaves, and may be a hundredth of what it is in a
+    # collision without grazing.
     gap = run.history[f"contact/{pair}/gap"][()]
     assert 0 <= gap[-1] <= 0.01 * 200 * 5e-4
 
@@ -95,7 +96,7 @@ def test_two_materials(case, shared_run):
 
 
 def test_steps_of_force(shared_run):
-    """2 v0 / (1/Z1 + 1/Z2) on impact, Z = 1 and sqrt(8) kg/s; and when the right bar's wave is back, 2 L/c2 later, with what it brings."""
+    """2 v0 / (1/Z1 + 1/Z2) on impact, Z = 1 and sqrt(8) kg/s; then, when the right bar's wave is back, with what it brings."""
     run = shared_run(TWO)
     time, force = run.history["time"][()], run.history["contact/left:right/force"][()]
     z, back = np.sqrt(8), 0.5 / np.sqrt(2e6)

@@ -225,8 +225,9 @@ static void characteristics_conserve(void **state)
 }
 
 /*
-   The same by marching: in each step of 1e-6 s waves move on by one point of arrays that are the bars. Everything falls on the grid, and so only
-   round-off of 3200 steps may differ. Left: c = 1000 m/s, 0.25 m, 250 points, Z = 1 kg/s. The gap of 0.04 m closes at 200 m/s, after 200 steps.
+   The same by marching: in each step of 1e-6 s waves move on by one point of arrays that are the bars. Everything falls on the grid,
+   and so only round-off of 3200 steps may differ. Left: c = 1000 m/s, 0.25 m, 250 points, Z = 1 kg/s. The gap of 0.04 m closes at
+   200 m/s, after 200 steps.
 */
 typedef struct {
   PetscInt  n;
@@ -313,7 +314,8 @@ static void characteristics_by_marching(void **state)
   /* c = 2000 m/s, 0.3 m, Z = 2 kg/s: the left bar has turned round when its own wave is back, at 2 L/c = 5e-4 s */
   SimulationRepeat(simulation, "-right_dm_plex_box_upper 0.32 -right_youngs_modulus 4e9");
   March(simulation, 150, 2, 5e-4);
-  /* c = 1000 m/s, 0.4 m, Z = 0.25 kg/s: the left bar pushes on, with less force after 5e-4 s, and is left when the right bar's wave is back, after 8e-4 s */
+  /* c = 1000 m/s, 0.4 m, Z = 0.25 kg/s: the left bar pushes on, with less force after 5e-4 s, and is left when the right bar's wave is
+     back, after 8e-4 s */
   SimulationRepeat(simulation, "-right_dm_plex_box_upper 0.42 -right_youngs_modulus 1e9 -right_cross_section 0.25e-6");
   March(simulation, 400, 0.25, 8e-4);
 }
