@@ -35,7 +35,7 @@ static const KnownOption global_options[] = {
     {"penalty_snes_rtol", "r", "its relative tolerance on the force, default 1e-9"},
     {"penalty_snes_atol", "a", "its absolute tolerance [N], default 1e-14"},
     {"penalty_snes_max_it", "n", "its limit of iterations, default 50"},
-    {"exact", "none|impact", "compare with a closed-form solution"},
+    {"exact", "none|impact|characteristics", "compare with an exact solution: of two equal bars, of any two bars"},
     {"output_history", "file.h5", "history of every controller step"},
     {"output_summary", "file.json", "summary of the run"},
     {"monitor_interval", "n", "a line on the terminal every n steps, default 0: none"},
