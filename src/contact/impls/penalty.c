@@ -6,6 +6,7 @@
    With explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: the second
    evaluation, which finds this out, only adds the change of force to the end state.
 */
+#include "forces.h"
 #include "../outersolver.h"
 #include <sys/petsccompat.h>
 
@@ -41,31 +42,13 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   Contact            contact = (Contact)ctx;
   Penalty           *penalty = (Penalty *)contact->data;
   const PetscScalar *x;
-  PetscScalar       *f, *start, *end;
+  PetscScalar       *f;
   PetscReal          sums[2] = {0, 0};
-  PetscLogDouble     begin, finish;
 
   PetscFunctionBegin;
   (void)snes;
-  PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
-  PetscCall(PetscTime(&begin));
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(TraceGetLevel(penalty->force, 0, &start));
-  PetscCall(TraceGetLevel(penalty->force, 1, &end));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    start[i] = contact->saved_force[i];
-    end[i]   = x[i];
-  }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      const ContactPair *pair = &contact->pairs[p];
-
-      for (PetscInt side = 0; side < 2; side++)
-        if (pair->body[side] == b) PetscCall(TraceResample(penalty->force, pair->begin, pair->end, side ? 1 : -1, contact->traces[b].force_in));
-    }
-    PetscCall(BodyIntegrate(contact->bodies[b]));
-  }
-  PetscCall(ContactComputeGaps(contact));
+  PetscCall(ForcesIntegrate(contact, penalty->force, x, 1));
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
     penalty->penetrating[i] = (PetscBool)(contact->gap[i] < 0);
@@ -78,27 +61,6 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   penalty->residual  = PetscSqrtReal(sums[0]);
   penalty->magnitude = PetscSqrtReal(sums[1]);
-  contact->counts_made.sweeps++;
-  PetscCall(PetscTime(&finish));
-  contact->counts_made.seconds += finish - begin;
-  PetscCall(PetscLogEventEnd(CONTACT_Sweep, contact, 0, 0, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Change of all gaps at the end of the step for unit forces: the sum of what the bodies of each pair do */
-static PetscErrorCode ComputeCompliance(Contact contact)
-{
-  Penalty       *penalty = (Penalty *)contact->data;
-  const PetscInt n       = contact->n_all_rows;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(penalty->compliance, n * n));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscScalar *response;
-
-    PetscCall(BodyComputeResponse(contact->bodies[b], &response));
-    PetscCall(ContactAddCompliance(contact, b, response, penalty->compliance));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,9 +146,7 @@ static PetscErrorCode ContactSetUp_Penalty(Contact contact)
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(TraceCreate(contact->n_rows, 1, &penalty->force));
   PetscCall(PetscCalloc3(contact->n_rows, &penalty->penetrating, contact->n_rows, &penalty->jacobian_penetrating, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  PetscCall(ComputeCompliance(contact));
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
+  PetscCall(ForcesComputeCompliance(contact, penalty->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -195,13 +155,11 @@ static PetscErrorCode CheckConverged(Contact contact)
   Penalty            *penalty = (Penalty *)contact->data;
   SNESConvergedReason reason;
   PetscReal           time;
-  TS                  ts;
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(penalty->outer.snes, &reason));
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetTS(contact->bodies[0], &ts));
-  PetscCall(TSGetTime(ts, &time));
+  PetscCall(ForcesGetTime(contact, &time));
   for (PetscInt p = 0; reason == SNES_DIVERGED_NAN && p < contact->n_pairs; p++) {
     ContactPairState state;
 

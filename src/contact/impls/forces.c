@@ -1,0 +1,90 @@
+/* One sweep under given contact forces, the interface compliance of all bodies, and the set of rows that a step holds. */
+#include "forces.h"
+
+/* Advances all bodies under contact forces that go linearly from those of the last step to `factor` times `end`; leaves the gaps
+   at the end of the step. `force` is work space with one level. */
+PetscErrorCode ForcesIntegrate(Contact contact, Trace force, const PetscScalar end[], PetscReal factor)
+{
+  PetscScalar   *from, *to;
+  PetscLogDouble begin, finish;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
+  PetscCall(PetscTime(&begin));
+  PetscCall(TraceGetLevel(force, 0, &from));
+  PetscCall(TraceGetLevel(force, 1, &to));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    from[i] = contact->saved_force[i];
+    to[i]   = factor * end[i];
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    for (PetscInt p = 0; p < contact->n_pairs; p++) {
+      const ContactPair *pair = &contact->pairs[p];
+
+      for (PetscInt side = 0; side < 2; side++)
+        if (pair->body[side] == b) PetscCall(TraceResample(force, pair->begin, pair->end, side ? 1 : -1, contact->traces[b].force_in));
+    }
+    PetscCall(BodyIntegrate(contact->bodies[b]));
+  }
+  PetscCall(ContactComputeGaps(contact));
+  contact->counts_made.sweeps++;
+  PetscCall(PetscTime(&finish));
+  contact->counts_made.seconds += finish - begin;
+  PetscCall(PetscLogEventEnd(CONTACT_Sweep, contact, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Change of all gaps at the end of the step for unit forces there: the sum of what the bodies of each pair do; all rows by all
+   rows, by columns [m/N]. Also makes what repeated sweeps profit from. */
+PetscErrorCode ForcesComputeCompliance(Contact contact, PetscScalar compliance[])
+{
+  const PetscInt n = contact->n_all_rows;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(compliance, n * n));
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const PetscScalar *response;
+
+    PetscCall(BodyComputeResponse(contact->bodies[b], &response));
+    PetscCall(ContactAddCompliance(contact, b, response, compliance));
+  }
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the bodies are, for messages */
+PetscErrorCode ForcesGetTime(Contact contact, PetscReal *time)
+{
+  TS ts;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetTS(contact->bodies[0], &ts));
+  PetscCall(TSGetTime(ts, time));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The gap of a pair must answer to the force at the end of the step: explicit nodes with mass do not feel it before the next one
+   (and several substeps of theirs feel it less than the force at the start, so that the forces would oscillate and grow) */
+PetscErrorCode ForcesCheckBodies(Contact contact, const char type[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const char *name[2];
+    PetscBool   answers = PETSC_FALSE;
+    PetscInt    substeps[2];
+
+    for (PetscInt side = 0; side < 2; side++) {
+      const Body body = contact->bodies[contact->pairs[p].body[side]];
+      PetscBool  is_explicit, massless;
+
+      PetscCall(BodyIsExplicit(body, &is_explicit));
+      PetscCall(BodyIsRedistributed(body, &massless));
+      PetscCall(BodyGetSubsteps(body, &substeps[side]));
+      name[side] = ((PetscObject)body)->name;
+      if (!is_explicit || massless) answers = PETSC_TRUE;
+    }
+    PetscCheck(answers, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_type %s closes the gap by the contact force at the end of the step, which does not move explicit contact nodes with mass before the next step, and both '%s' (%" PetscInt_FMT " substeps) and '%s' (%" PetscInt_FMT " substeps) have such; set -%s_mass_redistribute true, give one of them -%s_ts_type alpha2, or use -contact_type lagrange with one step for all bodies, explicit and with mass (-%s_ts_time_step and -%s_ts_time_step equal to -time_step)", type, name[0], substeps[0], name[1], substeps[1], name[0], name[0], name[0], name[1]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
