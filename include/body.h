@@ -150,3 +150,8 @@ PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, Petsc
 PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, PetscScalar *[]);
+PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, PetscScalar *[]);
+PETSC_EXTERN PetscErrorCode BodyAddVelocity(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyAddAcceleration(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodyShiftStart(Body, const PetscScalar[]);

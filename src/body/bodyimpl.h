@@ -108,6 +108,7 @@ PETSC_INTERN PetscErrorCode BodyFinishSubstepExplicit(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, PetscReal, PetscBool, Vec);
+PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);

@@ -1,0 +1,130 @@
+/* Corrections of a state by impulses on the rows: at the end of a controller step, before it is accepted, or at its start. */
+#include "bodyimpl.h"
+
+/* The rows of a corrected vector, at the end of the controller step */
+static PetscErrorCode WriteEnd(Body body, Vec vec, Trace trace)
+{
+  const PetscScalar *row;
+  PetscScalar       *values;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
+  PetscCall(TraceGetLevel(trace, body->substeps, &values));
+  PetscCall(VecGetArrayRead(body->row_vec[0], &row));
+  PetscCall(PetscArraycpy(values, row, body->rows.local));
+  PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
+  PetscCall(BodyInvalidateWindow(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyAddVelocity - changes the velocity at the end of the controller step by impulses on the rows
+
+  Collective
+
+  Input Parameters:
++ body    - the `Body`, integrated
+- impulse - one for each row of this rank [N s]
+
+  Level: developer
+
+  Note:
+  v += M^{-1} B^T impulse; massless nodes keep their velocity. To be called before `BodySave()`.
+
+.seealso: `Body`, `BodyComputeInverseMass()`, `BodyAddAcceleration()`
+@*/
+PetscErrorCode BodyAddVelocity(Body body, const PetscScalar impulse[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodySolveMassOfRows(body, impulse));
+  PetscCall(VecAXPY(body->state.v, 1, body->work[2]));
+  PetscCall(WriteEnd(body, body->state.v, body->traces.velocity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyAddAcceleration - changes the acceleration at the end of the controller step by that of forces on the rows
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, integrated
+- force - one for each row of this rank [N]
+
+  Level: developer
+
+  Note:
+  a += M^{-1} B^T force; massless nodes keep none. To be called before `BodySave()`.
+
+.seealso: `Body`, `BodyAddVelocity()`, `BodyClearAcceleration()`
+@*/
+PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodySolveMassOfRows(body, force));
+  PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
+  PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyClearAcceleration - takes some rows out of the acceleration at the end of the controller step
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`, integrated
+- rows - for each row of this rank, whether its acceleration becomes zero
+
+  Level: developer
+
+  Note:
+  a -= B^T B a on these rows, which must be orthonormal. To be called before `BodySave()`.
+
+.seealso: `Body`, `BodyAddAcceleration()`
+@*/
+PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(MatMult(body->interface, body->state.a, body->row_vec[0]));
+  PetscCall(VecGetArray(body->row_vec[0], &row));
+  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = rows[i] ? -row[i] : 0;
+  PetscCall(VecRestoreArray(body->row_vec[0], &row));
+  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], body->state.a, body->state.a));
+  PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyShiftStart - moves the state at the start of the controller step, at unchanged velocity
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, saved
+- shift - one for each row of this rank [kg m]
+
+  Level: developer
+
+  Note:
+  u += M^{-1} B^T shift, a projection in the norm of the mass if the shift comes from `BodyComputeInverseMass()`. The saved state
+  is changed too.
+
+.seealso: `Body`, `BodyComputeInverseMass()`
+@*/
+PetscErrorCode BodyShiftStart(Body body, const PetscScalar shift[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyRestore(body));
+  PetscCall(BodySolveMassOfRows(body, shift));
+  PetscCall(VecAXPY(body->state.u, 1, body->work[2]));
+  PetscCall(VecCopy(body->state.u, body->saved.u));
+  PetscCall(BodyInvalidateWindow(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,222 @@
+/*
+   Lagrange multipliers at the end of each controller step, for bodies whose gap answers to the force there. With gap(lambda) the
+   gaps after integrating all bodies under forces that go linearly from their last values to lambda,
+
+     gap(lambda) >= 0,   lambda >= 0,   lambda . gap(lambda) = 0,
+
+   an outer SNES for variational inequalities on F(lambda) = gap(lambda) with 0 as lower bound; its Jacobian is the interface
+   compliance of all bodies, which is constant.
+*/
+#include "lagrangeimpl.h"
+#include "forces.h"
+#include "../outersolver.h"
+#include <sys/petsccompat.h>
+
+typedef struct {
+  OuterSolver  outer;
+  PetscReal    atol, rtol; /* on the gap [m], and relative to the displacement of the contact nodes */
+  Trace        force;      /* of all rows over the controller step */
+  PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
+  PetscBool    have_jacobian, scaled_in_place;
+  PetscReal    mismatch, magnitude; /* [m] */
+} ImplicitLagrange;
+
+/* How far complementarity is missed, in metres */
+static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar x[], const PetscScalar f[])
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  PetscReal         sums[2]  = {0, 0};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscInt row = contact->row_begin + i;
+    PetscReal      mismatch;
+    PetscScalar   *start;
+
+    mismatch = x[i] > 0 ? PetscAbsReal(f[i]) : PetscMax(-f[i], -x[i] * lagrange->compliance[row * (contact->n_all_rows + 1)]);
+    PetscCall(TraceGetLevel(contact->traces[contact->pairs[contact->row_pair[i]].body[0]].displacement, 0, &start));
+    sums[0] += PetscSqr(PetscMax(mismatch, 0));
+    sums[1] += PetscSqr(start[i]);
+    if (PetscIsInfOrNanReal(f[i])) sums[0] = f[i];
+  }
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  lagrange->mismatch  = PetscSqrtReal(sums[0]);
+  lagrange->magnitude = PetscSqrtReal(sums[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
+{
+  Contact            contact  = (Contact)ctx;
+  ImplicitLagrange  *lagrange = (ImplicitLagrange *)contact->data;
+  const PetscScalar *x;
+  PetscScalar       *f;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(ForcesIntegrate(contact, lagrange->force, x, 1));
+  PetscCall(VecGetArrayWrite(F, &f));
+  for (PetscInt i = 0; i < contact->n_rows; i++) f[i] = contact->gap[i];
+  PetscCall(MeasureMismatch(contact, x, f));
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
+{
+  Contact           contact  = (Contact)ctx;
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)X;
+  (void)P;
+  if (lagrange->have_jacobian && !lagrange->scaled_in_place) PetscFunctionReturn(PETSC_SUCCESS);
+  lagrange->have_jacobian = PETSC_TRUE;
+  for (PetscInt i = contact->row_begin; i < contact->row_begin + contact->n_rows; i++)
+    for (PetscInt j = 0; j < contact->n_all_rows; j++) PetscCall(MatSetValue(J, i, j, lagrange->compliance[j * contact->n_all_rows + i], INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+{
+  const ImplicitLagrange *lagrange = (const ImplicitLagrange *)((Contact)ctx)->data;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)it;
+  (void)xnorm;
+  (void)gnorm;
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm) || PetscIsInfOrNanReal(lagrange->mismatch)) *reason = SNES_DIVERGED_NAN;
+  else if (lagrange->mismatch <= lagrange->atol || lagrange->mismatch <= lagrange->rtol * lagrange->magnitude) *reason = SNES_CONVERGED_FNORM_ABS;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Type, bounds, tolerances. A force counts as zero only where it is zero: it has been put there by the projection onto the bound. */
+static PetscErrorCode SetUpOuter(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  SNES              snes;
+  SNESLineSearch    line_search;
+  Vec               lower, upper;
+  PetscBool         reduced, semismooth, tolerance_set;
+  char              type[64] = SNESVINEWTONRSLS;
+
+  PetscFunctionBegin;
+  PetscCall(OuterSolverCreate(contact, "lagrange_", contact->n_rows, ComputeResidual, ComputeJacobian, &lagrange->outer));
+  snes = lagrange->outer.snes;
+  PetscCall(PetscOptionsGetString(NULL, "lagrange_", "-snes_type", type, sizeof(type), NULL));
+  PetscCall(PetscStrcmp(type, SNESVINEWTONRSLS, &reduced));
+  PetscCall(PetscStrcmp(type, SNESVINEWTONSSLS, &semismooth));
+  PetscCheck(reduced || semismooth, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -lagrange_snes_type '%s'; known: vinewtonrsls, vinewtonssls", type);
+  lagrange->scaled_in_place = semismooth;
+  PetscCall(SNESSetType(snes, type));
+  if (reduced) {
+    PetscCall(SNESGetLineSearch(snes, &line_search));
+    PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+  }
+  PetscCall(SNESSetTolerances(snes, 1e-12, 1e-15, 0, 50, 1000000));
+  PetscCall(PetscOptionsHasName(NULL, "lagrange_", "-snes_vi_zero_tolerance", &tolerance_set));
+  if (!tolerance_set) PetscCall(PetscOptionsSetValue(NULL, "-lagrange_snes_vi_zero_tolerance", "0"));
+  PetscCall(SNESSetFromOptions(snes));
+  if (!tolerance_set) PetscCall(PetscOptionsClearValue(NULL, "-lagrange_snes_vi_zero_tolerance"));
+  PetscCall(SNESGetTolerances(snes, &lagrange->atol, &lagrange->rtol, NULL, NULL, NULL));
+  PetscCall(SNESSetConvergenceTest(snes, TestConvergence, contact, NULL));
+  PetscCall(VecDuplicate(lagrange->outer.x, &lower));
+  PetscCall(VecDuplicate(lagrange->outer.x, &upper));
+  PetscCall(VecSet(lower, 0));
+  PetscCall(VecSet(upper, PETSC_INFINITY));
+  PetscCall(SNESVISetVariableBounds(snes, lower, upper));
+  PetscCall(VecDestroy(&lower));
+  PetscCall(VecDestroy(&upper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckConverged(Contact contact)
+{
+  ImplicitLagrange   *lagrange = (ImplicitLagrange *)contact->data;
+  SNESConvergedReason reason;
+  PetscReal           time;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetConvergedReason(lagrange->outer.snes, &reason));
+  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ForcesGetTime(contact, &time));
+  PetscCheck(reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_FP, "A contact gap or force is not a number in the step that ends at time %.9g s; is a velocity or a time step too large?", (double)time);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose a smaller -time_step", (double)time, contact->counts_made.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]);
+}
+
+static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  PetscBool         in_contact;
+  PetscScalar      *x;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(contact->active, contact->saved_active, contact->n_rows));
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  if (!in_contact) {
+    PetscCall(ContactIntegrateFree(contact, &in_contact));
+    if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  PetscCall(VecGetArrayWrite(lagrange->outer.x, &x));
+  PetscCall(PetscArraycpy(x, contact->saved_force, contact->n_rows));
+  PetscCall(VecRestoreArrayWrite(lagrange->outer.x, &x));
+  PetscCall(SNESSolve(lagrange->outer.snes, NULL, lagrange->outer.x));
+  PetscCall(CheckConverged(contact));
+  PetscCall(VecGetArray(lagrange->outer.x, &x));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    contact->force[i]  = x[i];
+    contact->active[i] = (PetscBool)(x[i] > 0);
+  }
+  PetscCall(VecRestoreArray(lagrange->outer.x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactView_ImplicitLagrange(Contact contact, PetscViewer viewer)
+{
+  const ImplicitLagrange *lagrange = (const ImplicitLagrange *)contact->data;
+  SNESType                type;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetType(lagrange->outer.snes, &type));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s on the forces at the end of the step, tolerances %g m and %g relative\n", type, (double)lagrange->atol, (double)lagrange->rtol));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactDestroy_ImplicitLagrange(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(OuterSolverDestroy(&lagrange->outer));
+  PetscCall(TraceDestroy(&lagrange->force));
+  PetscCall(PetscFree(lagrange->compliance));
+  PetscCall(PetscFree(contact->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LagrangeSetUpImplicit(Contact contact)
+{
+  ImplicitLagrange *lagrange;
+
+  PetscFunctionBegin;
+  PetscCall(ForcesCheckBodies(contact, "lagrange"));
+  PetscCall(PetscNew(&lagrange));
+  contact->data         = lagrange;
+  contact->ops->step    = ContactStep_ImplicitLagrange;
+  contact->ops->view    = ContactView_ImplicitLagrange;
+  contact->ops->destroy = ContactDestroy_ImplicitLagrange;
+  PetscCall(TraceCreate(contact->n_rows, 1, &lagrange->force));
+  PetscCall(PetscCalloc1(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance));
+  PetscCall(ForcesComputeCompliance(contact, lagrange->compliance));
+  PetscCall(SetUpOuter(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
