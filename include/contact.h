@@ -16,18 +16,61 @@ typedef struct _p_Contact *Contact;
    ContactType - name of a contact method
 
    Values:
-+ `CONTACT_SCHWARZ`  - Schwarz alternating method
-. `CONTACT_PENALTY`  - penalty method
-- `CONTACT_LAGRANGE` - forward-increment Lagrange multipliers
++ `CONTACT_SCHWARZ`              - Schwarz alternating method
+. `CONTACT_PENALTY`              - penalty method
+. `CONTACT_LAGRANGE`             - Lagrange multipliers, implicit or forward-increment
+- `CONTACT_AUGMENTED_LAGRANGIAN` - penalty method whose forces are added up until the gap is closed
 
    Level: beginner
 
 .seealso: `ContactSetType()`
 J*/
 typedef const char *ContactType;
-#define CONTACT_SCHWARZ  "schwarz"
-#define CONTACT_PENALTY  "penalty"
-#define CONTACT_LAGRANGE "lagrange"
+#define CONTACT_SCHWARZ              "schwarz"
+#define CONTACT_PENALTY              "penalty"
+#define CONTACT_LAGRANGE             "lagrange"
+#define CONTACT_AUGMENTED_LAGRANGIAN "augmented_lagrangian"
+
+/*E
+   ContactConstraint - what contact forces keep from becoming negative
+
+   Values:
++ `CONTACT_CONSTRAINT_GAP`      - the gap
+. `CONTACT_CONSTRAINT_GAP_RATE` - the rate at which the gap changes over a controller step, where bodies touch
+- `CONTACT_CONSTRAINT_BOTH`     - both
+
+   Level: intermediate
+
+   Note:
+   The condition on the rate is the persistency condition of Laursen and Chawla 1997.
+
+.seealso: `ContactSetFromOptions()`
+E*/
+typedef enum {
+  CONTACT_CONSTRAINT_GAP,
+  CONTACT_CONSTRAINT_GAP_RATE,
+  CONTACT_CONSTRAINT_BOTH
+} ContactConstraint;
+PETSC_EXTERN const char *const ContactConstraints[];
+
+/*E
+   ContactStabilization - what is done against chatter where contact nodes have mass
+
+   Values:
++ `CONTACT_STABILIZATION_NONE`               - nothing
+. `CONTACT_STABILIZATION_NAIVE`              - the acceleration of the nodes in contact is set to zero after each controller step
+- `CONTACT_STABILIZATION_CONTACT_STABILIZED` - contact-stabilized Newmark method (Deuflhard, Krause, Ertel 2008)
+
+   Level: intermediate
+
+.seealso: `ContactSetFromOptions()`
+E*/
+typedef enum {
+  CONTACT_STABILIZATION_NONE,
+  CONTACT_STABILIZATION_NAIVE,
+  CONTACT_STABILIZATION_CONTACT_STABILIZED
+} ContactStabilization;
+PETSC_EXTERN const char *const ContactStabilizations[];
 
 PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 

@@ -4,6 +4,8 @@
 PetscClassId  CONTACT_CLASSID = 0;
 PetscLogEvent CONTACT_Step, CONTACT_Sweep;
 
+const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
+
 static PetscFunctionList ContactList = NULL;
 
 /*@C
@@ -44,6 +46,7 @@ PetscErrorCode ContactRegisterAll(void)
   PetscCall(ContactRegister(CONTACT_SCHWARZ, ContactCreate_Schwarz));
   PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
   PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
+  PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,7 +127,7 @@ PetscErrorCode ContactSetBodies(Contact contact, PetscInt n, const Body bodies[]
 - type    - its name
 
   Options Database Key:
-. -contact_type (schwarz|penalty|lagrange) - the contact method
+. -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 
   Level: beginner
 
@@ -141,7 +144,7 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "The method cannot be changed after ContactSetUp()");
   PetscCall(PetscFunctionListFind(ContactList, type, &create));
-  PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange", type);
+  PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange, augmented_lagrangian", type);
   PetscTryTypeMethod(contact, destroy);
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
   PetscCall((*create)(contact));
@@ -181,10 +184,12 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 . contact - the `Contact`, with its bodies
 
   Options Database Keys:
-+ -contact_pairs a:b,b:c                       - pairs of bodies, Dirichlet side first; a.top:b.bottom for certain surfaces;
-                                                 default: the two bodies, where there are two
-. -contact_type (schwarz|penalty|lagrange)     - the contact method
-- -contact_tolerance g                         - depth that does not yet count as penetration [m]
++ -contact_pairs a:b,b:c                                       - pairs of bodies, Dirichlet side first; a.top:b.bottom for certain
+                                                                 surfaces; default: the two bodies, where there are two
+. -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
+. -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
+. -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
+- -contact_tolerance g                                          - depth that does not yet count as penetration [m]
 
   Level: beginner
 
@@ -203,6 +208,8 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
   PetscCall(PetscOptionsStringArray("-contact_pairs", "Pairs of bodies, Dirichlet side first", "ContactAddPair", pairs, &n, &set));
   PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetFromOptions", contact->tolerance, &contact->tolerance, NULL));
+  PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
+  PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations, (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
   PetscOptionsEnd();
   if (set) {
     for (PetscInt p = 0; p < n; p++) {
@@ -264,6 +271,8 @@ PetscErrorCode ContactAccept(Contact contact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscTryTypeMethod(contact, accept);
+  if (contact->stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(PetscArraycpy(contact->saved_force, contact->force, contact->n_rows));
   PetscCall(PetscArraycpy(contact->saved_gap, contact->gap, contact->n_rows));
@@ -335,6 +344,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->node_dofs, c->n_node_dofs, c->n_all_nodes));
   PetscCall(PetscFree3(c->row_pair, c->initial_gap, c->area));
   PetscCall(PetscFree7(c->force, c->gap, c->saved_force, c->saved_gap, c->active, c->saved_active, c->conditions));
+  PetscCall(PetscFree(c->stabilized));
   PetscCall(PetscFree5(c->all_row_pair, c->mine_active, c->all_active, c->counts, c->offsets));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -5,7 +5,8 @@
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
   PetscErrorCode (*setup)(Contact);
-  PetscErrorCode (*step)(Contact); /* advances all bodies from their saved states through one controller step */
+  PetscErrorCode (*step)(Contact);   /* advances all bodies from their saved states through one controller step */
+  PetscErrorCode (*accept)(Contact); /* corrects the states at the end of the step, before they become the next one's start */
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -36,23 +37,26 @@ struct _p_Contact {
   ContactPair *pairs;
   PetscInt    *order; /* sweep order: Dirichlet sides before their Neumann sides */
   /* rows of this rank */
-  PetscInt       n_rows, row_begin, n_all_rows;
-  PetscInt      *row_pair;
-  PetscReal     *initial_gap, *area;
-  PetscReal     *force, *gap;             /* at the end of the controller step */
-  PetscReal     *saved_force, *saved_gap; /* at its start */
-  PetscBool     *active, *saved_active;
-  BodyCondition *conditions;   /* work space */
-  PetscInt      *all_row_pair; /* of all rows, on every rank */
-  int           *mine_active, *all_active;
-  PetscMPIInt    size, *counts, *offsets;
-  PetscReal      tolerance; /* gaps above minus this are not penetration [m] */
-  PetscInt     **node_dofs; /* per body: its owned contact nodes, first displacement, rank numbering */
-  PetscInt      *n_node_dofs, *n_all_nodes;
-  ContactCounts  counts_made;
-  PetscReal      penalty_energy;
-  PetscBool      setup;
-  void          *data;
+  PetscInt             n_rows, row_begin, n_all_rows;
+  PetscInt            *row_pair;
+  PetscReal           *initial_gap, *area;
+  PetscReal           *force, *gap;             /* at the end of the controller step */
+  PetscReal           *saved_force, *saved_gap; /* at its start */
+  PetscBool           *active, *saved_active;
+  BodyCondition       *conditions;   /* work space */
+  PetscInt            *all_row_pair; /* of all rows, on every rank */
+  int                 *mine_active, *all_active;
+  PetscMPIInt          size, *counts, *offsets;
+  PetscReal            tolerance; /* gaps above minus this are not penetration [m] */
+  PetscInt           **node_dofs; /* per body: its owned contact nodes, first displacement, rank numbering */
+  PetscInt            *n_node_dofs, *n_all_nodes;
+  ContactConstraint    constraint;
+  ContactStabilization stabilization;
+  PetscBool           *stabilized; /* work space: rows of a body in contact */
+  ContactCounts        counts_made;
+  PetscReal            penalty_energy;
+  PetscBool            setup;
+  void                *data;
 };
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep;
@@ -66,6 +70,10 @@ PETSC_INTERN PetscErrorCode ContactAddCompliance(Contact, PetscInt, const PetscS
 PETSC_INTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactGatherActive(Contact);
 
+PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
+PETSC_INTERN PetscErrorCode ContactStabilize(Contact);
+
 PETSC_INTERN PetscErrorCode ContactCreate_Schwarz(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_Penalty(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_Lagrange(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_AugmentedLagrangian(Contact);

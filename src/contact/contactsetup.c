@@ -23,6 +23,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
+  PetscCall(ContactSetUpStabilization(contact));
   PetscTryTypeMethod(contact, setup);
   contact->setup = PETSC_TRUE;
   PetscCall(ContactCheckInitialGap(contact));

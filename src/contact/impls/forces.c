@@ -53,6 +53,53 @@ PetscErrorCode ForcesComputeCompliance(Contact contact, PetscScalar compliance[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Free trial, where nothing was in contact; then, if there is contact, all rows are forced. `held`: the rows that were in contact,
+   or penetrate at the end of the trial or at the start of the step. What concerns the rate of the gap concerns these alone: while
+   forces are sought, a row must not switch on and off with the sign of its gap. */
+PetscErrorCode ForcesBeginStep(Contact contact, PetscBool held[], PetscBool *in_contact)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(contact->active, contact->saved_active, contact->n_rows));
+  PetscCall(ContactAny(contact, PETSC_FALSE, in_contact));
+  if (!*in_contact) PetscCall(ContactIntegrateFree(contact, in_contact));
+  if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->n_rows; i++) held[i] = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows with a force, and those that penetrate, are held from now on; whether any was not before */
+PetscErrorCode ForcesHold(Contact contact, const PetscScalar force[], PetscBool held[], PetscBool *changed)
+{
+  int any = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    if (held[i] || !(force[i] > 0 || contact->gap[i] < -contact->tolerance)) continue;
+    held[i] = PETSC_TRUE;
+    any     = 1;
+  }
+  PetscCall(ContactOr(contact, &any));
+  *changed = (PetscBool)(any > 0);
+  if (*changed) contact->counts_made.set_changes++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The controller step [s] */
+PetscErrorCode ForcesGetStep(Contact contact, PetscReal *step)
+{
+  PetscInt substeps;
+  TS       ts;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetTS(contact->bodies[0], &ts));
+  PetscCall(TSGetTimeStep(ts, step));
+  PetscCall(BodyGetSubsteps(contact->bodies[0], &substeps));
+  *step *= substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Where the bodies are, for messages */
 PetscErrorCode ForcesGetTime(Contact contact, PetscReal *time)
 {

@@ -1,28 +1,20 @@
 /*
-   Penalty method. The contact force on row i at the end of a controller step is lambda_i = tau A_i <-gap_i>; during the step it
-   goes linearly from its last value to this one. The outer SNES solves F(lambda) = lambda - tau A <-gap(lambda)> = 0 with both
-   bodies under forces; its Jacobian is I + tau A W on penetrating rows, with the interface compliance W of all bodies.
+   Penalty method. The contact force on row i at the end of a controller step is
+
+     lambda_i = <multiplier_i - tau A_i gap_i - c A_i (gap_i - last gap_i) / dt>,   <x> = max(x, 0)
+
+   with a spring tau, a damper c, or both; the multiplier is zero but for the augmented Lagrangian. During the step the force goes
+   linearly from its last value to this one. The outer SNES solves F(lambda) = lambda - <...> = 0 with both bodies under forces; its
+   Jacobian is I + (tau + c / dt) A W on the rows that push, with the interface compliance W of all bodies.
 
    With explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: the second
    evaluation, which finds this out, only adds the change of force to the end state.
 */
-#include "forces.h"
-#include "../outersolver.h"
+#include "penaltyimpl.h"
 #include <sys/petsccompat.h>
 
-typedef struct {
-  OuterSolver  outer;
-  PetscReal    penalty;    /* N/m for each unit of area [N/m in one dimension] */
-  PetscReal    atol, rtol; /* on the force [N], and relative to it */
-  Trace        force;      /* of all rows over the controller step */
-  PetscBool   *penetrating;
-  PetscBool   *jacobian_penetrating; /* the set that the Jacobian belongs to */
-  PetscBool    have_jacobian;
-  PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
-  PetscReal    residual, magnitude;
-} Penalty;
-
-static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
+/* -contact_penalty, which springs need */
+PetscErrorCode PenaltyReadParameter(Contact contact)
 {
   Penalty  *penalty = (Penalty *)contact->data;
   PetscBool set;
@@ -31,12 +23,39 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "", penalty->penalty, &penalty->penalty, &set));
   PetscOptionsEnd();
-  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_type penalty needs -contact_penalty, in N/m in one dimension");
+  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_type %s needs -contact_penalty, in N/m in one dimension", ((PetscObject)contact)->type_name);
   PetscCheck(penalty->penalty > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive", (double)penalty->penalty);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Advances all bodies under the forces x, and compares these with what the penetration asks for */
+static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
+{
+  Penalty  *penalty = (Penalty *)contact->data;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  if (contact->constraint != CONTACT_CONSTRAINT_GAP_RATE) PetscCall(PenaltyReadParameter(contact));
+  if (contact->constraint == CONTACT_CONSTRAINT_GAP) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "", penalty->damping, &penalty->damping, &set));
+  PetscOptionsEnd();
+  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance of a bar, sqrt(E rho) times its area, is its scale", ContactConstraints[contact->constraint]);
+  PetscCheck(penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_penalty_damping %g must be positive", (double)penalty->damping);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The force that springs and dampers want on row i at its gap as it is; negative where they would pull */
+static PetscReal WantedForce(Contact contact, PetscInt i)
+{
+  const Penalty  *penalty = (const Penalty *)contact->data;
+  const PetscReal spring  = penalty->multiplier[i] - penalty->penalty * contact->area[i] * contact->gap[i];
+
+  if (contact->constraint == CONTACT_CONSTRAINT_GAP) return spring;
+  if (!penalty->held[i]) return 0;
+  return spring - penalty->damping * contact->area[i] * (contact->gap[i] - contact->saved_gap[i]) / penalty->step;
+}
+
+/* Advances all bodies under the forces x, and compares these with what springs and dampers ask for */
 static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
 {
   Contact            contact = (Contact)ctx;
@@ -51,8 +70,10 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(ForcesIntegrate(contact, penalty->force, x, 1));
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    penalty->penetrating[i] = (PetscBool)(contact->gap[i] < 0);
-    f[i]                    = x[i] - (penalty->penetrating[i] ? -penalty->penalty * contact->area[i] * contact->gap[i] : 0);
+    const PetscReal wanted = WantedForce(contact, i);
+
+    penalty->pushing[i] = (PetscBool)(wanted > 0);
+    f[i]                = x[i] - (wanted > 0 || PetscIsInfOrNanReal(wanted) ? wanted : 0);
     sums[0] += PetscSqr(f[i]);
     sums[1] += PetscSqr(x[i]);
   }
@@ -66,24 +87,25 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
 
 static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 {
-  Contact  contact = (Contact)ctx;
-  Penalty *penalty = (Penalty *)contact->data;
-  int      differs = 0;
+  Contact         contact   = (Contact)ctx;
+  Penalty        *penalty   = (Penalty *)contact->data;
+  const PetscReal stiffness = penalty->penalty + penalty->damping / penalty->step;
+  int             differs   = 0;
 
   PetscFunctionBegin;
   (void)snes;
   (void)X;
   (void)P;
-  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= penalty->jacobian_penetrating[i] != penalty->penetrating[i];
+  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= penalty->jacobian_pushing[i] != penalty->pushing[i];
   PetscCall(ContactOr(contact, &differs));
   if (penalty->have_jacobian && !differs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(penalty->jacobian_penetrating, penalty->penetrating, contact->n_rows));
+  PetscCall(PetscArraycpy(penalty->jacobian_pushing, penalty->pushing, contact->n_rows));
   penalty->have_jacobian = PETSC_TRUE;
   for (PetscInt local = 0; local < contact->n_rows; local++) {
     const PetscInt i = contact->row_begin + local;
 
     for (PetscInt j = 0; j < contact->n_all_rows; j++) {
-      const PetscScalar value = (i == j ? 1 : 0) + (penalty->penetrating[local] ? penalty->penalty * contact->area[local] * penalty->compliance[j * contact->n_all_rows + i] : 0);
+      const PetscScalar value = (i == j ? 1 : 0) + (penalty->pushing[local] ? stiffness * contact->area[local] * penalty->compliance[j * contact->n_all_rows + i] : 0);
 
       PetscCall(MatSetValue(J, i, j, value, INSERT_VALUES));
     }
@@ -108,44 +130,69 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The spring alone, between the masses of explicit bodies, must be stable: tau A dt^2 B M^{-1} B^T < 4 */
-static PetscErrorCode CheckStability(Contact contact)
+/* Displacement after a step for a force at its start, of the explicit nodes with mass, the largest over all rows [m/N]: over a
+   substep, and over the controller step as if it were one */
+static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
 {
-  Penalty   *penalty = (Penalty *)contact->data;
-  PetscReal *compliance, worst = 0;
+  PetscReal *compliance[2];
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(contact->n_rows, &compliance));
+  PetscCall(PetscCalloc2(contact->n_rows, &compliance[0], contact->n_rows, &compliance[1]));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool    is_explicit, massless;
+    PetscInt     substeps;
     PetscScalar *forward;
 
     PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
     PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
     if (!is_explicit || massless) continue;
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     PetscCall(BodyComputeForwardCompliance(contact->bodies[b], &forward));
-    for (PetscInt i = 0; i < contact->n_rows; i++) compliance[i] += forward[(contact->row_begin + i) * (contact->n_all_rows + 1)];
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const PetscReal value = forward[(contact->row_begin + i) * (contact->n_all_rows + 1)];
+
+      compliance[0][i] += value;
+      compliance[1][i] += substeps * substeps * value;
+    }
     PetscCall(PetscFree(forward));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) worst = PetscMax(worst, compliance[i] * contact->area[i]);
-  PetscCall(PetscFree(compliance));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
-  PetscCheck(penalty->penalty * worst < 4, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_penalty %g is too stiff for the explicit steps: above %.4g the contact springs are unstable; choose a smaller one, or smaller time steps", (double)penalty->penalty, (double)(4 / worst));
+  worst[0] = worst[1] = 0;
+  for (PetscInt k = 0; k < 2; k++)
+    for (PetscInt i = 0; i < contact->n_rows; i++) worst[k] = PetscMax(worst[k], compliance[k][i] * contact->area[i]);
+  PetscCall(PetscFree2(compliance[0], compliance[1]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactSetUp_Penalty(Contact contact)
+/* Spring and damper alone, between the masses of explicit bodies, must be stable: with C = A dt^2 B M^{-1} B^T, tau C + 2 c C / dt < 4 */
+static PetscErrorCode CheckStability(Contact contact)
+{
+  Penalty  *penalty = (Penalty *)contact->data;
+  MPI_Comm  comm    = PetscObjectComm((PetscObject)contact);
+  PetscReal worst[2], spring, damper;
+
+  PetscFunctionBegin;
+  PetscCall(GetForwardCompliance(contact, worst));
+  spring = penalty->penalty * worst[0];
+  damper = 2 * penalty->damping * worst[1] / penalty->step;
+  PetscCheck(spring < 4, comm, PETSC_ERR_USER_INPUT, "-contact_penalty %g is too stiff for the explicit steps: above %.4g the contact springs are unstable; choose a smaller one, or smaller time steps", (double)penalty->penalty, (double)(4 / worst[0]));
+  PetscCheck(spring + damper < 4, comm, PETSC_ERR_USER_INPUT, "-contact_penalty_damping %g is too much for the explicit steps: above %.4g the contact dampers are unstable; choose a smaller one, or smaller time steps", (double)penalty->damping, (double)((4 - spring) * penalty->step / (2 * worst[1])));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PenaltySetUp(Contact contact)
 {
   Penalty *penalty = (Penalty *)contact->data;
 
   PetscFunctionBegin;
+  PetscCall(ForcesGetStep(contact, &penalty->step));
   PetscCall(CheckStability(contact));
   PetscCall(OuterSolverCreate(contact, "penalty_", contact->n_rows, ComputeResidual, ComputeJacobian, &penalty->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, 1e-14, 1e-9, 50));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(TraceCreate(contact->n_rows, 1, &penalty->force));
-  PetscCall(PetscCalloc3(contact->n_rows, &penalty->penetrating, contact->n_rows, &penalty->jacobian_penetrating, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
+  PetscCall(PetscCalloc5(contact->n_rows, &penalty->multiplier, contact->n_rows, &penalty->held, contact->n_rows, &penalty->pushing, contact->n_rows, &penalty->jacobian_pushing, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
   PetscCall(ForcesComputeCompliance(contact, penalty->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,35 +216,44 @@ static PetscErrorCode CheckConverged(Contact contact)
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller -contact_penalty or -time_step", (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
 }
 
-static PetscErrorCode ContactStep_Penalty(Contact contact)
+/* The forces of springs and dampers, from the forces as they are as first iterate */
+PetscErrorCode PenaltySolve(Contact contact)
 {
-  Penalty     *penalty = (Penalty *)contact->data;
-  PetscBool    in_contact;
-  PetscScalar *x;
-  PetscReal    energy = 0;
+  Penalty           *penalty = (Penalty *)contact->data;
+  PetscBool          changed = PETSC_TRUE;
+  PetscScalar       *x;
+  const PetscScalar *force;
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(contact->active, contact->saved_active, contact->n_rows));
-  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-  contact->penalty_energy = 0;
-  if (!in_contact) {
-    PetscCall(ContactIntegrateFree(contact, &in_contact));
-    if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
   PetscCall(VecGetArrayWrite(penalty->outer.x, &x));
-  for (PetscInt i = 0; i < contact->n_rows; i++) x[i] = contact->saved_force[i];
+  PetscCall(PetscArraycpy(x, contact->force, contact->n_rows));
   PetscCall(VecRestoreArrayWrite(penalty->outer.x, &x));
-  PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
-  PetscCall(CheckConverged(contact));
-  PetscCall(VecGetArray(penalty->outer.x, &x));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    contact->force[i]  = x[i];
-    contact->active[i] = (PetscBool)(x[i] > 0);
-    energy += 0.5 * PetscSqr(x[i]) / (penalty->penalty * contact->area[i]);
+  while (changed) {
+    PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
+    PetscCall(CheckConverged(contact));
+    PetscCall(VecGetArrayRead(penalty->outer.x, &force));
+    PetscCall(PetscArraycpy(contact->force, force, contact->n_rows));
+    PetscCall(VecRestoreArrayRead(penalty->outer.x, &force));
+    changed = PETSC_FALSE;
+    if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ForcesHold(contact, contact->force, penalty->held, &changed));
   }
-  PetscCall(VecRestoreArray(penalty->outer.x, &x));
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->force[i] > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactStep_Penalty(Contact contact)
+{
+  Penalty  *penalty = (Penalty *)contact->data;
+  PetscBool in_contact;
+  PetscReal energy = 0;
+
+  PetscFunctionBegin;
+  contact->penalty_energy = 0;
+  PetscCall(ForcesBeginStep(contact, penalty->held, &in_contact));
+  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(contact->force, contact->saved_force, contact->n_rows));
+  PetscCall(PenaltySolve(contact));
+  for (PetscInt i = 0; i < contact->n_rows; i++) energy += 0.5 * penalty->penalty * contact->area[i] * PetscSqr(PetscMin(contact->gap[i], 0));
   if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   contact->penalty_energy = energy;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -205,37 +261,45 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
 
 static PetscErrorCode ContactView_Penalty(Contact contact, PetscViewer viewer)
 {
+  const Penalty *penalty = (const Penalty *)contact->data;
+
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g\n", (double)((const Penalty *)contact->data)->penalty));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g, damping %g\n", (double)penalty->penalty, (double)penalty->damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactDestroy_Penalty(Contact contact)
+PetscErrorCode PenaltyDestroy(Contact contact)
 {
   Penalty *penalty = (Penalty *)contact->data;
 
   PetscFunctionBegin;
   PetscCall(OuterSolverDestroy(&penalty->outer));
   PetscCall(TraceDestroy(&penalty->force));
-  PetscCall(PetscFree3(penalty->penetrating, penalty->jacobian_penetrating, penalty->compliance));
+  PetscCall(PetscFree5(penalty->multiplier, penalty->held, penalty->pushing, penalty->jacobian_pushing, penalty->compliance));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*MC
-   CONTACT_PENALTY - contact forces in proportion to the penetration
+   CONTACT_PENALTY - contact forces in proportion to the penetration, or to its rate
 
    Options Database Keys:
-+  -contact_penalty tau                                          - penalty parameter [N/m in one dimension], required
++  -contact_penalty tau                                          - penalty parameter [N/m in one dimension], required by springs
+.  -contact_constraint (gap|gap_rate|both)                       - springs, dampers in their place, or both
+.  -contact_penalty_damping c                                    - damping [N s/m in one dimension], required by dampers
 .  -penalty_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration on the contact forces
 -  -penalty_snes_rtol, -penalty_snes_atol, -penalty_snes_max_it  - its tolerances on the force (1e-9, 1e-14 N) and limit (50)
 
    Level: beginner
 
-   Note:
-   Implicit or explicit by the integrators of the bodies. The energy in the springs is reported beside that of the bodies.
+   Notes:
+   Implicit or explicit by the integrators of the bodies. The energy in the springs is reported beside that of the bodies; what
+   dampers take is lost from these.
 
-.seealso: `ContactSetType()`, `CONTACT_SCHWARZ`, `CONTACT_LAGRANGE`
+   The gap rate is the change of the gap over a controller step; dampers push on rows that were in contact or penetrate in a free
+   trial. Without springs nothing brings penetration back: it grows while the bodies push.
+
+.seealso: `ContactSetType()`, `CONTACT_SCHWARZ`, `CONTACT_LAGRANGE`, `CONTACT_AUGMENTED_LAGRANGIAN`
 M*/
 PetscErrorCode ContactCreate_Penalty(Contact contact)
 {
@@ -245,9 +309,9 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   PetscCall(PetscNew(&penalty));
   contact->data                = penalty;
   contact->ops->setfromoptions = ContactSetFromOptions_Penalty;
-  contact->ops->setup          = ContactSetUp_Penalty;
+  contact->ops->setup          = PenaltySetUp;
   contact->ops->step           = ContactStep_Penalty;
   contact->ops->view           = ContactView_Penalty;
-  contact->ops->destroy        = ContactDestroy_Penalty;
+  contact->ops->destroy        = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,116 @@
+/*
+   Augmented Lagrangian by Uzawa's iteration. With the multipliers as they are, the penalty method gives forces
+   lambda = <multiplier - tau A gap>; these are the next multipliers, until the gap is closed where there is a force and open where
+   there is none. Each round makes the gap smaller by 1 / (1 + tau A W), with the interface compliance W.
+*/
+#include "penaltyimpl.h"
+
+static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
+{
+  Penalty *penalty = (Penalty *)contact->data;
+  MPI_Comm comm    = PetscObjectComm((PetscObject)contact);
+
+  PetscFunctionBegin;
+  PetscCheck(contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT, "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty", ContactConstraints[contact->constraint]);
+  PetscCall(PenaltyReadParameter(contact));
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "", penalty->augmentation_tolerance, &penalty->augmentation_tolerance, NULL));
+  PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "", penalty->augmentation_max_it, &penalty->augmentation_max_it, NULL));
+  PetscOptionsEnd();
+  PetscCheck(penalty->augmentation_tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-contact_augmentation_tolerance %g m must be positive", (double)penalty->augmentation_tolerance);
+  PetscCheck(penalty->augmentation_max_it > 0, comm, PETSC_ERR_USER_INPUT, "-contact_augmentation_max_it %" PetscInt_FMT " must be positive", penalty->augmentation_max_it);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactSetUp_AugmentedLagrangian(Contact contact)
+{
+  Penalty  *penalty = (Penalty *)contact->data;
+  PetscReal area    = PETSC_INFINITY;
+
+  PetscFunctionBegin;
+  PetscCall(ForcesCheckBodies(contact, CONTACT_AUGMENTED_LAGRANGIAN));
+  PetscCall(PenaltySetUp(contact));
+  /* a stiff spring makes much force of the round-off in the gap: what a gap far below the tolerance makes is no error */
+  for (PetscInt i = 0; i < contact->n_rows; i++) area = PetscMin(area, contact->area[i]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  if (contact->n_all_rows) penalty->atol = PetscMax(penalty->atol, 1e-4 * penalty->penalty * area * penalty->augmentation_tolerance);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest gap under a force, or penetration without one [m] */
+static PetscErrorCode GetMismatch(Contact contact, PetscReal *mismatch)
+{
+  PetscReal worst = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) worst = PetscMax(worst, contact->active[i] ? PetscAbsReal(contact->gap[i]) : -contact->gap[i]);
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  *mismatch = worst;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
+{
+  Penalty  *penalty = (Penalty *)contact->data;
+  PetscBool in_contact;
+  PetscReal mismatch, time;
+
+  PetscFunctionBegin;
+  PetscCall(ForcesBeginStep(contact, penalty->held, &in_contact));
+  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(contact->force, contact->saved_force, contact->n_rows));
+  for (PetscInt k = 0; k < penalty->augmentation_max_it; k++) {
+    PetscCall(PetscArraycpy(penalty->multiplier, contact->force, contact->n_rows));
+    PetscCall(PenaltySolve(contact));
+    PetscCall(GetMismatch(contact, &mismatch));
+    if (mismatch <= penalty->augmentation_tolerance) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ForcesGetTime(contact, &time));
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " augmentations the gap is off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or loosen -contact_augmentation_tolerance", (double)time, penalty->augmentation_max_it, (double)mismatch);
+}
+
+static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscViewer viewer)
+{
+  const Penalty *penalty = (const Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g, augmented until the gap is within %g m\n", (double)penalty->penalty, (double)penalty->augmentation_tolerance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*MC
+   CONTACT_AUGMENTED_LAGRANGIAN - the penalty method, with forces that add up from round to round until the gap is closed
+
+   Options Database Keys:
++  -contact_penalty tau                                         - penalty parameter [N/m in one dimension], required
+.  -contact_augmentation_tolerance g                            - gap that is left [m], 1e-10
+.  -contact_augmentation_max_it n                               - limit of rounds in a step, 200
+-  -penalty_snes_type, -penalty_snes_rtol, ...                  - the iteration in each round, as with `CONTACT_PENALTY`
+
+   Level: beginner
+
+   Note:
+   Of each pair one body at least must be implicit or have massless contact nodes.
+
+   Reference:
+.  * - J. C. Simo, T. A. Laursen, An augmented Lagrangian treatment of contact problems involving friction, Computers & Structures 42
+       (1992) 97-116
+
+.seealso: `ContactSetType()`, `CONTACT_PENALTY`, `CONTACT_LAGRANGE`
+M*/
+PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
+{
+  Penalty *penalty;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&penalty));
+  penalty->augmentation_tolerance = 1e-10;
+  penalty->augmentation_max_it    = 200;
+  contact->data                   = penalty;
+  contact->ops->setfromoptions    = ContactSetFromOptions_AugmentedLagrangian;
+  contact->ops->setup             = ContactSetUp_AugmentedLagrangian;
+  contact->ops->step              = ContactStep_AugmentedLagrangian;
+  contact->ops->view              = ContactView_AugmentedLagrangian;
+  contact->ops->destroy           = PenaltyDestroy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
