@@ -6,10 +6,15 @@
      g + C lambda >= 0,   lambda >= 0,   lambda . (g + C lambda) = 0.
 */
 #include "lagrangeimpl.h"
-#include "complementarity.h"
+#include "forces.h"
 
 typedef struct {
   Complementarity forces; /* C: [m/N] */
+  PetscScalar    *gaps;   /* what is to be closed: of the rows of this rank [m] */
+  PetscReal       step;   /* [s] */
+  /* for the rate beside the gap */
+  Complementarity impulses;
+  PetscBool       close_rate;
 } ForwardLagrange;
 
 static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
@@ -21,11 +26,18 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, &penetrating));
-  for (PetscInt i = 0; i < contact->n_rows; i++) any |= contact->gap[i] < 0 && (penetrating || contact->saved_active[i]);
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscBool touches = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
+
+    lagrange->gaps[i] = contact->gap[i];
+    /* a gap that is left as it is when the bodies meet stays so */
+    if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && touches) lagrange->gaps[i] -= contact->saved_gap[i];
+    any |= lagrange->gaps[i] < 0 && (penetrating || contact->saved_active[i]);
+  }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
-  PetscCall(ComplementarityGather(contact, contact->gap, &lagrange->forces));
+  PetscCall(ComplementarityGather(contact, lagrange->gaps, &lagrange->forces));
   PetscCall(ComplementaritySolve(contact, contact->tolerance, &lagrange->forces));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->forces, lagrange->forces.mine));
@@ -43,12 +55,27 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The velocities do not have the force yet that begins at the end of the step: much of it goes into these impulses, and is told
+   with the force of the step */
+static PetscErrorCode ContactAccept_ForwardLagrange(Contact contact)
+{
+  ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(LagrangeCloseRate(contact, PETSC_TRUE, &lagrange->impulses));
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    if (contact->active[i]) contact->force[i] += lagrange->impulses.forces[contact->row_begin + i] / lagrange->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactDestroy_ForwardLagrange(Contact contact)
 {
   ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
 
   PetscFunctionBegin;
   PetscCall(ComplementarityDestroy(&lagrange->forces));
+  if (lagrange->close_rate) PetscCall(ComplementarityDestroy(&lagrange->impulses));
+  PetscCall(PetscFree(lagrange->gaps));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -64,6 +91,13 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   contact->ops->step    = ContactStep_ForwardLagrange;
   contact->ops->destroy = ContactDestroy_ForwardLagrange;
   PetscCall(ComplementarityCreate(contact, &lagrange->forces));
+  PetscCall(PetscCalloc1(contact->n_rows, &lagrange->gaps));
+  PetscCall(ForcesGetStep(contact, &lagrange->step));
+  if (contact->constraint == CONTACT_CONSTRAINT_BOTH) {
+    contact->ops->accept = ContactAccept_ForwardLagrange;
+    lagrange->close_rate = PETSC_TRUE;
+    PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
+  }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscScalar *body;
 

@@ -18,7 +18,13 @@ typedef struct {
   Trace        force;      /* of all rows over the controller step */
   PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
   PetscBool    have_jacobian, scaled_in_place;
-  PetscReal    mismatch, magnitude; /* [m] */
+  PetscBool   *held;  /* rows whose gap rate matters in this step */
+  PetscReal    scale; /* of the forces at the end of the step, as the integrator takes them */
+  /* for the rate beside the gap, and for the contact-stabilised prediction */
+  Complementarity impulses;
+  PetscBool       close_rate, stabilized;
+  PetscReal       step;                /* [s] */
+  PetscReal       mismatch, magnitude; /* [m] */
 } ImplicitLagrange;
 
 /* How far complementarity is missed, in metres */
@@ -55,9 +61,9 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionBegin;
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(ForcesIntegrate(contact, lagrange->force, x, 1));
+  PetscCall(ForcesIntegrate(contact, lagrange->force, x, lagrange->scale));
   PetscCall(VecGetArrayWrite(F, &f));
-  for (PetscInt i = 0; i < contact->n_rows; i++) f[i] = contact->gap[i];
+  for (PetscInt i = 0; i < contact->n_rows; i++) f[i] = contact->gap[i] - (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->held[i] ? contact->saved_gap[i] : 0);
   PetscCall(MeasureMismatch(contact, x, f));
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -153,30 +159,49 @@ static PetscErrorCode CheckConverged(Contact contact)
 
 static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
 {
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
-  PetscBool         in_contact;
-  PetscScalar      *x;
+  ImplicitLagrange  *lagrange = (ImplicitLagrange *)contact->data;
+  PetscBool          in_contact, changed = PETSC_TRUE;
+  PetscScalar       *x;
+  const PetscScalar *force;
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(contact->active, contact->saved_active, contact->n_rows));
-  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-  if (!in_contact) {
-    PetscCall(ContactIntegrateFree(contact, &in_contact));
-    if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  PetscCall(ForcesBeginStep(contact, lagrange->held, &in_contact));
+  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  if (lagrange->stabilized) PetscCall(LagrangeProjectPrediction(contact, lagrange->step, &lagrange->impulses));
   PetscCall(VecGetArrayWrite(lagrange->outer.x, &x));
   PetscCall(PetscArraycpy(x, contact->saved_force, contact->n_rows));
   PetscCall(VecRestoreArrayWrite(lagrange->outer.x, &x));
-  PetscCall(SNESSolve(lagrange->outer.snes, NULL, lagrange->outer.x));
-  PetscCall(CheckConverged(contact));
-  PetscCall(VecGetArray(lagrange->outer.x, &x));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    contact->force[i]  = x[i];
-    contact->active[i] = (PetscBool)(x[i] > 0);
+  while (changed) {
+    PetscCall(SNESSolve(lagrange->outer.snes, NULL, lagrange->outer.x));
+    PetscCall(CheckConverged(contact));
+    PetscCall(VecGetArrayRead(lagrange->outer.x, &force));
+    PetscCall(PetscArraycpy(contact->force, force, contact->n_rows));
+    PetscCall(VecRestoreArrayRead(lagrange->outer.x, &force));
+    changed = PETSC_FALSE;
+    if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) PetscCall(ForcesHold(contact, contact->force, lagrange->held, &changed));
   }
-  PetscCall(VecRestoreArray(lagrange->outer.x, &x));
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->force[i] > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Corrections of the states at the end of the step: velocities without gap rate; and accelerations without contact forces, from which
+   the contact-stabilised method starts its next step */
+static PetscErrorCode ContactAccept_ImplicitLagrange(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  PetscBool         in_contact;
+
+  PetscFunctionBegin;
+  if (lagrange->close_rate) PetscCall(LagrangeCloseRate(contact, PETSC_FALSE, &lagrange->impulses));
+  if (!lagrange->stabilized) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComplementarityGather(contact, contact->force, &lagrange->impulses));
+  for (PetscInt i = 0; i < contact->n_all_rows; i++) lagrange->impulses.forces[i] = -lagrange->scale * lagrange->impulses.gaps[i];
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->impulses, lagrange->impulses.mine));
+    PetscCall(BodyAddAcceleration(contact->bodies[b], lagrange->impulses.mine));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,8 +223,40 @@ static PetscErrorCode ContactDestroy_ImplicitLagrange(Contact contact)
   PetscFunctionBegin;
   PetscCall(OuterSolverDestroy(&lagrange->outer));
   PetscCall(TraceDestroy(&lagrange->force));
-  PetscCall(PetscFree(lagrange->compliance));
+  if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementarityDestroy(&lagrange->impulses));
+  PetscCall(PetscFree2(lagrange->compliance, lagrange->held));
   PetscCall(PetscFree(contact->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The contact-stabilised Newmark method (Deuflhard, Krause, Ertel 2008) by the trapezoidal rule: with accelerations without contact
+   forces at the start of a step and twice the force at its end, u_1 and v_1 have the whole contact force of the end of the step. */
+static PetscErrorCode SetUpStabilized(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  MPI_Comm          comm     = PetscObjectComm((PetscObject)contact);
+
+  PetscFunctionBegin;
+  PetscCheck(contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized closes the gap by a projection of its own; leave -contact_constraint at gap, not %s", ContactConstraints[contact->constraint]);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const char *name = ((PetscObject)contact->bodies[b])->name;
+    PetscBool   is_explicit, massless;
+    PetscReal   alpha_m, alpha_f, gamma, beta;
+    PetscInt    substeps;
+    TS          ts;
+
+    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
+    PetscCheck(!is_explicit, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized works with implicit bodies only, and body '%s' is explicit; give it -%s_ts_type alpha2", name, name);
+    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
+    PetscCheck(!massless, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized projects in the norm of the mass, and the contact nodes of body '%s' have none, so that they do not chatter either; set -%s_mass_redistribute false, or leave the stabilization at none", name, name);
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    PetscCheck(substeps == 1, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized needs one step for all bodies, and body '%s' makes %" PetscInt_FMT " substeps; set -%s_ts_time_step to -time_step", name, substeps, name);
+    PetscCall(BodyGetTS(contact->bodies[b], &ts));
+    PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, &gamma, &beta));
+    PetscCheck(alpha_m == 1 && alpha_f == 1 && gamma == 0.5 && beta == 0.25, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized is made for the trapezoidal rule, and body '%s' has alpha_m %g, alpha_f %g, gamma %g, beta %g; leave -%s_ts_alpha_... at their defaults", name, (double)alpha_m, (double)alpha_f, (double)gamma, (double)beta, name);
+  }
+  lagrange->scale      = 2;
+  lagrange->stabilized = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -214,9 +271,18 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   contact->ops->step    = ContactStep_ImplicitLagrange;
   contact->ops->view    = ContactView_ImplicitLagrange;
   contact->ops->destroy = ContactDestroy_ImplicitLagrange;
+  lagrange->scale       = 1;
+  PetscCall(ForcesGetStep(contact, &lagrange->step));
   PetscCall(TraceCreate(contact->n_rows, 1, &lagrange->force));
-  PetscCall(PetscCalloc1(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance));
+  PetscCall(PetscCalloc2(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance, contact->n_rows, &lagrange->held));
+  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(SetUpStabilized(contact));
+  if (contact->constraint == CONTACT_CONSTRAINT_BOTH) {
+    PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
+    lagrange->close_rate = PETSC_TRUE;
+  } else if (lagrange->stabilized) PetscCall(LagrangeSetUpImpulses(contact, "-contact_stabilization contact_stabilized", &lagrange->impulses));
+  if (lagrange->close_rate || lagrange->stabilized) contact->ops->accept = ContactAccept_ImplicitLagrange;
   PetscCall(ForcesComputeCompliance(contact, lagrange->compliance));
+  for (PetscInt i = 0; i < contact->n_all_rows * contact->n_all_rows; i++) lagrange->compliance[i] *= lagrange->scale;
   PetscCall(SetUpOuter(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

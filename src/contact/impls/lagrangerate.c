@@ -1,0 +1,88 @@
+/* Impulses on the contact nodes at one instant: what closes the gap rate, and what closes a predicted gap in the norm of the mass. */
+#include "lagrangeimpl.h"
+
+/* The effect of unit impulses on the gap rates [1/kg]. One side of each pair must have mass, since `option` cannot do without. */
+PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Complementarity *impulses)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const Body *sides[2] = {&contact->bodies[contact->pairs[p].body[0]], &contact->bodies[contact->pairs[p].body[1]]};
+    PetscBool   massless[2];
+
+    for (PetscInt side = 0; side < 2; side++) PetscCall(BodyIsRedistributed(*sides[side], &massless[side]));
+    PetscCheck(!massless[0] || !massless[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "%s changes velocities through the mass of the contact nodes, and those of '%s' and '%s' have none: their velocity is the change of position over the step, so that a closed gap that stays closed has no rate already. Leave the option out, or set -%s_mass_redistribute false", option, ((PetscObject)*sides[0])->name, ((PetscObject)*sides[1])->name, ((PetscObject)*sides[0])->name);
+  }
+  PetscCall(ComplementarityCreate(contact, impulses));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscScalar *inverse;
+
+    PetscCall(BodyComputeInverseMass(contact->bodies[b], &inverse));
+    PetscCall(ContactAddCompliance(contact, b, inverse, impulses->compliance));
+    PetscCall(PetscFree(inverse));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gap rates of the rows of this rank [m/s], at the start of the controller step or at its end */
+static PetscErrorCode GetRates(Contact contact, PetscBool at_end, PetscScalar rates[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *velocity[2];
+
+    for (PetscInt side = 0; side < 2; side++) {
+      const BodyTraces *traces = &contact->traces[pair->body[side]];
+      PetscInt          levels;
+
+      PetscCall(TraceGetSizes(traces->velocity, NULL, &levels));
+      PetscCall(TraceGetLevel(traces->velocity, at_end ? levels : 0, &velocity[side]));
+    }
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = velocity[1][i] - velocity[0][i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Impulses [N s] on the rows with a force, at the end of the step, after which their gap rate is zero: the rest of the kinetic energy
+   goes, in the norm of the mass the nearest velocities are taken. With `pushing_only` a gap that opens may go on opening. */
+PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Complementarity *impulses)
+{
+  PetscBool in_contact;
+
+  PetscFunctionBegin;
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetRates(contact, PETSC_TRUE, impulses->mine));
+  PetscCall(ComplementarityGather(contact, impulses->mine, impulses));
+  PetscCall(ContactGatherActive(contact));
+  for (PetscInt i = 0; i < contact->n_all_rows; i++) impulses->active[i] = (PetscBool)(contact->all_active[i] > 0 && (!pushing_only || impulses->gaps[i] < 0));
+  PetscCall(ComplementaritySolveActive(contact, impulses));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
+    PetscCall(BodyAddVelocity(contact->bodies[b], impulses->mine));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where positions that go on at constant velocity would penetrate after the step, moves the start of the step by as much as puts
+   them outside: their projection in the norm of the mass onto what is admissible */
+PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Complementarity *impulses)
+{
+  int any = 0;
+
+  PetscFunctionBegin;
+  PetscCall(GetRates(contact, PETSC_FALSE, impulses->mine));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    impulses->mine[i] = contact->saved_gap[i] + step * impulses->mine[i];
+    any |= impulses->mine[i] < 0;
+  }
+  PetscCall(ContactOr(contact, &any));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComplementarityGather(contact, impulses->mine, impulses));
+  PetscCall(ComplementaritySolve(contact, contact->tolerance, impulses));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
+    PetscCall(BodyShiftStart(contact->bodies[b], impulses->mine));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
