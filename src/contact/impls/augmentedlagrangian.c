@@ -24,16 +24,9 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
 
 static PetscErrorCode ContactSetUp_AugmentedLagrangian(Contact contact)
 {
-  Penalty  *penalty = (Penalty *)contact->data;
-  PetscReal area    = PETSC_INFINITY;
-
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, CONTACT_AUGMENTED_LAGRANGIAN));
   PetscCall(PenaltySetUp(contact));
-  /* a stiff spring makes much force of the round-off in the gap: what a gap far below the tolerance makes is no error */
-  for (PetscInt i = 0; i < contact->n_rows; i++) area = PetscMin(area, contact->area[i]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
-  if (contact->n_all_rows) penalty->atol = PetscMax(penalty->atol, 1e-4 * penalty->penalty * area * penalty->augmentation_tolerance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -55,6 +55,16 @@ static PetscReal WantedForce(Contact contact, PetscInt i)
   return spring - penalty->damping * contact->area[i] * (contact->gap[i] - contact->saved_gap[i]) / penalty->step;
 }
 
+/* What springs and dampers make of the round-off in gap i, which is a difference of displacements: no iteration gets below */
+static PetscReal RoundOff(Contact contact, PetscInt i)
+{
+  const Penalty     *penalty = (const Penalty *)contact->data;
+  const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
+  const PetscScalar *start   = penalty->start[pair->body[0]]; /* displacements */
+
+  return PETSC_MACHINE_EPSILON * (penalty->penalty + penalty->damping / penalty->step) * contact->area[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->initial_gap[i]));
+}
+
 /* Advances all bodies under the forces x, and compares these with what springs and dampers ask for */
 static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
 {
@@ -62,7 +72,7 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   Penalty           *penalty = (Penalty *)contact->data;
   const PetscScalar *x;
   PetscScalar       *f;
-  PetscReal          sums[2] = {0, 0};
+  PetscReal          sums[3] = {0, 0, 0};
 
   PetscFunctionBegin;
   (void)snes;
@@ -76,12 +86,14 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
     f[i]                = x[i] - (wanted > 0 || PetscIsInfOrNanReal(wanted) ? wanted : 0);
     sums[0] += PetscSqr(f[i]);
     sums[1] += PetscSqr(x[i]);
+    sums[2] += PetscSqr(RoundOff(contact, i));
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   penalty->residual  = PetscSqrtReal(sums[0]);
   penalty->magnitude = PetscSqrtReal(sums[1]);
+  penalty->round_off = PetscSqrtReal(sums[2]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -126,7 +138,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude) *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude || penalty->residual <= penalty->round_off) *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,6 +205,8 @@ PetscErrorCode PenaltySetUp(Contact contact)
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(TraceCreate(contact->n_rows, 1, &penalty->force));
   PetscCall(PetscCalloc5(contact->n_rows, &penalty->multiplier, contact->n_rows, &penalty->held, contact->n_rows, &penalty->pushing, contact->n_rows, &penalty->jacobian_pushing, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
+  PetscCall(PetscMalloc1(contact->n_bodies, &penalty->start));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(TraceGetLevel(contact->traces[b].displacement, 0, &penalty->start[b]));
   PetscCall(ForcesComputeCompliance(contact, penalty->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -275,6 +289,7 @@ PetscErrorCode PenaltyDestroy(Contact contact)
   PetscFunctionBegin;
   PetscCall(OuterSolverDestroy(&penalty->outer));
   PetscCall(TraceDestroy(&penalty->force));
+  PetscCall(PetscFree(penalty->start));
   PetscCall(PetscFree5(penalty->multiplier, penalty->held, penalty->pushing, penalty->jacobian_pushing, penalty->compliance));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
