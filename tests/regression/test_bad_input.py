@@ -28,7 +28,7 @@ CASES = {
     "ts-type": (f"{BASE} -left_ts_type euler", ["-left_ts_type", "euler", "alpha2", "centraldifference"]),
     "material-type": (f"{BASE} -right_material_type rubber", ["-right_material_type", "rubber", "linear_elastic"]),
     "mass-type": (f"{BASE} -left_mass_type heavy", ["-left_mass_type", "heavy", "lumped", "consistent", "averaged"]),
-    "contact-type": (f"{BASE} -contact_type glue", ["-contact_type", "glue", "schwarz", "penalty", "lagrange"]),
+    "contact-type": (f"{BASE} -contact_type glue", ["-contact_type", "glue", "schwarz", "penalty", "lagrange", "augmented_lagrangian"]),
     "snes-type": (f"{BASE} -schwarz_snes_type guess", ["-schwarz_snes_type", "guess", "newtonls", "anderson"]),
     "exact": (f"{BASE} -exact bounce", ["-exact", "bounce", "impact"]),
     "missing-body": (f"{BASE} -bodies left,right,middle -contact_pairs left:right", ["middle", "-bodies", "-middle_dm_plex_"]),
@@ -50,17 +50,26 @@ CASES = {
     "three-without-pairs": ("-options_file options/three-bars.opts -contact_pairs", ["-contact_pairs"]),
     "penalty-missing": ("-options_file options/bars-high-speed.opts -contact_type penalty", ["-contact_penalty"]),
     "penalty-negative": (f"{PENALTY} -contact_penalty -1", ["-contact_penalty", "positive"]),
-    "lagrange-implicit": (
-        "-options_file options/impact-lagrange.opts -right_ts_type alpha2",
-        ["lagrange", "explicit", "right", "-right_ts_type centraldifference"],
+    "lagrange-substeps": ("-options_file options/impact-lagrange.opts -left_ts_time_step 1e-8", ["lagrange", "'left' (10 substeps)", "-left_mass_redistribute true"]),
+    "lagrange-snes-type": (f"{BASE} -contact_type lagrange -lagrange_snes_type newtonls", ["-lagrange_snes_type", "vinewtonrsls", "vinewtonssls"]),
+    "augmented-explicit": (
+        "-options_file options/impact-lagrange.opts -contact_type augmented_lagrangian -contact_penalty 1e8",
+        ["augmented_lagrangian", "left", "right", "-left_mass_redistribute true", "-left_ts_type alpha2"],
     ),
-    "lagrange-massless": ("-options_file options/impact-lagrange.opts -left_mass_redistribute true", ["lagrange", "left", "mass"]),
-    "lagrange-substeps": ("-options_file options/impact-lagrange.opts -left_ts_time_step 1e-8", ["lagrange", "left", "10 substeps"]),
+    "augmented-rate": (f"{BASE} -contact_type augmented_lagrangian -contact_constraint gap_rate", ["-contact_constraint gap_rate", "augmented_lagrangian"]),
+    "constraint": (f"{BASE} -contact_constraint speed", ["-contact_constraint", "speed"]),
+    "both-massless": (f"{BASE} -contact_type lagrange -contact_constraint both", ["-contact_constraint both", "left", "right", "-left_mass_redistribute false"]),
+    "damping-missing": (f"{PENALTY} -contact_constraint both", ["-contact_penalty_damping"]),
+    "damping-negative": (f"{PENALTY} -contact_constraint both -contact_penalty_damping -1", ["-contact_penalty_damping", "positive"]),
+    "damping-unstable": (f"{PENALTY} {EXPLICIT} -contact_constraint both -contact_penalty_damping 10", ["-contact_penalty_damping", "unstable"]),
+    "naive-massless": (f"{BASE} -contact_stabilization naive", ["-contact_stabilization naive", "massless", "-<body>_mass_redistribute false"]),
+    "stabilized-schwarz": ("-options_file options/paper-ii.opts -contact_stabilization contact_stabilized", ["contact_stabilized", "-contact_type lagrange", "schwarz"]),
+    "stabilized-explicit": ("-options_file options/impact-lagrange.opts -contact_stabilization contact_stabilized", ["contact_stabilized", "explicit", "alpha2"]),
     "time-step": (f"{BASE} -time_step 0", ["-time_step", "positive"]),
     "time-end": (f"{BASE} -time_end -1", ["-time_end", "-time_start"]),
     "components": (f"{BASE} -left_initial_velocity 1,2", ["-left_initial_velocity", "2", "left"]),
 }
-ON_TWO_RANKS = ["nothing", "options-file", "misspelt-of-body", "contact-type", "missing-body", "indivisible", "unstable", "negative-density", "overlapping", "pair-surface"]
+ON_TWO_RANKS = ["nothing", "options-file", "misspelt-of-body", "contact-type", "lagrange-substeps", "stabilized-schwarz", "missing-body", "indivisible", "unstable", "negative-density", "overlapping", "pair-surface"]
 
 
 def check_message(run, words):
@@ -144,7 +153,7 @@ def test_older_files_stay(launch, tmp_path):
 
 @pytest.mark.parametrize(
     ("integrators", "ranks"),
-    [("II", 1), ("II", 2), ("IE", 1), ("EE", 1), ("EE", 2), ("penalty", 1), ("penalty-explicit", 1), ("lagrange", 1)],
+    [("II", 1), ("II", 2), ("IE", 1), ("EE", 1), ("EE", 2), ("penalty", 1), ("penalty-explicit", 1), ("lagrange", 1), ("lagrange-implicit", 1), ("augmented", 1)],
 )
 def test_not_a_number(integrators, ranks, impakt):
     """Names the body, the time and the step: velocities near the largest double, that the first steps take beyond it."""
@@ -155,6 +164,8 @@ def test_not_a_number(integrators, ranks, impakt):
         "penalty": PENALTY,
         "penalty-explicit": f"{PENALTY} {EXPLICIT}",
         "lagrange": "-options_file options/impact-lagrange.opts",
+        "lagrange-implicit": f"{BASE} -contact_type lagrange",
+        "augmented": f"{BASE} -contact_type augmented_lagrangian -contact_penalty 1e8",
     }[integrators]
     run = impakt(f"{options} -exact none -left_initial_velocity 1e308 -right_initial_velocity -1e308", ranks, expect_failure=True, timeout=60)
     check_message(run, ["body '", "not a number", "time", "-0.00019", "step"])

@@ -125,6 +125,18 @@ static void LagrangeDoesNotAllocate(void **state)
   RunCase("-contact_type lagrange -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 -right_mass_redistribute 0");
 }
 
+static void RatesDoNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-contact_type lagrange -contact_constraint both -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 -right_mass_redistribute 0");
+}
+
+static void NaiveStabilizationDoesNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-contact_stabilization naive -left_mass_redistribute 0 -right_mass_redistribute 0");
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -135,6 +147,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(SwappedSidesDoNotAllocate),
       cmocka_unit_test(PenaltyDoesNotAllocate),
       cmocka_unit_test(LagrangeDoesNotAllocate),
+      cmocka_unit_test(RatesDoNotAllocate),
+      cmocka_unit_test(NaiveStabilizationDoesNotAllocate),
   };
   int failed;
 

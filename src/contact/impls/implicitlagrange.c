@@ -157,12 +157,30 @@ static PetscErrorCode CheckConverged(Contact contact)
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose a smaller -time_step", (double)time, contact->counts_made.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]);
 }
 
-static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
+/* The solution. The semismooth iteration may leave forces that pull, within the tolerance: these are taken out. */
+static PetscErrorCode TakeForces(Contact contact)
 {
   ImplicitLagrange  *lagrange = (ImplicitLagrange *)contact->data;
-  PetscBool          in_contact, changed = PETSC_TRUE;
-  PetscScalar       *x;
   const PetscScalar *force;
+  int                pulls = 0;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(lagrange->outer.x, &force));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    pulls |= force[i] < 0;
+    contact->force[i] = PetscMax(force[i], 0);
+  }
+  PetscCall(VecRestoreArrayRead(lagrange->outer.x, &force));
+  PetscCall(ContactOr(contact, &pulls));
+  if (pulls) PetscCall(ForcesIntegrate(contact, lagrange->force, contact->force, lagrange->scale));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  PetscBool         in_contact, changed = PETSC_TRUE;
+  PetscScalar      *x;
 
   PetscFunctionBegin;
   PetscCall(ForcesBeginStep(contact, lagrange->held, &in_contact));
@@ -174,9 +192,7 @@ static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
   while (changed) {
     PetscCall(SNESSolve(lagrange->outer.snes, NULL, lagrange->outer.x));
     PetscCall(CheckConverged(contact));
-    PetscCall(VecGetArrayRead(lagrange->outer.x, &force));
-    PetscCall(PetscArraycpy(contact->force, force, contact->n_rows));
-    PetscCall(VecRestoreArrayRead(lagrange->outer.x, &force));
+    PetscCall(TakeForces(contact));
     changed = PETSC_FALSE;
     if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) PetscCall(ForcesHold(contact, contact->force, lagrange->held, &changed));
   }

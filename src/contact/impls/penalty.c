@@ -55,14 +55,15 @@ static PetscReal WantedForce(Contact contact, PetscInt i)
   return spring - penalty->damping * contact->area[i] * (contact->gap[i] - contact->saved_gap[i]) / penalty->step;
 }
 
-/* What springs and dampers make of the round-off in gap i, which is a difference of displacements: no iteration gets below */
+/* What springs and dampers make of the round-off in gap i, a sum of three lengths that were rounded themselves: no iteration
+   gets below */
 static PetscReal RoundOff(Contact contact, PetscInt i)
 {
   const Penalty     *penalty = (const Penalty *)contact->data;
   const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
   const PetscScalar *start   = penalty->start[pair->body[0]]; /* displacements */
 
-  return PETSC_MACHINE_EPSILON * (penalty->penalty + penalty->damping / penalty->step) * contact->area[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->initial_gap[i]));
+  return 4 * PETSC_MACHINE_EPSILON * (penalty->penalty + penalty->damping / penalty->step) * contact->area[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->initial_gap[i]));
 }
 
 /* Advances all bodies under the forces x, and compares these with what springs and dampers ask for */
