@@ -301,6 +301,8 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PetscViewerASCIIPrintf(viewer, " %s", contact->pairs[p].name));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->n_all_rows, contact->n_all_rows == 1 ? "" : "s"));
+  if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->constraint]));
+  if (contact->stabilization != CONTACT_STABILIZATION_NONE) PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->stabilization]));
   PetscTryTypeMethod(contact, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,14 @@
 """The augmented Lagrangian at high speed: the penalty parameter is a matter of cost alone."""
 
 import pytest
-from cases import DEFAULTS, PAIRINGS, force_scatter, joined, never_tensile, worst_energy_error
+from cases import (
+    DEFAULTS,
+    PAIRINGS,
+    force_scatter,
+    joined,
+    never_tensile,
+    worst_energy_error,
+)
 
 pytest_plugins = "shared_runs"
 

@@ -1,7 +1,15 @@
 """-contact_constraint at high speed: the gap rate in place of the gap or beside it."""
 
 import pytest
-from cases import DEFAULTS, FRAMES, PAIRINGS, force_scatter, joined, never_tensile, worst_energy_error
+from cases import (
+    DEFAULTS,
+    FRAMES,
+    PAIRINGS,
+    force_scatter,
+    joined,
+    never_tensile,
+    worst_energy_error,
+)
 
 pytest_plugins = "shared_runs"
 

@@ -2,7 +2,15 @@
 
 import numpy as np
 import pytest
-from cases import DEFAULTS, FRAMES, PAIRINGS, force_scatter, joined, never_tensile, worst_energy_error
+from cases import (
+    DEFAULTS,
+    FRAMES,
+    PAIRINGS,
+    force_scatter,
+    joined,
+    never_tensile,
+    worst_energy_error,
+)
 
 pytest_plugins = "shared_runs"
 
@@ -67,6 +75,18 @@ def test_trapezoidal_rule_chatters(shared_run):
     assert run.summary["system"]["energy_error_max"] > 1
     assert run.summary["contact"]["max_penetration"] <= 1e-12
     assert never_tensile(run)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_three_bars(ranks, shared_run):
+    """Two pairs with one body in common: the impulses of Schwarz, within 1e-12 m over 2.5e-6 m/N of 100 N."""
+    bars = "-options_file options/three-bars.opts"
+    schwarz, lagrange = shared_run(bars).summary, shared_run(f"{bars} -contact_type lagrange", ranks=ranks).summary
+    for pair in ("a:b", "b:c"):
+        assert lagrange["pairs"][pair]["onsets"] == 1
+        assert lagrange["pairs"][pair]["impulse"] == pytest.approx(schwarz["pairs"][pair]["impulse"], rel=1e-8)
+    assert lagrange["schwarz"]["max"] == 2
+    assert abs(lagrange["system"]["energy_error_final"]) <= 4e-6
 
 
 @pytest.mark.parametrize("ranks", [2, 3])

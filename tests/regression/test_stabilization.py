@@ -1,7 +1,14 @@
 """-contact_stabilization at high speed, with mass on the contact nodes."""
 
 import pytest
-from cases import DEFAULTS, FRAMES, force_scatter, joined, never_tensile, worst_energy_error
+from cases import (
+    DEFAULTS,
+    FRAMES,
+    force_scatter,
+    joined,
+    never_tensile,
+    worst_energy_error,
+)
 
 pytest_plugins = "shared_runs"
 
