@@ -69,7 +69,7 @@ def test_naive_for_schwarz(paper, shared_run):
 
 @pytest.mark.parametrize("integrators", ["", "-left_ts_type centraldifference -right_ts_type centraldifference"], ids=["II", "EE"])
 def test_naive_for_penalty(integrators, shared_run):
-    """Scatter of the force a thousandth of a thousandth, where it is a thousandth without; a little energy is gained at release."""
+    """The scatter of the force, a thousandth without it, falls to a millionth; a little energy is gained at release."""
     run = shared_run(joined("-options_file options/impact-penalty.opts -contact_stabilization naive", integrators))
     assert force_scatter(run.summary) <= 1e-5
     assert 0 < run.summary["system"]["energy_error_final"] <= 1e-3

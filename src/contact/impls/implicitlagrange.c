@@ -200,8 +200,8 @@ static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corrections of the states at the end of the step: velocities without gap rate; and accelerations without contact forces, from which
-   the contact-stabilised method starts its next step */
+/* Corrections of the states at the end of the step: velocities without gap rate; and accelerations without contact forces, from
+   which the contact-stabilised method starts its next step */
 static PetscErrorCode ContactAccept_ImplicitLagrange(Contact contact)
 {
   ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;

@@ -50,7 +50,15 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
    yet that begins there.
 
    Otherwise the forces at t_{n+1} close the gap at t_{n+1}, by the outer iteration. Of each pair one body at least must be
-   implicit or have massless contact nodes.
+   implicit or have massless contact nodes. Massless nodes are what it is good for: with mass on both sides Newmark's trapezoidal rule
+   undoes each change of the force in the next step, so that forces swing, bodies chatter and energy grows, the more so where one
+   side is explicit. Against it there are -contact_constraint both with -contact_stabilization naive, which end it together, and
+   -contact_stabilization contact_stabilized.
+
+   With -contact_constraint both the velocities are corrected by impulses at the end of each step in contact. The forces that are
+   told have them in forward increments; for implicit bodies they matter at impact only and are left out.
+
+   `SNESVINEWTONRSLS` allocates and frees its index sets and matrices in each iteration.
 
    References:
 +  * - N. J. Carpenter, R. L. Taylor, M. G. Katona, Lagrange constraints for transient finite element surface contact, IJNME 32

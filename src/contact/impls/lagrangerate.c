@@ -1,4 +1,4 @@
-/* Impulses on the contact nodes at one instant: what closes the gap rate, and what closes a predicted gap in the norm of the mass. */
+/* Impulses on the contact nodes at one instant: what ends the gap rate, and what closes a predicted gap in the norm of the mass. */
 #include "lagrangeimpl.h"
 
 /* The effect of unit impulses on the gap rates [1/kg]. One side of each pair must have mass, since `option` cannot do without. */
@@ -43,8 +43,8 @@ static PetscErrorCode GetRates(Contact contact, PetscBool at_end, PetscScalar ra
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Impulses [N s] on the rows with a force, at the end of the step, after which their gap rate is zero: the rest of the kinetic energy
-   goes, in the norm of the mass the nearest velocities are taken. With `pushing_only` a gap that opens may go on opening. */
+/* Impulses [N s] on the rows with a force, at the end of the step, after which their gap rate is zero: the nearest velocities in the
+   norm of the mass, so that no energy is gained. With `pushing_only` a gap that opens may go on opening. */
 PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Complementarity *impulses)
 {
   PetscBool in_contact;

@@ -177,7 +177,7 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Spring and damper alone, between the masses of explicit bodies, must be stable: with C = A dt^2 B M^{-1} B^T, tau C + 2 c C / dt < 4 */
+/* Spring and damper alone, between the masses of explicit bodies, must be stable: tau C + 2 c C / dt < 4, C = A dt^2 B M^{-1} B^T */
 static PetscErrorCode CheckStability(Contact contact)
 {
   Penalty  *penalty = (Penalty *)contact->data;
