@@ -10,8 +10,13 @@ typedef struct {
 static const KnownOption global_options[] = {
     {"bodies", "a,b", "names of the bodies; options of body a begin with -a_"},
     {"contact_pairs", "a:b,b:c", "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces"},
-    {"contact_type", "schwarz|penalty|lagrange", "contact method"},
+    {"contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method"},
+    {"contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},
+    {"contact_stabilization", "none|naive|contact_stabilized", "against chatter of contact nodes with mass, default none"},
     {"contact_penalty", "tau", "penalty parameter [N/m in 1-D]"},
+    {"contact_penalty_damping", "c", "damping of the gap rate with penalty [N s/m in 1-D]"},
+    {"contact_augmentation_tolerance", "g", "gap that the augmented Lagrangian leaves [m], default 1e-10"},
+    {"contact_augmentation_max_it", "n", "limit of its rounds in a step, default 200"},
     {"contact_swap_sides", "true|false", "Schwarz: sides change with every controller step, default false"},
     {"contact_tolerance", "g", "depth that does not yet count as penetration [m]"},
     {"time_start", "t", "start [s], default 0"},
@@ -35,6 +40,10 @@ static const KnownOption global_options[] = {
     {"penalty_snes_rtol", "r", "its relative tolerance on the force, default 1e-9"},
     {"penalty_snes_atol", "a", "its absolute tolerance [N], default 1e-14"},
     {"penalty_snes_max_it", "n", "its limit of iterations, default 50"},
+    {"lagrange_snes_type", "vinewtonrsls|vinewtonssls", "outer iteration of implicit Lagrange multipliers, default vinewtonrsls"},
+    {"lagrange_snes_atol", "a", "its tolerance on the gap [m], default 1e-12"},
+    {"lagrange_snes_rtol", "r", "relative to the displacement of the contact nodes, default 1e-15"},
+    {"lagrange_snes_max_it", "n", "its limit of iterations, default 50"},
     {"exact", "none|impact|characteristics", "compare with an exact solution: of two equal bars, of any two bars"},
     {"output_history", "file.h5", "history of every controller step"},
     {"output_summary", "file.json", "summary of the run"},
@@ -67,7 +76,7 @@ static const KnownOption body_options[] = {
 };
 
 /* These are read by PETSc when it solves or finalises, so they are unread before the run */
-static const char *const late_options[] = {"schwarz_snes_view", "schwarz_snes_view_pre", "schwarz_snes_view_solution", "penalty_snes_view", "penalty_snes_view_pre", "penalty_snes_view_solution", "options_left", "options_view", "malloc_dump", "malloc_view", "malloc_debug", "objects_dump", "memory_view", "log_view", "log_trace", "log_view_memory", "log_view_gpu_time", "log_nested", "get_total_flops", "mpidump", "citations", "petsc_mpi", "x_virtual", "on_error_abort", "on_error_mpiabort"};
+static const char *const late_options[] = {"schwarz_snes_view", "schwarz_snes_view_pre", "schwarz_snes_view_solution", "penalty_snes_view", "penalty_snes_view_pre", "penalty_snes_view_solution", "lagrange_snes_view", "lagrange_snes_view_pre", "lagrange_snes_view_solution", "options_left", "options_view", "malloc_dump", "malloc_view", "malloc_debug", "objects_dump", "memory_view", "log_view", "log_trace", "log_view_memory", "log_view_gpu_time", "log_nested", "get_total_flops", "mpidump", "citations", "petsc_mpi", "x_virtual", "on_error_abort", "on_error_mpiabort"};
 
 /* Levenshtein's distance between two short words */
 static PetscInt EditDistance(const char a[], const char b[])

@@ -128,6 +128,38 @@ static void impulses_are_told(void **state)
   }
 }
 
+/* The same by the Schwarz method, whatever is exchanged and at however many substeps; and it needs no more sweeps for it */
+static void gap_is_kept_by_schwarz(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const ways[]     = {"-schwarz_transmission dirichlet_neumann", "-schwarz_transmission robin", "-schwarz_transmission dirichlet_neumann -left_ts_time_step 0.005 -right_ts_time_step 0.01", "-contact_swap_sides"};
+
+  AddCollision(8, 10, 3);
+  AddOptions("-contact_constraint gap_rate -left_initial_displacement 1e-3"); /* 1 mm is left, and 4 mm would be gone after the step */
+  for (PetscInt k = 0; k < 4; k++) {
+    SimulationRepeat(simulation, ways[k]);
+    for (PetscInt step = 0; step < 5; step++) {
+      const ContactPairState pair = Step(simulation);
+      ContactCounts          counts;
+
+      assert_int_equal(pair.active, 1);
+      assert_true(pair.force > 0);
+      near(pair.gap, 1e-3, 1e-11); /* -schwarz_snes_atol in each step */
+      ok(ContactGetCounts(simulation->contact, &counts));
+      between(counts.sweeps, 1, 2);
+    }
+  }
+}
+
+static void schwarz_refuses_both(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_constraint both");
+  refused(PETSC_ERR_USER_INPUT, "-contact_constraint both|gap or gap_rate", SimulationCreate(simulation));
+}
+
 static void wrong_options_are_refused(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
@@ -156,6 +188,8 @@ int main(int argc, char **argv)
       simulation_test(gap_is_kept),
       simulation_test(gap_and_rate),
       simulation_test(impulses_are_told),
+      simulation_test(gap_is_kept_by_schwarz),
+      simulation_test(schwarz_refuses_both),
       simulation_test(wrong_options_are_refused),
   };
 

@@ -5,7 +5,9 @@
    row's direction: a gap that is open at its start closes linearly over it, or stays as it is if only its rate is constrained */
 PetscReal SchwarzOffset(Contact contact, PetscInt i, PetscReal part)
 {
-  return contact->initial_gap[i] - contact->saved_gap[i] * (1 - part);
+  const PetscReal left = contact->constraint == CONTACT_CONSTRAINT_GAP_RATE ? 1 : 1 - part;
+
+  return contact->initial_gap[i] - contact->saved_gap[i] * left;
 }
 
 /* All bodies through the step without contact, for where their contact nodes go */

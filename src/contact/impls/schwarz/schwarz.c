@@ -93,6 +93,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscBool richardson, damping_set;
 
   PetscFunctionBegin;
+  PetscCheck(contact->constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
   PetscCall(SchwarzSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
@@ -162,6 +163,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
                                                                   Neumann side's contact elements
 .  -schwarz_predictor (last|trial|extrapolate|inelastic)        - where the first sweep starts from, inelastic
 .  -schwarz_traction_waveform (linear|constant)                 - traction of a partner with longer substeps in the course of them
+.  -contact_constraint (gap|gap_rate)                           - close the gap in the first step in contact, or keep it as it is at its start
 .  -contact_swap_sides (true|false)                             - whether the sides change with every controller step
 .  -schwarz_convergence (auto|position|contact_position|mismatch) - change of all positions from sweep to sweep (the paper's), of those
                                                                   of the contact nodes, or the change of the contact nodes that a plain
