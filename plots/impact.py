@@ -106,8 +106,11 @@ def exact_solution(history, axis):
     potential = energy * np.minimum(part, 2 - part)
     origin = (x + x_other) / 2 + frame * (time - time[0])
     deviation = np.where(time <= impact, time - impact, np.where(time > release, release - time, 0)) * speed
+    rate = np.where(time <= impact, speed, np.where(time > release, -speed, 0))
     return {
         "position": {name: origin + deviation, partner: origin - deviation},
+        "velocity": {name: frame + rate, partner: frame - rate},
+        "mean_velocity": {name: frame + speed * (1 - part), partner: frame - speed * (1 - part)},
         "force": np.where(touching, abs(speed) * np.sqrt(modulus * density) * area, 0),
         "kinetic": density * area * length * frame * (frame / 2 + speed * (1 - part)) + energy - potential,
         "potential": potential,
