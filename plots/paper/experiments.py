@@ -24,7 +24,7 @@ HIGH_SPEED = {
 
 # Steps in a run beyond which a history is of no use: it would be 10^6 records long
 LONGEST_HISTORY = 200_000
-SECONDS_PER_STEP = 3e-5  # roughly, of any run; only for the order of the runs and the estimate of what is left
+SECONDS_PER_SUBSTEP = 1e-5  # roughly, with the sweeps that it is repeated for; only for the order of the runs and the estimate of what is left
 
 
 class BadOptions(Exception):
@@ -58,9 +58,12 @@ class Experiment:
         return FOLDER / f"{self.name}.opts"
 
     @property
+    def duration(self):
+        return float(self.last("time_end", "0")) - float(self.last("time_start", "0"))
+
+    @property
     def steps(self):
-        start, end, step = (float(self.last(f"time_{name}", "0")) for name in ("start", "end", "step"))
-        return round((end - start) / step) if step else 0
+        return round(self.duration / float(self.last("time_step", "inf")))
 
     @property
     def keeps_history(self):
@@ -69,7 +72,8 @@ class Experiment:
     @property
     def cost(self):
         """Seconds it may take, for the order of the runs."""
-        return 0.3 + SECONDS_PER_STEP * self.steps
+        steps = [self.last(f"{body}_ts_time_step", self.last("time_step", "inf")) for body in ("left", "right")]
+        return 0.3 + SECONDS_PER_SUBSTEP * sum(self.duration / float(step) for step in steps)
 
     def last(self, name, default=None):
         """The value that holds: an option that is given again replaces what was given before."""
