@@ -26,16 +26,18 @@ PETSC_EXTERN PetscClassId BODY_CLASSID;
    Values:
 + `BODY_FREE`       - nothing: the row is not of this body, or not in contact
 . `BODY_PRESCRIBED` - displacement, velocity and acceleration of the row follow their input traces
-- `BODY_FORCED`     - the force in its input trace acts along the row
+. `BODY_FORCED`     - the force in its input trace acts along the row
+- `BODY_ROBIN`      - the force in its input trace less that of a spring between the row and a fixed point acts along the row
 
    Level: developer
 
-.seealso: `BodySetConditions()`
+.seealso: `BodySetConditions()`, `BodySetRobin()`
 E*/
 typedef enum {
   BODY_FREE,
   BODY_PRESCRIBED,
-  BODY_FORCED
+  BODY_FORCED,
+  BODY_ROBIN
 } BodyCondition;
 
 /*E
@@ -97,9 +99,9 @@ typedef struct {
 S*/
 typedef struct {
   Trace displacement_in, velocity_in, acceleration_in; /* of prescribed rows: read by BodyIntegrate() [m, m/s, m/s^2] */
-  Trace force_in;                                      /* on forced rows: read by BodyIntegrate() [N] */
+  Trace force_in;                                      /* on forced and Robin rows: read by BodyIntegrate() [N] */
   Trace displacement, velocity, acceleration;          /* of all rows: written by BodyIntegrate() */
-  Trace reaction;                                      /* of prescribed rows: written by BodyIntegrate() [N] */
+  Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
 } BodyTraces;
 
 PETSC_EXTERN PetscErrorCode BodyRegisterAll(void);
@@ -114,6 +116,7 @@ PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
 PETSC_EXTERN PetscErrorCode BodySetTractionType(Body, BodyTractionType);
+PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *), void *);
 
 PETSC_EXTERN PetscErrorCode BodyGetDM(Body, DM *);
@@ -144,4 +147,6 @@ PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
 PETSC_EXTERN PetscErrorCode BodyGetWaveformResponse(Body, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyGetRateResponse(Body, const PetscScalar *[], const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, PetscScalar *[]);

@@ -176,7 +176,7 @@ static PetscErrorCode SetUpRows(Body body)
   PetscCall(PetscMPIIntCast(4 * rows->local, &four));
   PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
-  PetscCall(PetscCalloc2(rows->local, &body->conditions, rows->local, &body->held));
+  PetscCall(PetscCalloc4(rows->local, &body->conditions, rows->local, &body->held, rows->local, &body->flexibility, rows->local, &body->robin));
   PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[0]));
   PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[1]));
   body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute);
@@ -261,7 +261,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MaterialDestroy(&b->material));
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
   PetscCall(PetscFree(b->kept_traces));
-  PetscCall(PetscFree2(b->conditions, b->held));
+  PetscCall(PetscFree4(b->conditions, b->held, b->flexibility, b->robin));
   PetscCall(PetscFree(b->layer_dofs));
   PetscCall(PetscFree(b->in_layer));
   PetscCall(PetscFree(b->connectivity));

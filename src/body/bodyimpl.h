@@ -68,9 +68,12 @@ struct _p_Body {
   Mat                   interface;
   BodyRows              rows;
   BodyCondition        *conditions;             /* local rows */
-  PetscBool            *held;                   /* those that are prescribed */
-  PetscInt              n_prescribed, n_forced; /* over all ranks */
-  PetscBool             prescribed_mass;        /* prescribed nodes carry mass */
+  PetscBool            *held;                   /* those that are prescribed, or Robin rows */
+  PetscReal            *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
+  PetscReal            *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
+  PetscInt              n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
+  PetscInt              n_robin;
+  PetscBool             prescribed_mass; /* prescribed nodes carry mass */
   BodyTractionType      traction;
   BodyTraces            traces;
   PetscInt              substep; /* 0 to substeps - 1 */
@@ -107,7 +110,7 @@ PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, PetscReal, PetscBool, Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
-PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec);
+PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyIntegrateWindow(Body);
 PETSC_INTERN PetscErrorCode BodyIntegrateByResponse(Body, PetscBool *);

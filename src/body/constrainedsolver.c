@@ -4,7 +4,8 @@
 
      z = A^{-1} b,   W_mm s = B_m z,   x = z - A^{-1} B_m^T s.
 
-   So a change of the constrained rows never makes A be factored again. The columns C = A^{-1} B^T are made once each, when
+   A row on a spring, rather than held, gives (A + B_m^T k B_m) x = b: the same with the flexibility 1 / k added to its entry on the
+   diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C = A^{-1} B^T are made once each, when
    their row is constrained for the first time.
 */
 #include "constrainedsolver.h"
@@ -16,7 +17,7 @@ struct _n_ConstrainedSolver {
   Mat           B;
   PetscInt      local, global, begin; /* rows of B */
   PetscMPIInt   size, *counts, *offsets;
-  int          *mine, *constrained; /* 1 where a row is held: this rank's rows, and all rows */
+  PetscReal    *mine, *constrained; /* flexibility of a row, 0 where it is held, less than 0 where it is free: this rank's rows, and all rows */
   PetscInt      n;                  /* how many of them */
   PetscInt     *rows;               /* which */
   Vec          *columns;            /* per row: A^{-1} B^T e, or NULL until needed */
@@ -159,24 +160,24 @@ static PetscErrorCode MakeColumn(ConstrainedSolver s, PetscInt j)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of this rank's rows are held from now on. Collective; cheap where nothing changes. */
-PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[])
+/* Which of this rank's rows are held from now on, or on springs with those flexibilities (NULL: all held). Collective. */
+PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[], const PetscReal flexibility[])
 {
   PetscBLASInt n, info;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? 1 : 0;
-  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPI_INT, s->constrained, s->counts, s->offsets, MPI_INT, PetscObjectComm((PetscObject)s->ksp)));
+  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
+  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL, PetscObjectComm((PetscObject)s->ksp)));
   s->n = 0;
   for (PetscInt j = 0; j < s->global; j++) {
-    if (!s->constrained[j]) continue;
+    if (s->constrained[j] < 0) continue;
     if (!s->columns[j]) PetscCall(MakeColumn(s, j));
     s->active_columns[s->n] = s->columns[j];
     s->rows[s->n++]         = j;
   }
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 0; j < s->n; j++)
-    for (PetscInt i = 0; i < s->n; i++) s->factor[j * s->n + i] = s->compliance[s->rows[j] * s->global + s->rows[i]];
+    for (PetscInt i = 0; i < s->n; i++) s->factor[j * s->n + i] = s->compliance[s->rows[j] * s->global + s->rows[i]] + (i == j ? s->constrained[s->rows[j]] : 0);
   PetscCall(PetscBLASIntCast(s->n, &n));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, s->factor, &n, s->pivots, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "The prescribed contact rows of a body are not independent (LAPACK getrf info %d); is a node in two contact pairs?", (int)info);

@@ -2,7 +2,7 @@
 #include "bodyimpl.h"
 
 /* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (contact forces - internal force)_L,
-   with prescribed rows held. One round is exact for linear materials. */
+   with prescribed rows held and Robin rows on their springs. One round is exact for linear materials. */
 static PetscErrorCode BalanceLayer(Body body, PetscReal position, Vec u)
 {
   Vec force = body->work[0];
@@ -11,7 +11,7 @@ static PetscErrorCode BalanceLayer(Body body, PetscReal position, Vec u)
   PetscCall(BodyComputeInternalForce(body, u, body->internal_force));
   PetscCall(VecCopy(body->internal_force, force));
   PetscCall(VecScale(force, -1));
-  PetscCall(BodyAddContactForce(body, position, 1, force));
+  PetscCall(BodyAddContactForce(body, position, 1, u, force));
   PetscCall(VecScatterBegin(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(ConstrainedSolverSolve(body->solver, body->layer_rhs, body->layer_solution));
@@ -43,7 +43,7 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   }
   PetscCall(VecCopy(body->internal_force, force));
   PetscCall(VecScale(force, -1));
-  PetscCall(BodyAddContactForce(body, position, 1, force));
+  PetscCall(BodyAddContactForce(body, position, 1, U, force));
   PetscCall(BodySolveMass(body, force, position, prescribed, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

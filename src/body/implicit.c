@@ -18,7 +18,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   if (body->mass_diagonal) PetscCall(VecPointwiseMult(F, body->mass_diagonal, A));
   else PetscCall(MatMult(body->mass_matrix, A, F));
   PetscCall(VecAXPY(F, 1, body->internal_force));
-  PetscCall(BodyAddContactForce(body, position, -1, F));
+  PetscCall(BodyAddContactForce(body, position, -1, U, F));
   PetscCall(BodyPrescribe(body, NULL, position, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -174,7 +174,7 @@ static PetscErrorCode SetUnitInput(Body body, PetscInt row, InputKind kind)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Column `row` of a response matrix, on every rank: the reaction of prescribed rows, the displacement of the others */
+/* Column `row` of a response matrix, on every rank: the force along prescribed and Robin rows, the displacement of the others */
 static PetscErrorCode GatherOutputs(Body body, const PetscScalar displacement[], const PetscScalar reaction[], PetscScalar matrix[], PetscInt row)
 {
   struct _BodyResponse *response = body->response;
@@ -182,7 +182,7 @@ static PetscErrorCode GatherOutputs(Body body, const PetscScalar displacement[],
 
   PetscFunctionBegin;
   /* in steps of four, as the counts and offsets are */
-  for (PetscInt i = 0; i < rows->local; i++) response->mine[4 * i] = body->conditions[i] == BODY_PRESCRIBED ? reaction[i] : displacement[i];
+  for (PetscInt i = 0; i < rows->local; i++) response->mine[4 * i] = body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN ? reaction[i] : displacement[i];
   PetscCallMPI(MPI_Allgatherv(response->mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, response->new_inputs, rows->counts, rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
   for (PetscInt i = 0; i < rows->global; i++) matrix[row * rows->global + i] = response->new_inputs[4 * i];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -313,8 +313,8 @@ static PetscErrorCode EndProbing(Body body, const Clock *clock)
 
   Output Parameter:
 . matrix - all rows by all rows, by columns, on every rank, owned by the body. Inputs rise linearly over the controller step to
-           a displacement of 1 m on prescribed rows and a force of 1 N on forced rows; outputs, at its end, are the reaction on
-           prescribed rows [N] and the displacement on all others [m]
+           a displacement of 1 m on prescribed rows and a force of 1 N on forced and Robin rows; outputs, at its end, are the
+           force along prescribed and Robin rows [N] and the displacement of all others [m]
 
   Level: developer
 
@@ -350,7 +350,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, kinds, (PetscMPIInt)rows->global, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
   for (PetscInt row = 0; row < rows->global; row++) {
-    if (kinds[row] == BODY_FORCED) PetscCall(Probe(body, row, INPUT_FORCE));
+    if (kinds[row] == BODY_FORCED || kinds[row] == BODY_ROBIN) PetscCall(Probe(body, row, INPUT_FORCE));
     if (kinds[row] != BODY_PRESCRIBED) continue;
     PetscCall(Probe(body, row, INPUT_DISPLACEMENT));
     if (!body->prescribed_mass || body->substeps > 1) continue;

@@ -61,6 +61,31 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 }
 
 /*@
+  BodySetRobin - sets the springs of Robin rows
+
+  Logically Collective
+
+  Input Parameters:
++ body      - the `Body`, set up
+- stiffness - one for each row of this rank [N/m], positive on rows that are to be Robin rows
+
+  Level: developer
+
+  Note:
+  The force along the row is r - stiffness B u, with r from the input trace. Set before `BodySetConditions()` makes Robin rows.
+
+.seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
+  PetscCall(PetscArraycpy(body->robin, stiffness, body->rows.local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodySetConditions - says which rows are prescribed and which are loaded from now on
 
   Collective
@@ -78,7 +103,7 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 @*/
 PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 {
-  PetscInt  counts[2] = {0, 0};
+  PetscInt  counts[3] = {0, 0, 0};
   PetscBool changed   = PETSC_FALSE, known;
 
   PetscFunctionBegin;
@@ -87,21 +112,24 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
     if (conditions[i] != body->conditions[i]) changed = PETSC_TRUE;
     body->conditions[i] = conditions[i];
     counts[0] += conditions[i] == BODY_PRESCRIBED;
-    counts[1] += conditions[i] == BODY_FORCED;
+    counts[1] += conditions[i] == BODY_FORCED || conditions[i] == BODY_ROBIN;
+    counts[2] += conditions[i] == BODY_ROBIN;
   }
   known = BodyMatchResponse(body);
   if (body->rows.size > 1) {
-    PetscInt all[4] = {counts[0], counts[1], changed ? 1 : 0, known ? 0 : 1};
+    PetscInt all[5] = {counts[0], counts[1], changed ? 1 : 0, known ? 0 : 1, counts[2]};
 
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 5, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
     counts[0] = all[0];
     counts[1] = all[1];
+    counts[2] = all[4];
     changed   = (PetscBool)(all[2] > 0);
     known     = (PetscBool)(all[3] == 0);
   }
   if (!changed) PetscFunctionReturn(PETSC_SUCCESS);
   body->n_prescribed = counts[0];
   body->n_forced     = counts[1];
+  body->n_robin      = counts[2];
   PetscCall(BodyValidateResponse(body, known));
   PetscCall(BodySetConstraints(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,9 +139,15 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 PetscErrorCode BodySetConstraints(Body body)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
-  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held));
-  if (body->mass_solver && body->is_explicit && body->prescribed_mass) PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held));
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    body->held[i]        = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN);
+    body->flexibility[i] = body->conditions[i] == BODY_ROBIN ? 1 / body->robin[i] : 0;
+  }
+  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held, body->flexibility));
+  if (body->mass_solver && body->is_explicit && body->prescribed_mass) {
+    for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
+    PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held, NULL));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,16 +173,25 @@ PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f += scale B^T lambda on forced rows, with lambda from the force trace at that position of the controller step */
-PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar scale, Vec f)
+/* f += scale B^T lambda on forced and Robin rows, with the force trace at that position of the controller step and the springs of
+   Robin rows at displacement u */
+PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar scale, Vec u, Vec f)
 {
-  PetscScalar *row;
+  const PetscScalar *at = NULL;
+  PetscScalar       *row;
 
   PetscFunctionBegin;
   if (!body->n_forced) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
   PetscCall(TraceInterpolate(body->traces.force_in, position, 0, body->rows.local, row));
-  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED ? scale * row[i] : 0;
+  if (body->n_robin) {
+    PetscCall(MatMult(body->interface, u, body->row_vec[1]));
+    PetscCall(VecGetArrayRead(body->row_vec[1], &at));
+    for (PetscInt i = 0; i < body->rows.local; i++)
+      if (body->conditions[i] == BODY_ROBIN) row[i] -= body->robin[i] * at[i];
+    PetscCall(VecRestoreArrayRead(body->row_vec[1], &at));
+  }
+  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED || body->conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
   PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
   PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], f, f));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -168,10 +211,10 @@ static PetscErrorCode WriteTrace(Body body, Vec vec, Trace trace, PetscInt level
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement, velocity and acceleration of all rows, and the reaction of prescribed ones, as they are now */
+/* Displacement, velocity and acceleration of all rows, and the force along prescribed and Robin ones, as they are now */
 PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 {
-  PetscScalar *reaction;
+  PetscScalar *reaction, *displacement, *force_in;
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
@@ -186,13 +229,17 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
       PetscCall(BodyMultiplyMass(body, body->state.a, force));
       PetscCall(VecAXPY(force, 1, body->internal_force));
       /* what is loaded and prescribed at once has the load in its balance */
-      PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, force));
+      PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, body->state.u, force));
     }
     PetscCall(WriteTrace(body, force, body->traces.reaction, level));
   }
   PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
-  for (PetscInt i = 0; i < body->rows.local; i++)
-    if (body->conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
+  PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
+  PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    if (body->conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->robin[i] * displacement[i];
+    else if (body->conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,9 +12,10 @@ PetscErrorCode ContactSetConditions(Contact contact, ContactConditions condition
 
       if (conditions == CONDITIONS_FORCES && (pair->body[0] == b || pair->body[1] == b)) condition = BODY_FORCED;
       if (conditions == CONDITIONS_SCHWARZ && contact->active[i]) {
-        if (pair->body[0] == b) condition = BODY_PRESCRIBED;
-        if (pair->body[1] == b) condition = BODY_FORCED;
+        if (pair->body[pair->dirichlet] == b) condition = BODY_PRESCRIBED;
+        if (pair->body[1 - pair->dirichlet] == b) condition = BODY_FORCED;
       }
+      if (conditions == CONDITIONS_ROBIN && contact->active[i] && (pair->body[0] == b || pair->body[1] == b)) condition = BODY_ROBIN;
       contact->conditions[i] = condition;
     }
     PetscCall(BodySetConditions(contact->bodies[b], contact->conditions));

@@ -12,16 +12,18 @@ struct _ContactOps {
 
 typedef struct {
   char     *name;       /* as given: left:right */
-  PetscInt  body[2];    /* Dirichlet and Neumann side, numbers in the contact's bodies */
+  PetscInt  body[2];    /* numbers in the contact's bodies: the one that has a node for each row, and its partner */
+  PetscInt  dirichlet;  /* 0 or 1: which of them takes displacements in this controller step */
   char     *surface[2]; /* names of the surfaces, NULL for all that face each other */
   PetscInt  begin, end; /* its rows of this rank */
-  PetscReal normal[3];  /* mean outward normal of the Dirichlet side */
+  PetscReal normal[3];  /* mean outward normal of the first */
 } ContactPair;
 
 /* What the rows mean to the bodies */
 typedef enum {
   CONDITIONS_FREE,    /* no row means anything */
   CONDITIONS_SCHWARZ, /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
+  CONDITIONS_ROBIN,   /* active rows: Robin rows on both sides */
   CONDITIONS_FORCES   /* all rows forced on both sides */
 } ContactConditions;
 

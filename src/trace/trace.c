@@ -184,3 +184,34 @@ PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScal
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  TraceResampleHeld - as `TraceResample()`, for a waveform that is not linear between its levels but constant, with the value of the
+  level that ends the interval
+
+  Not Collective
+
+  Input Parameters:
++ from  - the waveform to evaluate
+. begin - first row
+. end   - one past the last row
+. scale - factor on the values
+- to    - waveform of the same size, whose rows `begin` to `end` - 1 are set at all its levels
+
+  Level: developer
+
+.seealso: `Trace`, `TraceResample()`
+@*/
+PetscErrorCode TraceResampleHeld(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
+{
+  PetscFunctionBegin;
+  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows", from->size, to->size);
+  for (PetscInt level = 0; level <= to->levels; level++) {
+    /* the end of the interval of `from` in which this level lies; a level of both is its own */
+    const PetscScalar *source = from->values + ((level * from->levels + to->levels - 1) / to->levels) * from->size;
+    PetscScalar       *values = to->values + level * to->size;
+
+    for (PetscInt i = begin; i < end; i++) values[i] = scale * source[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

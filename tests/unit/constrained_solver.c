@@ -56,7 +56,8 @@ static void solve_dense(PetscInt n, PetscReal A[], PetscReal b[])
   for (PetscInt k = 0; k < n; k++) b[k] /= A[k * n + k];
 }
 
-static void solve_reference(const PetscBool held[ROWS], PetscInt seed, PetscReal x[])
+/* [A B^T; B -F] for rows with flexibilities F, 0 where they are held */
+static void solve_reference(const PetscBool held[ROWS], const PetscReal flexibility[ROWS], PetscInt seed, PetscReal x[])
 {
   PetscReal A[(SIZE + ROWS) * (SIZE + ROWS)] = {0};
   PetscInt  n                                = SIZE, which[ROWS];
@@ -68,7 +69,10 @@ static void solve_reference(const PetscBool held[ROWS], PetscInt seed, PetscReal
     for (PetscInt r = SIZE; r < n; r++) A[i * n + r] = A[r * n + i] = b_entry(which[r - SIZE], i);
     x[i] = rhs_entry(i, seed);
   }
-  for (PetscInt r = SIZE; r < n; r++) x[r] = 0;
+  for (PetscInt r = SIZE; r < n; r++) {
+    A[r * n + r] = -flexibility[which[r - SIZE]];
+    x[r]         = 0;
+  }
   solve_dense(n, A, x);
 }
 
@@ -117,17 +121,17 @@ static void destroy_system(System *s)
 
 static void hold(System *s, const PetscBool held[ROWS])
 {
-  ok(ConstrainedSolverSetConstraints(s->solver, held + s->begin));
+  ok(ConstrainedSolverSetConstraints(s->solver, held + s->begin, NULL));
 }
 
 /* Round-off: A has a condition number of 3, numbers are of the order of 1 */
-static void check_solution(System *s, const PetscBool held[ROWS], PetscInt seed)
+static void check_flexible_solution(System *s, const PetscBool held[ROWS], const PetscReal flexibility[ROWS], PetscInt seed)
 {
   PetscReal          reference[SIZE + ROWS];
   const PetscScalar *x;
   PetscInt           begin, end;
 
-  solve_reference(held, seed, reference);
+  solve_reference(held, flexibility, seed, reference);
   ok(VecGetOwnershipRange(s->b, &begin, &end));
   for (PetscInt i = begin; i < end; i++) ok(VecSetValue(s->b, i, rhs_entry(i, seed), INSERT_VALUES));
   ok(VecAssemblyBegin(s->b));
@@ -136,6 +140,13 @@ static void check_solution(System *s, const PetscBool held[ROWS], PetscInt seed)
   ok(VecGetArrayRead(s->x, &x));
   for (PetscInt i = begin; i < end; i++) near(x[i - begin], reference[i], 1e-14);
   ok(VecRestoreArrayRead(s->x, &x));
+}
+
+static void check_solution(System *s, const PetscBool held[ROWS], PetscInt seed)
+{
+  const PetscReal none[ROWS] = {0};
+
+  check_flexible_solution(s, held, none, seed);
 }
 
 static const PetscBool sets[][ROWS] = {
@@ -164,6 +175,29 @@ static void solves_with_any_set_of_rows_held(void **state)
       hold(&s, sets[k]);
       check_solution(&s, sets[k], (PetscInt)k);
       check_solution(&s, sets[k], (PetscInt)k + 20); /* another right-hand side */
+    }
+    destroy_system(&s);
+  }
+}
+
+/* Rows on springs, alone, beside held ones, and (the first and its copy) two on one node; and back to held ones */
+static void solves_with_rows_on_springs(void **state)
+{
+  const PetscBool all[ROWS]           = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
+  const PetscReal flexibility[][ROWS] = {{0.5, 0, 0, 2}, {0.1, 3, 0, 0.2}, {4, 1, 10, 0.3}};
+  PetscMPIInt     size;
+
+  (void)state;
+  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
+  for (PetscMPIInt owner = -1; owner < size; owner++) {
+    System s;
+
+    create_system(&s, owner);
+    for (PetscInt k = 0; k < 3; k++) {
+      ok(ConstrainedSolverSetConstraints(s.solver, all + s.begin, flexibility[k] + s.begin));
+      check_flexible_solution(&s, all, flexibility[k], k);
+      hold(&s, sets[2]);
+      check_solution(&s, sets[2], k);
     }
     destroy_system(&s);
   }
@@ -204,7 +238,7 @@ static void refuses_rows_that_are_not_independent(void **state)
 
   (void)state;
   create_system(&s, -1);
-  refused(PETSC_ERR_MAT_LU_ZRPVT, "not independent|two contact pairs", ConstrainedSolverSetConstraints(s.solver, both + s.begin));
+  refused(PETSC_ERR_MAT_LU_ZRPVT, "not independent|two contact pairs", ConstrainedSolverSetConstraints(s.solver, both + s.begin, NULL));
   hold(&s, sets[2]);
   check_solution(&s, sets[2], 3);
   destroy_system(&s);
@@ -214,6 +248,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solves_with_any_set_of_rows_held),
+      cmocka_unit_test(solves_with_rows_on_springs),
       cmocka_unit_test(never_factors_again),
       cmocka_unit_test(refuses_rows_that_are_not_independent),
   };

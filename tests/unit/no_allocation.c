@@ -98,6 +98,21 @@ static void PaperDoesNotAllocate(void **state)
   RunCase("-schwarz_snes_type nrichardson -left_mass_type lumped -right_mass_type lumped -left_mass_redistribute 0 -right_mass_redistribute 0");
 }
 
+static void TransmissionsDoNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-schwarz_transmission robin");
+  RunCase("-schwarz_transmission impedance -schwarz_predictor trial -right_ts_time_step 5e-7");
+}
+
+/* With Aitken: newtonls has a new Jacobian in each step then, and PETSc allocates work space whenever it factors one, and in each
+   iteration of Anderson */
+static void SwappedSidesDoNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-contact_swap_sides -left_ts_time_step 5e-7 -schwarz_predictor extrapolate -schwarz_snes_type nrichardson -schwarz_relaxation aitken");
+}
+
 static void PenaltyDoesNotAllocate(void **state)
 {
   (void)state;
@@ -116,6 +131,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(DefaultsDoNotAllocate),
       cmocka_unit_test(ExplicitDoesNotAllocate),
       cmocka_unit_test(PaperDoesNotAllocate),
+      cmocka_unit_test(TransmissionsDoNotAllocate),
+      cmocka_unit_test(SwappedSidesDoNotAllocate),
       cmocka_unit_test(PenaltyDoesNotAllocate),
       cmocka_unit_test(LagrangeDoesNotAllocate),
   };

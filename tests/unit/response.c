@@ -12,7 +12,11 @@ static const BodyCondition conditions[][2] = {
     {BODY_PRESCRIBED, BODY_PRESCRIBED},
     {BODY_FORCED, BODY_FORCED},
     {BODY_PRESCRIBED, BODY_FREE},
+    {BODY_ROBIN, BODY_FORCED},
+    {BODY_PRESCRIBED, BODY_ROBIN},
 };
+/* Springs of Robin rows [N/m]: about the stiffness of an element, E A / h = 6 N/m, with which explicit bodies are stable */
+static const PetscReal robin[] = {5, 7};
 
 static PetscErrorCode Wave(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
 {
@@ -36,6 +40,7 @@ static PetscOptions create_body(Body *body, Rows *rows, BodyTraces *traces, cons
   ok(BodyGetTraces(*body, traces));
   ok(BodyIntegrate(*body));
   ok(BodySave(*body));
+  set_robin(*body, rows, robin);
   set_conditions(*body, rows, condition);
   return options;
 }
@@ -56,7 +61,7 @@ static void write_inputs(const Rows *rows, const BodyTraces *traces, PetscInt su
 /* Adds a unit input, in the way of BodyComputeResponse(): a ramp, with its slope where velocity is prescribed */
 static void add_unit(const Rows *rows, const BodyTraces *traces, PetscInt substeps, PetscInt which, BodyCondition condition)
 {
-  Trace in = condition == BODY_FORCED ? traces->force_in : traces->displacement_in;
+  Trace in = condition == BODY_PRESCRIBED ? traces->displacement_in : traces->force_in;
 
   for (PetscInt level = 1; level <= substeps; level++) {
     set_level(rows, in, level, which, get_level(rows, in, level, which) + (PetscReal)level / substeps);
@@ -66,7 +71,7 @@ static void add_unit(const Rows *rows, const BodyTraces *traces, PetscInt subste
 
 static void get_outputs(const Rows *rows, const BodyTraces *traces, PetscInt substeps, const BodyCondition condition[], PetscReal outputs[2])
 {
-  for (PetscInt which = 0; which < 2; which++) outputs[which] = get_level(rows, condition[which] == BODY_PRESCRIBED ? traces->reaction : traces->displacement, substeps, which);
+  for (PetscInt which = 0; which < 2; which++) outputs[which] = get_level(rows, condition[which] == BODY_PRESCRIBED || condition[which] == BODY_ROBIN ? traces->reaction : traces->displacement, substeps, which);
 }
 
 /* The body is linear: the difference that a unit input makes is exact from any state, but for round-off */

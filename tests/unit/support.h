@@ -168,6 +168,15 @@ static inline void set_rows(Body body, PetscInt n, const PetscReal x[], Rows *ro
   ok(MatDestroy(&B));
 }
 
+/* The springs of Robin rows, in the order in which the nodes were asked for */
+static inline void set_robin(Body body, const Rows *rows, const PetscReal stiffness[])
+{
+  PetscReal mine[4];
+
+  for (PetscInt i = 0; i < rows->local; i++) mine[i] = stiffness[rows->which[i]];
+  ok(BodySetRobin(body, mine));
+}
+
 /* What each node's row means, in the order in which the nodes were asked for */
 static inline void set_conditions(Body body, const Rows *rows, const BodyCondition conditions[])
 {

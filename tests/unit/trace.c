@@ -163,6 +163,33 @@ static void refines_and_coarsens_to_the_same(void **state)
   ok(TraceDestroy(&back));
 }
 
+/* A value holds over the interval that it ends: 0, 3, 5 on five intervals is 0, 3, 3, 5, 5, 5, since the third one ends after the
+   middle */
+static void holds_values(void **state)
+{
+  const PetscReal values[] = {0, 3, 5}, expected[] = {0, 3, 3, 5, 5, 5};
+  Trace           coarse = make_trace(2, values), fine, back;
+  PetscScalar    *level;
+
+  (void)state;
+  ok(TraceCreate(2, 5, &fine));
+  ok(TraceCreate(2, 2, &back));
+  ok(TraceResampleHeld(coarse, 0, 1, -2, fine));
+  for (PetscInt k = 0; k <= 5; k++) {
+    ok(TraceGetLevel(fine, k, &level));
+    assert_true(level[0] == -2 * expected[k]);
+    assert_true(level[1] == 0); /* the first row only */
+  }
+  ok(TraceResampleHeld(coarse, 0, 2, 1, back));
+  for (PetscInt k = 0; k <= 2; k++) {
+    ok(TraceGetLevel(back, k, &level));
+    assert_true(level[0] == values[k]);
+  }
+  ok(TraceDestroy(&coarse));
+  ok(TraceDestroy(&fine));
+  ok(TraceDestroy(&back));
+}
+
 static void refuses_what_makes_no_sense(void **state)
 {
   const PetscReal values[] = {0, 1};
@@ -174,6 +201,7 @@ static void refuses_what_makes_no_sense(void **state)
   trace = make_trace(1, values);
   ok(TraceCreate(3, 1, &other));
   refused(PETSC_ERR_ARG_SIZ, "2 and 3 rows", TraceResample(trace, 0, 2, 1, other));
+  refused(PETSC_ERR_ARG_SIZ, "2 and 3 rows", TraceResampleHeld(trace, 0, 2, 1, other));
   ok(TraceDestroy(&trace));
   ok(TraceDestroy(&other));
 }
@@ -188,6 +216,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(refines),
       cmocka_unit_test(coarsens),
       cmocka_unit_test(refines_and_coarsens_to_the_same),
+      cmocka_unit_test(holds_values),
       cmocka_unit_test(refuses_what_makes_no_sense),
   };
 

@@ -17,6 +17,7 @@ static PetscErrorCode ElementSetFromOptions_Bar2(Element element, MPI_Comm comm,
   PetscCall(PetscOptionsReal("-cross_section", "Cross-sectional area [m^2]", "", bar->cross_section, &bar->cross_section, NULL));
   PetscOptionsEnd();
   PetscCheck(bar->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive", prefix, (double)bar->cross_section);
+  element->cross_section = bar->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

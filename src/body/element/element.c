@@ -33,7 +33,8 @@ PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType 
   PetscCall(PetscFunctionListFind(ElementList, DMPolytopeTypes[cell], &create));
   PetscCheck(create, comm, PETSC_ERR_SUP, "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar)", prefix, DMPolytopeTypes[cell]);
   PetscCall(PetscNew(element));
-  (*element)->material = material;
+  (*element)->material      = material;
+  (*element)->cross_section = 1;
   PetscCall((*create)(*element));
   if ((*element)->ops.setfromoptions) PetscCall((*(*element)->ops.setfromoptions)(*element, comm, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -22,6 +22,7 @@ struct _n_Element {
   PetscInt        count;        /* elements of this rank */
   const PetscInt *connectivity; /* count x nodes: local node numbers; owned by the body */
   Material        material;
+  PetscReal       cross_section; /* of bars [m^2]; 1 for other shapes */
   void           *data;
 };
 

@@ -11,15 +11,17 @@ PetscErrorCode SchwarzSetUpNewton(Contact contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->responses, contact->n_bodies, &schwarz->body_in, contact->n_bodies, &schwarz->body_out, contact->n_pairs, &schwarz->unit));
+  PetscCall(PetscCalloc5(contact->n_bodies, &schwarz->responses, contact->n_bodies, &schwarz->body_in, contact->n_bodies, &schwarz->body_out, contact->n_bodies, &schwarz->body_exchange, 2 * contact->n_pairs, &schwarz->unit));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt substeps;
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     PetscCall(TraceCreate(contact->n_all_rows, substeps, &schwarz->body_in[b]));
     PetscCall(TraceCreate(contact->n_all_rows, substeps, &schwarz->body_out[b]));
+    PetscCall(TraceCreate(contact->n_all_rows, substeps, &schwarz->body_exchange[b]));
   }
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceCreate(contact->n_all_rows, schwarz->levels[p], &schwarz->unit[p]));
+  for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)
+    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceCreate(contact->n_all_rows, schwarz->side_levels[side][p], &schwarz->unit[2 * p + side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,9 +34,10 @@ PetscErrorCode SchwarzDestroyNewton(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(TraceDestroy(&schwarz->body_in[b]));
     PetscCall(TraceDestroy(&schwarz->body_out[b]));
+    PetscCall(TraceDestroy(&schwarz->body_exchange[b]));
   }
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->unit[p]));
-  PetscCall(PetscFree4(schwarz->responses, schwarz->body_in, schwarz->body_out, schwarz->unit));
+  for (PetscInt p = 0; p < 2 * contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->unit[p]));
+  PetscCall(PetscFree5(schwarz->responses, schwarz->body_in, schwarz->body_out, schwarz->body_exchange, schwarz->unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -47,7 +50,7 @@ static PetscErrorCode AddKinematics(Contact contact, PetscInt b, PetscInt row, P
   PetscReal          dv, da, unused;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetNewmark(contact->bodies[pair->body[1]], &dv, &unused, &unused, &da, &unused, &unused));
+  PetscCall(BodyGetNewmark(contact->bodies[NeumannBody(pair)], &dv, &unused, &unused, &da, &unused, &unused));
   PetscCall(BodyGetRateResponse(contact->bodies[b], &velocity, &acceleration));
   for (PetscInt i = 0; i < n; i++) out[i] += input * (dv * velocity[row * n + i] + da * acceleration[row * n + i]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -76,14 +79,33 @@ static PetscErrorCode Respond(Contact contact, PetscInt b)
 
         PetscCall(TraceGetLevel(schwarz->body_out[b], k, &out));
         for (PetscInt i = 0; i < n; i++) out[i] += in[row] * matrix[row * n + i];
-        if (contact->pairs[p].body[0] == b && schwarz->kinematic[p]) PetscCall(AddKinematics(contact, b, row, in[row], out));
+        if (DirichletBody(&contact->pairs[p]) == b && schwarz->kinematic[SideIndex(schwarz, p)]) PetscCall(AddKinematics(contact, b, row, in[row], out));
       }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A unit at one level of row j goes through the sweep; the result is left in the outputs of the Neumann sides */
+/* What a body at rest hands to its partners in a row: its reaction, or under Robin conditions r - 2 f */
+static PetscErrorCode Exchange(Contact contact, PetscInt b, PetscInt row, PetscScalar scale)
+{
+  Schwarz     *schwarz = (Schwarz *)contact->data;
+  PetscInt     levels;
+  PetscScalar *r, *f, *exchange;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetSizes(schwarz->body_out[b], NULL, &levels));
+  for (PetscInt level = 0; level <= levels; level++) {
+    PetscCall(TraceGetLevel(schwarz->body_in[b], level, &r));
+    PetscCall(TraceGetLevel(schwarz->body_out[b], level, &f));
+    PetscCall(TraceGetLevel(schwarz->body_exchange[b], level, &exchange));
+    if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) exchange[row] = scale * f[row];
+    else exchange[row] = r[row] - 2 * f[row];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A unit at one level of row j goes through the sweep; the result is left in what the Neumann sides hand on */
 static PetscErrorCode LinearSweep(Contact contact, PetscInt j, PetscInt level)
 {
   Schwarz       *schwarz = (Schwarz *)contact->data;
@@ -91,8 +113,8 @@ static PetscErrorCode LinearSweep(Contact contact, PetscInt j, PetscInt level)
   PetscScalar   *unit;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceZero(schwarz->unit[p]));
-  PetscCall(TraceGetLevel(schwarz->unit[contact->all_row_pair[j]], level, &unit));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceZero(schwarz->unit[SideIndex(schwarz, p)]));
+  PetscCall(TraceGetLevel(schwarz->unit[SideIndex(schwarz, contact->all_row_pair[j])], level, &unit));
   unit[j] = 1;
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     const PetscInt b = contact->order[k];
@@ -103,32 +125,38 @@ static PetscErrorCode LinearSweep(Contact contact, PetscInt j, PetscInt level)
       const ContactPair *pair = &contact->pairs[p];
 
       if (!contact->all_active[row]) continue;
-      if (pair->body[0] == b) PetscCall(TraceResample(schwarz->unit[p], row, row + 1, 1, schwarz->body_in[b]));
-      if (pair->body[1] == b) PetscCall(TraceResample(schwarz->body_out[pair->body[0]], row, row + 1, -1, schwarz->body_in[b]));
+      if (DirichletBody(pair) == b) PetscCall(TraceResample(schwarz->unit[SideIndex(schwarz, p)], row, row + 1, 1, schwarz->body_in[b]));
+      if (NeumannBody(pair) == b) PetscCall(SchwarzResampleForce(schwarz, schwarz->body_exchange[DirichletBody(pair)], row, row + 1, 1, schwarz->body_in[b]));
     }
     PetscCall(Respond(contact, b));
+    for (PetscInt row = 0; row < n; row++) {
+      const ContactPair *pair = &contact->pairs[contact->all_row_pair[row]];
+
+      if (contact->all_active[row] && (pair->body[0] == b || pair->body[1] == b)) PetscCall(Exchange(contact, b, row, DirichletBody(pair) == b ? -1 : 1));
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Column of I - dG/dx for row j at a level: the rows of this rank */
+/* Column of I - dG/dx for row j at a level: the rows of this rank. Unknowns beyond the levels of a pair stay as they are. */
 static PetscErrorCode SetColumn(Contact contact, PetscInt j, PetscInt level, Mat J)
 {
   Schwarz       *schwarz = (Schwarz *)contact->data;
   const PetscInt column  = schwarz->all_offset[j] + level - 1;
+  const PetscInt used    = schwarz->levels[contact->all_row_pair[j]];
 
   PetscFunctionBegin;
   for (PetscInt local = 0; local < contact->n_rows; local++) {
     const PetscInt i = contact->row_begin + local, p = contact->all_row_pair[i], levels = schwarz->levels[p];
-    Trace          from = schwarz->body_out[contact->pairs[p].body[1]];
+    Trace          from = schwarz->body_exchange[NeumannBody(&contact->pairs[p])];
     PetscInt       from_levels;
     PetscScalar   *out;
 
     PetscCall(TraceGetSizes(from, NULL, &from_levels));
-    for (PetscInt k = 1; k <= levels; k++) {
-      const PetscBool both = (PetscBool)(contact->all_active[i] && contact->all_active[j]);
+    for (PetscInt k = 1; k <= schwarz->room[p]; k++) {
+      const PetscBool both = (PetscBool)(k <= levels && level <= used && contact->all_active[i] && contact->all_active[j]);
 
-      PetscCall(TraceGetLevel(from, levels == 1 ? from_levels : k, &out));
+      PetscCall(TraceGetLevel(from, levels == 1 || k > from_levels ? from_levels : k, &out));
       PetscCall(MatSetValue(J, schwarz->all_offset[i] + k - 1, column, (i == j && k == level ? 1 : 0) - (both ? out[i] : 0), INSERT_VALUES));
     }
   }
@@ -152,8 +180,8 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
     PetscCall(BodyGetWaveformResponse(contact->bodies[b], &schwarz->responses[b]));
   }
   for (PetscInt j = 0; j < contact->n_all_rows; j++)
-    for (PetscInt level = 1; level <= schwarz->levels[contact->all_row_pair[j]]; level++) {
-      if (contact->all_active[j]) PetscCall(LinearSweep(contact, j, level));
+    for (PetscInt level = 1; level <= schwarz->room[contact->all_row_pair[j]]; level++) {
+      if (contact->all_active[j] && level <= schwarz->levels[contact->all_row_pair[j]]) PetscCall(LinearSweep(contact, j, level));
       PetscCall(SetColumn(contact, j, level, J));
     }
   PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));

@@ -1,83 +1,69 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, and one controller step. */
 #include "schwarzimpl.h"
-#include <sys/petsccompat.h>
 
-static const char *const ConvergenceTests[] = {"auto", "position", "mismatch", "ConvergenceTest", "CONVERGENCE_", NULL};
+static const char *const ConvergenceTests[] = {"auto", "position", "contact_position", "mismatch", "ConvergenceTest", "CONVERGENCE_", NULL};
 static const char *const Relaxations[]      = {"fixed", "aitken", "Relaxation", "RELAXATION_", NULL};
+static const char *const Transmissions[]    = {"dirichlet_neumann", "robin", "impedance", "Transmission", "TRANSMISSION_", NULL};
+static const char *const Predictors[]       = {"last", "trial", "extrapolate", "inelastic", "Predictor", "PREDICTOR_", NULL};
+static const char *const Waveforms[]        = {"linear", "constant", "TractionWaveform", "WAVEFORM_", NULL};
 static const char *const Unconvergeds[]     = {"error", "accept", "Unconverged", "UNCONVERGED_", NULL};
-
-/* Rounds of the active set in one step after which something must be wrong */
-#define MAX_ROUNDS 100
 
 static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Schwarz  *schwarz = (Schwarz *)contact->data;
+  PetscBool set     = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "BodySetTractionType", BodyTractionTypes, (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "", Transmissions, (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
+  /* only where it has an effect, so that it is an unused option elsewhere */
+  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) {
+    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "BodySetTractionType", BodyTractionTypes, (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
+    PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course", "", Waveforms, (PetscEnum)schwarz->waveform, (PetscEnum *)&schwarz->waveform, NULL));
+  }
+  if (schwarz->transmission == TRANSMISSION_ROBIN) PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]", "", schwarz->robin_parameter, &schwarz->robin_parameter, &set));
+  PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "", Predictors, (PetscEnum)schwarz->predictor, (PetscEnum *)&schwarz->predictor, NULL));
+  PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "", schwarz->swap, &schwarz->swap, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "", Relaxations, (PetscEnum)schwarz->relaxation, (PetscEnum *)&schwarz->relaxation, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "", ConvergenceTests, (PetscEnum)schwarz->convergence, (PetscEnum *)&schwarz->convergence, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "", Unconvergeds, (PetscEnum)schwarz->unconverged, (PetscEnum *)&schwarz->unconverged, NULL));
   PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "", schwarz->recheck, &schwarz->recheck, NULL));
   PetscOptionsEnd();
+  PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Unknowns: one for each row and level. The Dirichlet side sees nothing of the interior levels if it makes one substep. */
+/* Unknowns: one for each row and level */
 static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
   PetscInt begin, *mine;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4(contact->n_pairs, &schwarz->levels, contact->n_pairs, &schwarz->trace, contact->n_rows, &schwarz->offset, contact->n_pairs, &schwarz->kinematic));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscInt dirichlet, neumann;
+  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->exchange, contact->n_rows, &schwarz->offset, contact->n_all_rows, &schwarz->all_offset, contact->n_rows, &schwarz->jacobian_active));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal dt;
+    PetscInt  substeps;
+    TS        ts;
 
-    PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[0]], &dirichlet));
-    PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[1]], &neumann));
-    schwarz->levels[p] = dirichlet == 1 ? 1 : neumann;
-    PetscCall(TraceCreate(contact->n_rows, schwarz->levels[p], &schwarz->trace[p]));
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    PetscCall(TraceCreate(contact->n_rows, substeps, &schwarz->exchange[b]));
+    PetscCall(BodyGetTS(contact->bodies[b], &ts));
+    PetscCall(TSGetTimeStep(ts, &dt));
+    schwarz->controller_step = substeps * dt;
   }
   *unknowns = 0;
   for (PetscInt i = 0; i < contact->n_rows; i++) {
     schwarz->offset[i] = *unknowns;
-    *unknowns += schwarz->levels[contact->row_pair[i]];
+    *unknowns += schwarz->room[contact->row_pair[i]];
   }
   PetscCallMPI(MPI_Scan(unknowns, &begin, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
   begin -= *unknowns;
   PetscCall(PetscMalloc1(contact->n_rows, &mine));
   for (PetscInt i = 0; i < contact->n_rows; i++) mine[i] = begin + schwarz->offset[i];
-  PetscCall(PetscCalloc2(contact->n_all_rows, &schwarz->all_offset, contact->n_rows, &schwarz->jacobian_active));
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc2((MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* With the inertia of prescribed nodes in the traction, their acceleration takes part in the iteration. It follows from their
-   displacement where the Neumann side is implicit and makes one substep. */
-static PetscErrorCode SetUpReactionTraction(Contact contact)
-{
-  Schwarz *schwarz = (Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  if (schwarz->traction != BODY_TRACTION_REACTION) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const Body dirichlet = contact->bodies[contact->pairs[p].body[0]], neumann = contact->bodies[contact->pairs[p].body[1]];
-    PetscBool  massless, is_explicit;
-    PetscInt   substeps;
-
-    PetscCall(BodyIsRedistributed(dirichlet, &massless));
-    if (massless) continue;
-    PetscCall(BodyIsExplicit(neumann, &is_explicit));
-    PetscCall(BodyGetSubsteps(neumann, &substeps));
-    PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true", ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
-    schwarz->kinematic[p] = PETSC_TRUE;
-    for (PetscInt k = 0; k < 2; k++)
-      if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->n_rows, 1, &schwarz->rate[k]));
-  }
+  PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,10 +74,13 @@ static PetscErrorCode PrepareContact(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = schwarz->jacobian_active[i] = PETSC_TRUE;
-  PetscCall(ContactSetConditions(contact, CONDITIONS_SCHWARZ));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
-  schwarz->stale = PETSC_TRUE;
-  PetscCall(SchwarzComputeJacobian(schwarz->outer.snes, schwarz->outer.x, schwarz->outer.jacobian, schwarz->outer.jacobian, contact));
+  for (PetscInt time = 0; time < (schwarz->swap ? 2 : 1); time++) {
+    if (schwarz->swap) PetscCall(SchwarzSwapSides(contact)); /* twice */
+    PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+    schwarz->stale = PETSC_TRUE;
+    PetscCall(SchwarzComputeJacobian(schwarz->outer.snes, schwarz->outer.x, schwarz->outer.jacobian, schwarz->outer.jacobian, contact));
+  }
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = PETSC_FALSE;
   PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,9 +94,10 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
+  PetscCall(SchwarzSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
+  PetscCall(SchwarzSetUpTransmission(contact));
   PetscCall(SchwarzSetUpNewton(contact));
-  PetscCall(SetUpReactionTraction(contact));
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
@@ -127,164 +117,6 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Not converging is an error that says where, or is counted */
-static PetscErrorCode CheckConverged(Contact contact)
-{
-  Schwarz            *schwarz = (Schwarz *)contact->data;
-  SNESConvergedReason reason;
-  PetscReal           time;
-  TS                  ts;
-
-  PetscFunctionBegin;
-  PetscCall(SNESGetConvergedReason(schwarz->outer.snes, &reason));
-  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetTS(contact->bodies[0], &ts));
-  PetscCall(TSGetTime(ts, &time));
-  PetscCheck(schwarz->unconverged == UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen -schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept", (double)time, contact->counts_made.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol, (double)schwarz->rtol);
-  contact->counts_made.unconverged_steps++;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The outer iteration with the active set as it is, then forces and gaps */
-static PetscErrorCode SolveActive(Contact contact)
-{
-  Schwarz *schwarz = (Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  PetscCall(ContactSetConditions(contact, CONDITIONS_SCHWARZ));
-  {
-    int differs = 0;
-
-    for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->jacobian_active[i] != contact->active[i];
-    PetscCall(ContactOr(contact, &differs));
-    if (differs) {
-      PetscCall(PetscArraycpy(schwarz->jacobian_active, contact->active, contact->n_rows));
-      schwarz->stale = PETSC_TRUE;
-    }
-  }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
-  PetscCall(SchwarzStartTraces(contact));
-  PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
-  PetscCall(CheckConverged(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair     = &contact->pairs[p];
-    Trace              reaction = contact->traces[pair->body[0]].reaction;
-    PetscScalar       *end;
-    PetscInt           levels;
-
-    PetscCall(TraceGetSizes(reaction, NULL, &levels));
-    PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++) contact->force[i] = contact->active[i] ? -end[i] : 0;
-  }
-  PetscCall(ContactComputeGaps(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether the active set is one that has been tried in this step before; `last`: the one before this */
-static PetscErrorCode FindActiveSet(Contact contact, PetscBool *seen, PetscBool *last)
-{
-  Schwarz *schwarz = (Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  *seen = *last = PETSC_FALSE;
-  for (PetscInt k = schwarz->n_tried - 1; k >= 0 && !*seen; k--) {
-    int differs = 0;
-
-    for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->tried[k * contact->n_rows + i] != contact->active[i];
-    PetscCall(ContactOr(contact, &differs));
-    if (differs) continue;
-    *seen = PETSC_TRUE;
-    *last = (PetscBool)(k == schwarz->n_tried - 1);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Nodes that penetrate join, nodes that are pulled leave */
-static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
-{
-  Schwarz *schwarz = (Schwarz *)contact->data;
-  int      any     = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscBool leaves = (PetscBool)(contact->active[i] && schwarz->recheck && contact->force[i] < 0);
-    const PetscBool joins  = (PetscBool)(!contact->active[i] && contact->gap[i] < -contact->tolerance);
-
-    if (!leaves && !joins) continue;
-    contact->active[i] = joins;
-    any                = 1;
-  }
-  PetscCall(ContactOr(contact, &any));
-  *changed = (PetscBool)(any > 0);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Free trial, where no pair is pushed together already; the rows that penetrate at its end become active */
-static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactIntegrateFree(contact, in_contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->gap[i] < -contact->tolerance);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The free trial after all nodes have been let go, being pulled. If it ends in penetration by the same nodes as were held,
-   the contact solution is the better of both, and is taken back. */
-static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *final)
-{
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool seen, last;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
-  PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
-  PetscCall(Trial(contact, in_contact));
-  if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FindActiveSet(contact, &seen, &last));
-  if (!last) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
-  PetscCall(PetscArraycpy(contact->force, schwarz->kept_force, contact->n_rows));
-  PetscCall(ContactComputeGaps(contact));
-  contact->counts_made.set_cycles++;
-  *final = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ContactStep_Schwarz(Contact contact)
-{
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool in_contact, changed, seen, last, final = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  schwarz->n_tried = 0;
-  /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
-  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-  if (!in_contact) PetscCall(Trial(contact, &in_contact));
-  while (in_contact) {
-    PetscCheck(schwarz->n_tried < MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", MAX_ROUNDS);
-    PetscCall(PetscArraycpy(schwarz->tried + schwarz->n_tried++ * contact->n_rows, contact->active, contact->n_rows));
-    PetscCall(SolveActive(contact));
-    if (final) break;
-    PetscCall(UpdateActiveSet(contact, &changed));
-    if (!changed) break;
-    contact->counts_made.set_changes++;
-    PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-    if (!in_contact) {
-      PetscCall(TrialAfterContact(contact, &in_contact, &final));
-      if (final) break;
-    }
-    PetscCall(FindActiveSet(contact, &seen, &last));
-    if (in_contact && seen) {
-      /* the alternation ends with all nodes held that were held in either of the last two sets: no penetration */
-      contact->counts_made.set_cycles++;
-      for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->active[i] || schwarz->tried[(schwarz->n_tried - 1) * contact->n_rows + i]);
-      final = PETSC_TRUE;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
@@ -292,7 +124,7 @@ static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(SNESGetType(schwarz->outer.snes, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s%s, %s traction, tolerances %g m and %g relative\n", type, schwarz->relaxation == RELAXATION_AITKEN ? " (Aitken)" : "", BodyTractionTypes[schwarz->traction], (double)schwarz->atol, (double)schwarz->rtol));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g m and %g relative\n", type, schwarz->relaxation == RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[schwarz->transmission], schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole", Predictors[schwarz->predictor], (double)schwarz->atol, (double)schwarz->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -301,15 +133,16 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  if (schwarz->trace)
-    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->trace[p]));
+  for (PetscInt p = 0; schwarz->trace && p < 2 * contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->trace[p]));
+  for (PetscInt b = 0; schwarz->exchange && b < contact->n_bodies; b++) PetscCall(TraceDestroy(&schwarz->exchange[b]));
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
-  PetscCall(PetscFree4(schwarz->levels, schwarz->trace, schwarz->offset, schwarz->kinematic));
-  PetscCall(PetscFree2(schwarz->all_offset, schwarz->jacobian_active));
   PetscCall(SchwarzDestroyNewton(contact));
-  PetscCall(PetscFree2(schwarz->tried, schwarz->kept_force));
+  PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
+  PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->jacobian_active));
+  PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
+  PetscCall(PetscFree3(schwarz->tried, schwarz->kept_force, schwarz->previous));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -324,8 +157,15 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 .  -schwarz_snes_linesearch_damping theta                       - relaxation of nrichardson, 1 (Aitken: first one, 1/2)
 .  -schwarz_relaxation (fixed|aitken)                           - relaxation of nrichardson
 .  -schwarz_traction (internal|reaction)                        - nodal force handed over: without or with inertia
-.  -schwarz_convergence (auto|position|mismatch)                - change of all positions from sweep to sweep (the paper's), or
-                                                                  the change of the contact nodes that a plain sweep would bring
+.  -schwarz_transmission (dirichlet_neumann|robin|impedance)    - what is prescribed on both sides
+.  -schwarz_robin_parameter alpha                               - stiffness of Robin conditions [N/m for each unit of area], E/h of the
+                                                                  Neumann side's contact elements
+.  -schwarz_predictor (last|trial|extrapolate|inelastic)        - where the first sweep starts from, inelastic
+.  -schwarz_traction_waveform (linear|constant)                 - traction of a partner with longer substeps in the course of them
+.  -contact_swap_sides (true|false)                             - whether the sides change with every controller step
+.  -schwarz_convergence (auto|position|contact_position|mismatch) - change of all positions from sweep to sweep (the paper's), of those
+                                                                  of the contact nodes, or the change of the contact nodes that a plain
+                                                                  sweep would bring
 .  -schwarz_recheck (true|false)                                - whether tensile nodes leave contact within the step
 -  -schwarz_unconverged (error|accept)                          - what to do with a step that does not converge
 
@@ -343,6 +183,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscNew(&schwarz));
   schwarz->traction            = BODY_TRACTION_INTERNAL;
+  schwarz->predictor           = PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;

@@ -1,11 +1,15 @@
 #pragma once
 #include "../../outersolver.h"
 
+/* Rounds of the active set in one step after which something must be wrong */
+#define SCHWARZ_MAX_ROUNDS 100
+
 /* What "change of position" is compared with the tolerances */
 typedef enum {
-  CONVERGENCE_AUTO,     /* the first for nrichardson with fixed relaxation, the second otherwise */
-  CONVERGENCE_POSITION, /* of all nodes of every body, from one sweep to the next (the paper's) */
-  CONVERGENCE_MISMATCH  /* of the contact nodes, that one more plain sweep would bring: |x - G(x)| */
+  CONVERGENCE_AUTO,             /* the first for nrichardson with fixed relaxation, the last otherwise */
+  CONVERGENCE_POSITION,         /* of all nodes of every body, from one sweep to the next (the paper's) */
+  CONVERGENCE_CONTACT_POSITION, /* of the contact nodes of every body, from one sweep to the next */
+  CONVERGENCE_MISMATCH          /* of the contact nodes, that one more plain sweep would bring: |x - G(x)| */
 } ConvergenceTest;
 
 typedef enum {
@@ -18,6 +22,27 @@ typedef enum {
   UNCONVERGED_ACCEPT
 } Unconverged;
 
+/* What is prescribed on both sides of the contact boundary */
+typedef enum {
+  TRANSMISSION_DIRICHLET_NEUMANN, /* displacements one way, tractions the other */
+  TRANSMISSION_ROBIN,             /* both ways traction and displacement, weighted by a stiffness */
+  TRANSMISSION_IMPEDANCE          /* both ways traction and velocity, weighted by an impedance */
+} Transmission;
+
+/* Where the first sweep of a step starts from */
+typedef enum {
+  PREDICTOR_LAST,        /* where the contact nodes were at its start */
+  PREDICTOR_TRIAL,       /* where they go without contact */
+  PREDICTOR_EXTRAPOLATE, /* where they go with their velocity */
+  PREDICTOR_INELASTIC    /* where they go with the common velocity after an inelastic collision */
+} Predictor;
+
+/* How the traction of a partner with longer substeps varies in the course of them */
+typedef enum {
+  WAVEFORM_LINEAR,
+  WAVEFORM_CONSTANT
+} TractionWaveform;
+
 typedef struct {
   OuterSolver         outer;
   PetscReal           atol, rtol;
@@ -25,19 +50,35 @@ typedef struct {
   Relaxation          relaxation;
   Unconverged         unconverged;
   BodyTractionType    traction;
+  Transmission        transmission;
+  Predictor           predictor;
+  TractionWaveform    waveform;
+  PetscReal           controller_step;    /* [s] */
+  PetscReal           robin_parameter;    /* N/m for each unit of area; 0: from the stiffness of the elements */
   PetscBool           recheck;            /* tensile reactions leave the active set within the step */
+  PetscBool           swap;               /* sides change with every controller step */
+  PetscInt            side;               /* 0, or 1 while they are swapped */
+  PetscBool           started;            /* a step has been made */
   PetscInt           *levels;             /* per pair: times in the controller step at which its trace is an unknown */
-  Trace               rate[2];            /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
-  PetscBool          *kinematic;          /* per pair: velocity and acceleration of the Dirichlet side follow from its displacement */
+  PetscInt           *side_levels[2];     /* the same for each choice of sides */
   PetscInt           *offset;             /* per row: its first unknown on this rank */
-  Trace              *trace;              /* per pair: displacements put on the Dirichlet side */
+  PetscInt           *room;               /* per pair: unknowns that each of its rows has room for */
+  Trace              *trace;              /* per pair and side: what its unknowns put on the Dirichlet side */
+  Trace              *exchange;           /* per body: what it hands to its partners */
+  Trace               rate[2];            /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
+  PetscBool          *kinematic;          /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
+  PetscReal          *weight;             /* per row: Robin stiffness [N/m] */
+  PetscReal          *mass[2];            /* per row: of the contact element of its body and of the partner's [kg] */
+  PetscScalar        *previous;           /* displacements of the rows of both bodies of each pair in the last sweep */
+  PetscBool           swept;              /* they are of this step */
   PetscBool           stale;              /* the Jacobian belongs to another active set */
   PetscBool          *jacobian_active;    /* per row: the set that it belongs to */
   PetscInt           *all_offset;         /* per row, all ranks: its first unknown */
   const PetscScalar **responses;          /* per body: its waveform response */
   Trace              *body_in, *body_out; /* per body: waveforms of all rows, on every rank */
-  Trace              *unit;               /* per pair: a unit at one of its unknowns */
-  PetscReal           change, position;   /* of the last sweep: the body with the worst ratio */
+  Trace              *body_exchange;
+  Trace              *unit;             /* per pair and side: a unit at one of its unknowns */
+  PetscReal           change, position; /* of the last sweep: the body with the worst ratio */
   PetscBool           converged;
   PetscReal           damping; /* Aitken: relaxation of the last iteration */
   Vec                 last_residual;
@@ -46,10 +87,48 @@ typedef struct {
   PetscReal          *kept_force; /* of the contact solution, during a free trial after it */
 } Schwarz;
 
+/* The bodies of a pair by what they take in this controller step */
+static inline PetscInt DirichletBody(const ContactPair *pair)
+{
+  return pair->body[pair->dirichlet];
+}
+
+static inline PetscInt NeumannBody(const ContactPair *pair)
+{
+  return pair->body[1 - pair->dirichlet];
+}
+
+/* A contact force acts along the row with this sign on the Neumann side, against it on the Dirichlet side */
+static inline PetscReal NeumannSign(const ContactPair *pair)
+{
+  return pair->dirichlet == 0 ? 1 : -1;
+}
+
+/* Index of a pair in arrays that have an entry for each choice of sides */
+static inline PetscInt SideIndex(const Schwarz *schwarz, PetscInt p)
+{
+  return 2 * p + schwarz->side;
+}
+
+/* What active rows mean to the bodies */
+static inline ContactConditions SchwarzConditions(const Schwarz *schwarz)
+{
+  return schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ : CONDITIONS_ROBIN;
+}
+
+PETSC_INTERN PetscErrorCode ContactStep_Schwarz(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
-PETSC_INTERN PetscErrorCode SchwarzStartTraces(Contact);
+PETSC_INTERN PetscErrorCode SchwarzResampleForce(const Schwarz *, Trace, PetscInt, PetscInt, PetscScalar, Trace);
+PETSC_INTERN PetscReal      SchwarzOffset(Contact, PetscInt, PetscReal);
+PETSC_INTERN PetscErrorCode SchwarzPredict(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetUpTransmission(Contact);
+PETSC_INTERN PetscReal      SchwarzResidualScale(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode SchwarzSetUpSides(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroyNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzSetUpAitken(Contact);
+PETSC_INTERN PetscErrorCode SchwarzMeasureChange(Contact, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode SchwarzTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
+PETSC_INTERN PetscErrorCode SchwarzCheckConverged(Contact);

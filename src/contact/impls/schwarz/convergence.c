@@ -1,0 +1,113 @@
+/* When the outer iteration has converged. */
+#include "schwarzimpl.h"
+#include <sys/petsccompat.h>
+
+/* How far the contact nodes of a body on one side of the pairs have moved since the last sweep, and where they are [m] */
+static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *change, PetscReal *position)
+{
+  Schwarz     *schwarz  = (Schwarz *)contact->data;
+  PetscReal    sums[2]  = {0, 0};
+  PetscScalar *previous = schwarz->previous + side * contact->n_rows, *end;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair  = &contact->pairs[p];
+    const Trace        trace = contact->traces[pair->body[side]].displacement;
+    PetscInt           levels;
+
+    PetscCall(TraceGetSizes(trace, NULL, &levels));
+    PetscCall(TraceGetLevel(trace, levels, &end));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      sums[0] += PetscSqr(end[i] - previous[i]);
+      sums[1] += PetscSqr(end[i]);
+      previous[i] = end[i];
+    }
+  }
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  *change   = schwarz->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
+  *position = PetscSqrtReal(sums[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The distance between both sides of the active rows that one more plain sweep would close [m] */
+static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], PetscReal *change, PetscReal *position)
+{
+  Schwarz  *schwarz = (Schwarz *)contact->data;
+  PetscReal sums[2] = {0, 0};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
+    const PetscReal    scale = SchwarzResidualScale(contact, i);
+    PetscScalar       *start;
+
+    if (!contact->active[i]) continue;
+    for (PetscInt k = 0; k < schwarz->room[contact->row_pair[i]]; k++) sums[0] += PetscSqr(scale * f[schwarz->offset[i] + k]);
+    PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].displacement, 0, &start));
+    sums[1] += PetscSqr(start[i]);
+  }
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  *change   = PetscSqrtReal(sums[0]);
+  *position = PetscSqrtReal(sums[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Compares the change of position with the tolerances, and notes the worst one */
+PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
+{
+  Schwarz       *schwarz  = (Schwarz *)contact->data;
+  const PetscInt measures = schwarz->convergence == CONVERGENCE_MISMATCH ? 1 : schwarz->convergence == CONVERGENCE_CONTACT_POSITION ? 2
+                                                                                                                                    : contact->n_bodies;
+  PetscReal      worst    = -1;
+
+  PetscFunctionBegin;
+  schwarz->converged = PETSC_TRUE;
+  for (PetscInt k = 0; k < measures; k++) {
+    PetscReal change, position;
+
+    if (schwarz->convergence == CONVERGENCE_MISMATCH) PetscCall(MeasureMismatch(contact, f, &change, &position));
+    else if (schwarz->convergence == CONVERGENCE_CONTACT_POSITION) PetscCall(MeasureRows(contact, k, &change, &position));
+    else PetscCall(BodyGetPositionChange(contact->bodies[k], &change, &position));
+    if (!(change <= schwarz->atol || change <= schwarz->rtol * position)) schwarz->converged = PETSC_FALSE;
+    if (change <= worst) continue;
+    worst             = change;
+    schwarz->change   = change;
+    schwarz->position = position;
+  }
+  schwarz->swept = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stops on the change of position that the last sweep brought, as the paper does; the norm of F serves for NaN only */
+PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+{
+  const Schwarz *schwarz = (const Schwarz *)((Contact)ctx)->data;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)it;
+  (void)xnorm;
+  (void)gnorm;
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
+  else if (schwarz->converged) *reason = SNES_CONVERGED_FNORM_ABS;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Not converging is an error that says where, or is counted */
+PetscErrorCode SchwarzCheckConverged(Contact contact)
+{
+  Schwarz            *schwarz = (Schwarz *)contact->data;
+  SNESConvergedReason reason;
+  PetscReal           time;
+  TS                  ts;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetConvergedReason(schwarz->outer.snes, &reason));
+  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetTS(contact->bodies[0], &ts));
+  PetscCall(TSGetTime(ts, &time));
+  PetscCheck(schwarz->unconverged == UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen -schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept", (double)time, contact->counts_made.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol, (double)schwarz->rtol);
+  contact->counts_made.unconverged_steps++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,87 @@
+/* Where the first sweep of a controller step starts from. */
+#include "schwarzimpl.h"
+
+/* By how much the displacement of the Dirichlet side exceeds that of its partner at a part (0 to 1) of the controller step, against the
+   row's direction: a gap that is open at its start closes linearly over it, or stays as it is if only its rate is constrained */
+PetscReal SchwarzOffset(Contact contact, PetscInt i, PetscReal part)
+{
+  return contact->initial_gap[i] - contact->saved_gap[i] * (1 - part);
+}
+
+/* All bodies through the step without contact, for where their contact nodes go */
+static PetscErrorCode IntegrateTrial(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyIntegrate(contact->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Predicted displacement of the Neumann side of row i */
+static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time, PetscReal part, PetscScalar *displacement)
+{
+  const Schwarz     *schwarz = (const Schwarz *)contact->data;
+  const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
+  const BodyTraces  *neumann = &contact->traces[NeumannBody(pair)], *dirichlet = &contact->traces[DirichletBody(pair)];
+  PetscScalar       *u, *v, *other;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(neumann->displacement, 0, &u));
+  PetscCall(TraceGetLevel(neumann->velocity, 0, &v));
+  PetscCall(TraceGetLevel(dirichlet->velocity, 0, &other));
+  *displacement = u[i];
+  if (schwarz->predictor == PREDICTOR_EXTRAPOLATE) *displacement += time * v[i];
+  if (schwarz->predictor == PREDICTOR_INELASTIC) {
+    const PetscReal m_d = schwarz->mass[pair->dirichlet][i], m_n = schwarz->mass[1 - pair->dirichlet][i];
+
+    *displacement += time * (m_d * other[i] + m_n * v[i]) / (m_d + m_n);
+  }
+  if (schwarz->predictor == PREDICTOR_TRIAL) {
+    PetscInt levels;
+
+    /* a level of the trace: it has as many as the unknowns, or these are its last one alone */
+    PetscCall(TraceGetSizes(neumann->displacement, NULL, &levels));
+    PetscCall(TraceGetLevel(neumann->displacement, (PetscInt)PetscFloorReal(part * levels + 0.5), &u));
+    *displacement = u[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Start of the outer iteration, and of what partners hand to each other in the first sweep. The bodies' conditions are free
+   afterwards, if it needed a trial. */
+PetscErrorCode SchwarzPredict(Contact contact)
+{
+  Schwarz     *schwarz = (Schwarz *)contact->data;
+  PetscScalar *x;
+
+  PetscFunctionBegin;
+  if (schwarz->predictor == PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
+  else
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
+  PetscCall(VecZeroEntries(schwarz->outer.x));
+  PetscCall(VecGetArray(schwarz->outer.x, &x));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscReal    sign = NeumannSign(pair), width = schwarz->controller_step / levels;
+    PetscScalar       *unknown = x + schwarz->offset[i], *reaction;
+
+    for (PetscInt level = 1; level <= levels; level++) {
+      const PetscReal part     = (PetscReal)level / levels;
+      PetscScalar     position = 0;
+
+      PetscCall(PredictNeumann(contact, i, level * width, part, &position));
+      position += sign * SchwarzOffset(contact, i, part);
+      if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
+      else unknown[level - 1] = -sign * contact->saved_force[i] + schwarz->weight[i] * position;
+    }
+    /* what has been a Neumann side until now has no reaction yet */
+    PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));
+    reaction[i] = -sign * contact->saved_force[i];
+    if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) continue;
+    PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
+    reaction[i] = sign * contact->saved_force[i];
+  }
+  PetscCall(VecRestoreArray(schwarz->outer.x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

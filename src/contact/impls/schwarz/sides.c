@@ -1,0 +1,114 @@
+/* Which body of a pair takes displacements, and what the unknowns of the outer iteration are then. */
+#include "schwarzimpl.h"
+
+/* Times in the controller step at which the trace of a pair is an unknown: one for each substep of the Neumann side, but the
+   Dirichlet side sees nothing of the interior ones if it makes one substep */
+static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichlet, PetscInt *levels)
+{
+  const ContactPair *pair = &contact->pairs[p];
+  PetscInt           substeps[2];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[k]], &substeps[k]));
+  *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The partner can be prescribed only where its rows are nodes of its own: its rows must be orthonormal */
+static PetscErrorCode CheckSwappable(Contact contact, Vec row, Vec displacement)
+{
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < contact->n_all_rows; j++) {
+    const ContactPair *pair = &contact->pairs[contact->all_row_pair[j]];
+    const Mat          B    = contact->interfaces[pair->body[1]];
+    PetscReal          off;
+
+    PetscCall(VecZeroEntries(row));
+    if (j >= contact->row_begin && j < contact->row_begin + contact->n_rows) PetscCall(VecSetValue(row, j, 1, INSERT_VALUES));
+    PetscCall(VecAssemblyBegin(row));
+    PetscCall(VecAssemblyEnd(row));
+    {
+      Vec transposed;
+
+      PetscCall(MatCreateVecs(B, &transposed, NULL));
+      PetscCall(MatMultTranspose(B, row, transposed));
+      PetscCall(MatMult(B, transposed, displacement));
+      PetscCall(VecDestroy(&transposed));
+    }
+    PetscCall(VecAXPY(displacement, -1, row));
+    PetscCall(VecNorm(displacement, NORM_INFINITY, &off));
+    PetscCheck(off < 1e-9, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_swap_sides: in pair %s the nodes of the two bodies do not lie opposite each other, and only one side can take displacements; leave the option out", pair->name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With the inertia of prescribed nodes in the traction, their acceleration takes part in the iteration. It follows from their
+   displacement where the Neumann side is implicit and makes one substep. */
+static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscInt side)
+{
+  Schwarz           *schwarz   = (Schwarz *)contact->data;
+  const ContactPair *pair      = &contact->pairs[p];
+  const Body         dirichlet = contact->bodies[pair->body[side]], neumann = contact->bodies[pair->body[1 - side]];
+  PetscBool          massless, is_explicit;
+  PetscInt           substeps;
+
+  PetscFunctionBegin;
+  if (schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIsRedistributed(dirichlet, &massless));
+  if (massless) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIsExplicit(neumann, &is_explicit));
+  PetscCall(BodyGetSubsteps(neumann, &substeps));
+  PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true", ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
+  schwarz->kinematic[2 * p + side] = PETSC_TRUE;
+  for (PetscInt k = 0; k < 2; k++)
+    if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->n_rows, 1, &schwarz->rate[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Levels and traces of all pairs, for both choices of sides if they are to be swapped */
+PetscErrorCode SchwarzSetUpSides(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc5(contact->n_pairs, &schwarz->side_levels[0], contact->n_pairs, &schwarz->side_levels[1], 2 * contact->n_pairs, &schwarz->trace, contact->n_pairs, &schwarz->room, 2 * contact->n_pairs, &schwarz->kinematic));
+  for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)
+    for (PetscInt p = 0; p < contact->n_pairs; p++) {
+      PetscInt *levels = &schwarz->side_levels[side][p];
+
+      PetscCall(CountLevels(contact, p, side, levels));
+      PetscCall(TraceCreate(contact->n_rows, *levels, &schwarz->trace[2 * p + side]));
+      PetscCall(SetUpReactionTraction(contact, p, side));
+      schwarz->room[p] = PetscMax(schwarz->room[p], *levels);
+    }
+  schwarz->levels = schwarz->side_levels[0];
+  if (schwarz->swap) {
+    Vec row, product;
+
+    PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &row));
+    PetscCall(VecDuplicate(row, &product));
+    PetscCall(CheckSwappable(contact, row, product));
+    PetscCall(VecDestroy(&row));
+    PetscCall(VecDestroy(&product));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From now on the other body of each pair takes displacements. What came before its partner in a sweep comes after it. */
+PetscErrorCode SchwarzSwapSides(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  schwarz->side   = 1 - schwarz->side;
+  schwarz->levels = schwarz->side_levels[schwarz->side];
+  schwarz->stale  = PETSC_TRUE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].dirichlet = schwarz->side;
+  for (PetscInt b = 0; b < contact->n_bodies / 2; b++) {
+    const PetscInt first = contact->order[b];
+
+    contact->order[b]                         = contact->order[contact->n_bodies - 1 - b];
+    contact->order[contact->n_bodies - 1 - b] = first;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

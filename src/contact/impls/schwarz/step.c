@@ -1,0 +1,145 @@
+/* One controller step: trial, contact, and the nodes that join and leave. */
+#include "schwarzimpl.h"
+
+/* The outer iteration with the active set as it is, then forces and gaps */
+static PetscErrorCode SolveActive(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(SchwarzPredict(contact));
+  PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
+  {
+    int differs = 0;
+
+    for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->jacobian_active[i] != contact->active[i];
+    PetscCall(ContactOr(contact, &differs));
+    if (differs) {
+      PetscCall(PetscArraycpy(schwarz->jacobian_active, contact->active, contact->n_rows));
+      schwarz->stale = PETSC_TRUE;
+    }
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  schwarz->swept = PETSC_FALSE;
+  PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
+  PetscCall(SchwarzCheckConverged(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair     = &contact->pairs[p];
+    Trace              reaction = contact->traces[DirichletBody(pair)].reaction;
+    PetscScalar       *end;
+    PetscInt           levels;
+
+    PetscCall(TraceGetSizes(reaction, NULL, &levels));
+    PetscCall(TraceGetLevel(reaction, levels, &end));
+    for (PetscInt i = pair->begin; i < pair->end; i++) contact->force[i] = contact->active[i] ? -NeumannSign(pair) * end[i] : 0;
+  }
+  PetscCall(ContactComputeGaps(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the active set is one that has been tried in this step before; `last`: the one before this */
+static PetscErrorCode FindActiveSet(Contact contact, PetscBool *seen, PetscBool *last)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  *seen = *last = PETSC_FALSE;
+  for (PetscInt k = schwarz->n_tried - 1; k >= 0 && !*seen; k--) {
+    int differs = 0;
+
+    for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->tried[k * contact->n_rows + i] != contact->active[i];
+    PetscCall(ContactOr(contact, &differs));
+    if (differs) continue;
+    *seen = PETSC_TRUE;
+    *last = (PetscBool)(k == schwarz->n_tried - 1);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes that penetrate join, nodes that are pulled leave */
+static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+  int      any     = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscBool leaves = (PetscBool)(contact->active[i] && schwarz->recheck && contact->force[i] < 0);
+    const PetscBool joins  = (PetscBool)(!contact->active[i] && contact->gap[i] < -contact->tolerance);
+
+    if (!leaves && !joins) continue;
+    contact->active[i] = joins;
+    any                = 1;
+  }
+  PetscCall(ContactOr(contact, &any));
+  *changed = (PetscBool)(any > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Free trial, where no pair is pushed together already; the rows that penetrate at its end become active */
+static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactIntegrateFree(contact, in_contact));
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->gap[i] < -contact->tolerance);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The free trial after all nodes have been let go, being pulled. If it ends in penetration by the same nodes as were held,
+   the contact solution is the better of both, and is taken back. */
+static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *final)
+{
+  Schwarz  *schwarz = (Schwarz *)contact->data;
+  PetscBool seen, last;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
+  PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
+  PetscCall(Trial(contact, in_contact));
+  if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FindActiveSet(contact, &seen, &last));
+  if (!last) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
+  PetscCall(PetscArraycpy(contact->force, schwarz->kept_force, contact->n_rows));
+  PetscCall(ContactComputeGaps(contact));
+  contact->counts_made.set_cycles++;
+  *final = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactStep_Schwarz(Contact contact)
+{
+  Schwarz  *schwarz = (Schwarz *)contact->data;
+  PetscBool in_contact, changed, seen, last, final = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  schwarz->n_tried = 0;
+  if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
+  schwarz->started = PETSC_TRUE;
+  /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  if (!in_contact) PetscCall(Trial(contact, &in_contact));
+  while (in_contact) {
+    PetscCheck(schwarz->n_tried < SCHWARZ_MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", SCHWARZ_MAX_ROUNDS);
+    PetscCall(PetscArraycpy(schwarz->tried + schwarz->n_tried++ * contact->n_rows, contact->active, contact->n_rows));
+    PetscCall(SolveActive(contact));
+    if (final) break;
+    PetscCall(UpdateActiveSet(contact, &changed));
+    if (!changed) break;
+    contact->counts_made.set_changes++;
+    PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+    if (!in_contact) {
+      PetscCall(TrialAfterContact(contact, &in_contact, &final));
+      if (final) break;
+    }
+    PetscCall(FindActiveSet(contact, &seen, &last));
+    if (in_contact && seen) {
+      /* the alternation ends with all nodes held that were held in either of the last two sets: no penetration */
+      contact->counts_made.set_cycles++;
+      for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->active[i] || schwarz->tried[(schwarz->n_tried - 1) * contact->n_rows + i]);
+      final = PETSC_TRUE;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

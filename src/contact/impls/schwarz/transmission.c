@@ -1,0 +1,83 @@
+/*
+   Robin transmission conditions: each side of the contact boundary gets, in place of a displacement or a force, a mixture of both,
+
+     f + alpha w = r,
+
+   with the force f along the row and its displacement w. From what one side answers to its r, the partner's is
+
+     r' = r - 2 f - s alpha o,
+
+   o being the offset between the displacements of both sides of a closed gap, s the sign with which it counts. When the sides agree,
+   f' = -f and the gap is closed, as under Dirichlet and Neumann conditions: the conditions change the way there, not the goal.
+
+   An impedance condition, f + z dw/dt = r, is one with alpha = z / dt as soon as time is discrete: dt is the controller step here,
+   so that it is the mean velocity over it that counts, and the gap closes whatever the substeps.
+*/
+#include "schwarzimpl.h"
+
+/* Stiffness of the springs of each row: as given, or that of the partner, which answers best */
+static PetscErrorCode SetUpWeights(Contact contact)
+{
+  Schwarz   *schwarz = (Schwarz *)contact->data;
+  PetscReal *stiffness;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_rows, &stiffness));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal impedance;
+
+    PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
+    PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+      const PetscReal    z    = impedance * contact->area[i];
+
+      /* of the contact element: E A / h and sqrt(E rho) A make rho A h */
+      if (pair->body[0] == b) schwarz->mass[0][i] = z * z / stiffness[i];
+      if (pair->body[1] != b) continue;
+      schwarz->mass[1][i] = z * z / stiffness[i];
+      if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = z / schwarz->controller_step;
+      else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->area[i] : stiffness[i];
+    }
+  }
+  PetscCall(PetscFree(stiffness));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The force at the end of a substep must move its row in that substep */
+static PetscErrorCode CheckBodies(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const char *name = ((PetscObject)contact->bodies[b])->name;
+    PetscBool   is_explicit, massless;
+
+    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
+    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
+    PetscCheck(!is_explicit || massless, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_transmission robin and impedance put springs on the contact nodes, and those of the explicit body '%s' have mass, so that they do not feel them in the step in which they act; give it -%s_mass_redistribute true, or choose -schwarz_transmission dirichlet_neumann", name, name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Masses for the inelastic predictor; weights, and springs of the bodies, for Robin conditions */
+PetscErrorCode SchwarzSetUpTransmission(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc3(contact->n_rows, &schwarz->weight, contact->n_rows, &schwarz->mass[0], contact->n_rows, &schwarz->mass[1]));
+  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->predictor != PREDICTOR_INELASTIC) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SetUpWeights(contact));
+  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckBodies(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRobin(contact->bodies[b], schwarz->weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Metres of mismatch between both sides for a unit of the residual in row i */
+PetscReal SchwarzResidualScale(Contact contact, PetscInt i)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  return schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? 1 : 1 / (2 * schwarz->weight[i]);
+}
