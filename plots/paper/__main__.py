@@ -46,7 +46,9 @@ def main(arguments=None):
     write(Results(runner, experiments), chosen.out)
     for name, error in errors.items():
         print(f"FAILED {name}: {error}", file=sys.stderr)
-    print(f"{chosen.out / 'report.md'}, {chosen.out / 'report.html'}: {len(experiments) - len(errors)} of {len(experiments)} runs, {clock(time.monotonic() - begin)}")
+    print(
+        f"{chosen.out / 'report.md'}, {chosen.out / 'report.html'}: {len(experiments) - len(errors)} of {len(experiments)} runs, {clock(time.monotonic() - begin)}"
+    )
     return 1 if errors else 0
 
 

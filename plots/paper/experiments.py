@@ -24,7 +24,9 @@ HIGH_SPEED = {
 
 # Steps in a run beyond which a history is of no use: it would be 10^6 records long
 LONGEST_HISTORY = 200_000
-SECONDS_PER_SUBSTEP = 1e-5  # roughly, with the sweeps that it is repeated for; only for the order of the runs and the estimate of what is left
+SECONDS_PER_SUBSTEP = (
+    1e-5  # roughly, with the sweeps that it is repeated for; only for the order of the runs and the estimate of what is left
+)
 
 
 class BadOptions(Exception):

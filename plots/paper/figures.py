@@ -8,7 +8,14 @@ from matplotlib.figure import Figure
 from .experiments import HIGH_SPEED, MESHES, PAIRINGS
 from .results import convergence_rate
 
-STYLE = {"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.3, "axes.axisbelow": True, "legend.fontsize": 8, "pdf.compression": 9}
+STYLE = {
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "lines.linewidth": 1.3,
+    "axes.axisbelow": True,
+    "legend.fontsize": 8,
+    "pdf.compression": 9,
+}
 EXACT = {"color": BLACK, "linestyle": (0, (1, 1.5)), "linewidth": 1.6, "zorder": 5}
 # Told apart by colour, by dashes and, printed grey, by lightness
 LINES = {
@@ -20,7 +27,17 @@ LINES = {
     "penalty-explicit": {"color": "#7A5C00", "linestyle": (0, (5, 3))},
     "penalty": {"color": "#7A5C00", "linestyle": (0, (5, 2))},
 }
-MESH_LINES = dict(zip(MESHES, ({"color": "#8FBFE0"}, {"color": "#E0A030", "linestyle": (0, (6, 1))}, {"color": "#C04080", "linestyle": (0, (4, 1, 1, 1))}, {"color": "#103060"})))
+MESH_LINES = dict(
+    zip(
+        MESHES,
+        (
+            {"color": "#8FBFE0"},
+            {"color": "#E0A030", "linestyle": (0, (6, 1))},
+            {"color": "#C04080", "linestyle": (0, (4, 1, 1, 1))},
+            {"color": "#103060"},
+        ),
+    )
+)
 MICRO = 1e6
 BINS = 3000  # of a series that has more values than can be seen: least and largest of each bin are drawn
 
@@ -81,7 +98,9 @@ SCHWARZ = {name: text for name, text in HIGH_SPEED.items() if "Schwarz" in text}
 def low_speed(results):
     names = {"low-speed/lagrange": "Lagrange multiplier", "low-speed/penalty": "penalty"}
     figure, axes = panels(1, 3, (3.9, 3.3))
-    for one, (quantity, factor, text) in zip(axes[0], (("contact_position", 1e3, "contact position [mm]"), ("contact_velocity", 1, "contact velocity [m/s]"))):
+    for one, (quantity, factor, text) in zip(
+        axes[0], (("contact_position", 1e3, "contact position [mm]"), ("contact_velocity", 1, "contact velocity [m/s]"))
+    ):
         draw_methods(one, results, names, lambda result, key=quantity: result.left(key), factor, quantity)
         label(one, text)
     draw_methods(axes[0, 2], results, names, lambda result: result.force, 1e-3, "force")
@@ -116,7 +135,9 @@ def both_and_release(results, quantity, factor, text, near):
 
 
 def mean_velocity(results):
-    return both_and_release(results, "mean_velocity", 1, "mass-averaged velocity [m/s]", ("around the release", (430, 570), (-103, -70)))
+    return both_and_release(
+        results, "mean_velocity", 1, "mass-averaged velocity [m/s]", ("around the release", (430, 570), (-103, -70))
+    )
 
 
 def kinetic(results):
@@ -141,7 +162,16 @@ def energy_error(results):
     for one in axes.flat:
         one.axhline(0, label="exact", **EXACT)
     axes[0, 0].legend(loc="center", framealpha=0.9, edgecolor="0.8")
-    axes[1, 1].annotate("at most 0.25 %, as the paper says", (300, -0.25), (0, -4), textcoords="offset points", ha="center", va="top", color="0.25", fontsize=8)
+    axes[1, 1].annotate(
+        "at most 0.25 %, as the paper says",
+        (300, -0.25),
+        (0, -4),
+        textcoords="offset points",
+        ha="center",
+        va="top",
+        color="0.25",
+        fontsize=8,
+    )
     return figure
 
 
@@ -155,13 +185,29 @@ def conventional_and_schwarz(results, values, exact, text, limits, zoom):
     label(top, text, "(a) conventional methods", "best")
     beyond = max(values(results[name]).max() for name in CONVENTIONAL)
     if beyond > limits[0][1]:
-        top.annotate(f"first step of the Lagrange multiplier: {beyond:.0f}", (2, limits[0][1]), (6, -6), textcoords="offset points", va="top", color="0.25", fontsize=8)
+        top.annotate(
+            f"first step of the Lagrange multiplier: {beyond:.0f}",
+            (2, limits[0][1]),
+            (6, -6),
+            textcoords="offset points",
+            va="top",
+            color="0.25",
+            fontsize=8,
+        )
     for column, (name, title) in enumerate(SCHWARZ.items()):
         for row, span in ((1, None), (2, zoom)):
             axes = figure.add_subplot(grid[row, column])
             result = results[name]
             inside = slice(None) if span is None else (result.time >= span[0]) & (result.time <= span[1])
-            plot(axes, result.time[inside], values(result)[inside], linewidth=0.4 if span is None else 1, marker=None if span is None else ".", markersize=4, color=style_of(name)["color"])
+            plot(
+                axes,
+                result.time[inside],
+                values(result)[inside],
+                linewidth=0.4 if span is None else 1,
+                marker=None if span is None else ".",
+                markersize=4,
+                color=style_of(name)["color"],
+            )
             plot(axes, result.time[inside], result.exact(exact)[inside], **EXACT)
             axes.set_ylim(limits[1])
             label(axes, text, f"(b) {title}" if span is None else f"{title}: 40 steps of it")
@@ -172,12 +218,19 @@ def conventional_and_schwarz(results, values, exact, text, limits, zoom):
 
 
 def contact_force(results):
-    return conventional_and_schwarz(results, lambda result: result.force, "force", "contact force [N]", ((-15, 320), (-50, 160)), (200e-6, 204e-6))
+    return conventional_and_schwarz(
+        results, lambda result: result.force, "force", "contact force [N]", ((-15, 320), (-50, 160)), (200e-6, 204e-6)
+    )
 
 
 def contact_velocity(results):
     return conventional_and_schwarz(
-        results, lambda result: result.left("contact_velocity"), "contact_velocity", "contact velocity [m/s]", ((-165, 115), (-190, 115)), (200e-6, 204e-6)
+        results,
+        lambda result: result.left("contact_velocity"),
+        "contact_velocity",
+        "contact velocity [m/s]",
+        ((-165, 115), (-190, 115)),
+        (200e-6, 204e-6),
     )
 
 
@@ -185,7 +238,10 @@ def held_traction(results):
     names = {"high-speed/ie": "linear over the controller step", "variants/paper/waveform-constant-ie": "constant over it"}
     looks = ({"color": "#E8A878", "linewidth": 0.8}, {"color": "#103060", "linewidth": 1.2})
     figure, axes = panels(1, 3, (4, 3.2))
-    quantities = ((lambda result: result.force, "contact force [N]", "force"), (lambda result: result.left("contact_velocity"), "contact velocity [m/s]", "contact_velocity"))
+    quantities = (
+        (lambda result: result.force, "contact force [N]", "force"),
+        (lambda result: result.left("contact_velocity"), "contact velocity [m/s]", "contact_velocity"),
+    )
     for one, (values, text, exact) in zip(axes[0], quantities):
         for (name, held), look in zip(names.items(), looks):
             plot(one, results[name].time, values(results[name]), label=f"traction {held}", **look)
@@ -217,7 +273,9 @@ def convergence(results):
     for pairing, text in PAIRINGS.items():
         errors = [results[f"mesh/{pairing}-{elements}"].figure("errors.kinetic") for elements in MESHES]
         order = convergence_rate(MESHES, errors)
-        axes[0, 0].loglog(MESHES, errors, marker={"ii": "o", "ie": "s", "ee": "^"}[pairing], label=f"{text}: rate {order:.2f}", **LINES[pairing])
+        axes[0, 0].loglog(
+            MESHES, errors, marker={"ii": "o", "ie": "s", "ee": "^"}[pairing], label=f"{text}: rate {order:.2f}", **LINES[pairing]
+        )
     slope = errors[0] * 1.25 * (np.array(MESHES) / MESHES[0]) ** -0.82
     axes[0, 0].loglog(MESHES, slope, color="0.4", linewidth=1, linestyle=":", label="slope of the paper, 0.82")
     axes[0, 0].set_xticks(MESHES, [str(elements) for elements in MESHES])
@@ -232,7 +290,15 @@ def iterations(results):
     figure, axes = panels(1, 3, (3.8, 2.9), sharey=True)
     for one, (pairing, text) in zip(axes[0], PAIRINGS.items()):
         result = results[f"high-speed/{pairing}"]
-        one.plot(MICRO * result.time, result.sweeps, linestyle="none", marker=".", markersize=2.5, color=LINES[pairing]["color"], rasterized=True)
+        one.plot(
+            MICRO * result.time,
+            result.sweeps,
+            linestyle="none",
+            marker=".",
+            markersize=2.5,
+            color=LINES[pairing]["color"],
+            rasterized=True,
+        )
         one.set_ylim(-0.3, 6.3)
         label(one, "iterations in a step [1]", text)
     return figure
@@ -240,16 +306,36 @@ def iterations(results):
 
 # number in the paper: file name, caption, function
 FIGURES = {
-    "4.2": ("low-speed", "Low-speed impact: contact position, contact velocity and contact force, by the forward-increment Lagrange multiplier and explicit penalty methods", low_speed),
+    "4.2": (
+        "low-speed",
+        "Low-speed impact: contact position, contact velocity and contact force, by the forward-increment Lagrange multiplier and explicit penalty methods",
+        low_speed,
+    ),
     "4.3": ("contact-position", "Contact position of the left bar", contact_position),
     "4.4": ("mean-velocity", "Mass-averaged velocity of the left bar", mean_velocity),
     "4.5": ("kinetic-energy", "Kinetic energy of the left bar", kinetic),
     "4.6": ("potential-energy", "Potential energy of the left bar", potential),
-    "4.7": ("energy-error", "Relative error of the total energy: of the left bar, as in the paper (above), and of the system of both bars (below); note the scales", energy_error),
-    "4.8": ("contact-force", "Contact force: (a) conventional methods, (b) Schwarz, with a few steps of each enlarged", contact_force),
+    "4.7": (
+        "energy-error",
+        "Relative error of the total energy: of the left bar, as in the paper (above), and of the system of both bars (below); note the scales",
+        energy_error,
+    ),
+    "4.8": (
+        "contact-force",
+        "Contact force: (a) conventional methods, (b) Schwarz, with a few steps of each enlarged",
+        contact_force,
+    ),
     "4.9": ("contact-velocity", "Contact velocity of the left bar, in the same order", contact_velocity),
-    "4.9b": ("held-traction", "Not in the paper: Implicit-Explicit with the traction held constant over the explicit substeps, which has the little chatter and the larger loss that the paper shows", held_traction),
-    "4.10": ("mesh-ii", "Kinetic energy of the left bar on four meshes, Implicit-Implicit Schwarz, 10⁻⁸ s in both bars", lambda results: mesh_study(results, "ii")),
+    "4.9b": (
+        "held-traction",
+        "Not in the paper: Implicit-Explicit with the traction held constant over the explicit substeps, which has the little chatter and the larger loss that the paper shows",
+        held_traction,
+    ),
+    "4.10": (
+        "mesh-ii",
+        "Kinetic energy of the left bar on four meshes, Implicit-Implicit Schwarz, 10⁻⁸ s in both bars",
+        lambda results: mesh_study(results, "ii"),
+    ),
     "4.11": ("mesh-ie", "The same, Implicit-Explicit", lambda results: mesh_study(results, "ie")),
     "4.12": ("mesh-ee", "The same, Explicit-Explicit", lambda results: mesh_study(results, "ee")),
     "4.13a": ("convergence", "Mesh convergence of the kinetic energy, with fitted rates", convergence),

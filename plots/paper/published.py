@@ -1,5 +1,7 @@
-"""What the paper prints: Hoy, Tezaur, Mota, The Schwarz alternating method for multiscale contact mechanics. To be read beside our figures;
-no result of ours is checked against these."""
+"""What the paper prints: Hoy, Tezaur, Mota, The Schwarz alternating method for multiscale contact mechanics.
+
+To be read beside our figures; no result of ours is checked against these.
+"""
 
 # Greatest and average number of Schwarz iterations: Implicit-Implicit, Implicit-Explicit, Explicit-Explicit
 TABLE_4_3 = {

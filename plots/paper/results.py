@@ -91,7 +91,9 @@ def largest(*ends):
 MADE = {
     "force_scatter": lambda summary: summary["contact"]["force_std"] / summary["contact"]["force_mean"],
     "system.energy_error": lambda summary: largest(*(summary["system"][f"energy_error_{end}"] for end in ("min", "max"))),
-    "left.energy_error": lambda summary: largest(*(summary["bodies"]["left"][f"total_energy_error_{end}"] for end in ("min", "max"))),
+    "left.energy_error": lambda summary: largest(
+        *(summary["bodies"]["left"][f"total_energy_error_{end}"] for end in ("min", "max"))
+    ),
 }
 
 

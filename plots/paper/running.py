@@ -51,7 +51,15 @@ class Runner:
         return record is not None and not record["error"] and all(self.path(experiment, ending).is_file() for ending in left)
 
     def command(self, experiment):
-        words = [self.program, "-options_file", experiment.file, "-output_summary", self.path(experiment, ".json"), "-progress", "false"]
+        words = [
+            self.program,
+            "-options_file",
+            experiment.file,
+            "-output_summary",
+            self.path(experiment, ".json"),
+            "-progress",
+            "false",
+        ]
         if experiment.keeps_history:
             words += ["-output_history", self.path(experiment, ".h5")]
         return [str(word) for word in words]
@@ -64,7 +72,12 @@ class Runner:
         command = self.command(experiment)
         begin = time.monotonic()
         error = execute(command, self.root, self.limit)
-        record = {"key": self.key(experiment), "command": shlex.join(command), "seconds": time.monotonic() - begin, "error": error}
+        record = {
+            "key": self.key(experiment),
+            "command": shlex.join(command),
+            "seconds": time.monotonic() - begin,
+            "error": error,
+        }
         part = self.path(experiment, ".run.part")
         part.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
         part.replace(self.path(experiment, ".run"))
@@ -75,7 +88,17 @@ def execute(command, folder, limit):
     """Runs a command; returns what went wrong, or an empty text."""
     environment = {**os.environ, **ONE_THREAD, **AS_ROOT}
     try:
-        done = subprocess.run(command, cwd=folder, env=environment, timeout=limit, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False)
+        done = subprocess.run(
+            command,
+            cwd=folder,
+            env=environment,
+            timeout=limit,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            check=False,
+        )
     except subprocess.TimeoutExpired:
         return f"no result within {limit:g} s"
     except OSError as error:

@@ -42,7 +42,13 @@ def cells_of(result, count, make):
 
 def iterations(result):
     """max/mean, as the paper writes it: the mean over all steps; and over those in contact."""
-    made = cells_of(result, 1, lambda one: [f"{one.figure('schwarz.max')}/{one.figure('schwarz.mean_all_steps'):.4f} ({one.figure('schwarz.mean_contact_steps'):.3f})"])
+    made = cells_of(
+        result,
+        1,
+        lambda one: [
+            f"{one.figure('schwarz.max')}/{one.figure('schwarz.mean_all_steps'):.4f} ({one.figure('schwarz.mean_contact_steps'):.3f})"
+        ],
+    )
     return made[0]
 
 
@@ -95,7 +101,9 @@ def agreement(results):
     texts = []
     for title, published, ours in (("4.3", TABLE_4_3, names_4_3), ("4.4", TABLE_4_4, names_4_4)):
         same, count = matches(results, published, ours)
-        texts.append(f"Of the greatest counts of table {title}, {same[0]} of {count[0]} are the paper's with the first reading, and {same[1]} of {count[1]} with ΔT = Δt.")
+        texts.append(
+            f"Of the greatest counts of table {title}, {same[0]} of {count[0]} are the paper's with the first reading, and {same[1]} of {count[1]} with ΔT = Δt."
+        )
     return " ".join(texts)
 
 
@@ -105,8 +113,19 @@ def convergence(results):
         for pairing, text in PAIRINGS.items():
             errors = [results[f"{folder}/{pairing}-{elements}"].figure("errors.kinetic") for elements in MESHES]
             pairs = [convergence_rate(MESHES[i : i + 2], errors[i : i + 2]) for i in range(len(MESHES) - 1)]
-            rows.append([reading, text, *(number(error, 4) for error in errors), ", ".join(f"{rate:.2f}" for rate in pairs), f"{convergence_rate(MESHES, errors):.2f}"])
-    return table(["controller step", "coupling", *(f"N_x = {elements}" for elements in MESHES), "rates from mesh to mesh", "fitted rate"], rows)
+            rows.append(
+                [
+                    reading,
+                    text,
+                    *(number(error, 4) for error in errors),
+                    ", ".join(f"{rate:.2f}" for rate in pairs),
+                    f"{convergence_rate(MESHES, errors):.2f}",
+                ]
+            )
+    return table(
+        ["controller step", "coupling", *(f"N_x = {elements}" for elements in MESHES), "rates from mesh to mesh", "fitted rate"],
+        rows,
+    )
 
 
 # head of a column: cell of a result
@@ -127,22 +146,49 @@ COLUMNS = {
     "release": lambda one: number(one.figure("errors.release_time"), 2),
     "wall [s]": lambda one: f"{one.figure('timing.wall'):.2f}",
 }
-METHODS = ("onsets", "force std/mean", "system energy error, min", "max", "final", "left bar, min", "left bar, max", "kinetic", "position", "peak potential", "release", "wall [s]")
+METHODS = (
+    "onsets",
+    "force std/mean",
+    "system energy error, min",
+    "max",
+    "final",
+    "left bar, min",
+    "left bar, max",
+    "kinetic",
+    "position",
+    "peak potential",
+    "release",
+    "wall [s]",
+)
 SENSITIVITY = ("iterations, max", "mean, all steps", "mean in contact", "onsets", "force std/mean", "system energy error, min")
-VARIANTS = ("iterations, max", "mean in contact", "onsets", "force std/mean", "system energy error, min", "max", "kinetic", "position", "release", "wall [s]")
+VARIANTS = (
+    "iterations, max",
+    "mean in contact",
+    "onsets",
+    "force std/mean",
+    "system energy error, min",
+    "max",
+    "kinetic",
+    "position",
+    "release",
+    "wall [s]",
+)
 
 
 def compare(results, experiments, columns, first):
     """A row for each experiment; `first` names the leading cells: (heads, function of an experiment)."""
     heads, lead = first
-    rows = [[*lead(name), *cells_of(results[name], len(columns), lambda one: [COLUMNS[column](one) for column in columns])] for name in experiments]
+    rows = [
+        [*lead(name), *cells_of(results[name], len(columns), lambda one: [COLUMNS[column](one) for column in columns])]
+        for name in experiments
+    ]
     return table([*heads, *columns], rows)
 
 
 # Variants in the order in which they are told; names begin with these words, others follow by name
 ORDER = (
     "default", "moving", "theta", "aitken", "anderson", "ngmres", "qn", "newton",
-    "predictor", "robin", "impedance", "radius", "newmark", "naive", "stabilized", "gap", "mass", "redistributed",
+    "predictor", "robin", "impedance", "radius", "newmark", "reaction", "naive", "stabilized", "gap", "mass", "redistributed",
     "lagrange", "augmented", "penalty", "swap", "sides", "convergence", "atol", "waveform",
 )  # fmt: skip
 
@@ -161,6 +207,8 @@ def by_variant(results, group):
 def titled(results):
     def lead(name):
         experiment = results.experiments[name]
-        return "as in the paper, nothing changed" if experiment.group == "high-speed" else experiment.title, SHORT.get(experiment.pairing, "–")
+        return "as in the paper, nothing changed" if experiment.group == "high-speed" else experiment.title, SHORT.get(
+            experiment.pairing, "–"
+        )
 
     return ("what is changed", "coupling"), lead

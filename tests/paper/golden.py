@@ -1,8 +1,9 @@
-"""The golden figures of the report's tables: what our runs gave when they were recorded, with a tolerance for each. Published values have no part in it.
+"""The golden figures of the report's tables: what our runs gave when they were recorded, with a tolerance for each. Published
+values have no part in it.
 
-`make paper` checks all of them on what it has run (this file, which `make test` does not collect); tests/regression/test_golden.py runs
-the cheap ones again. In golden.json an experiment has, for each quantity, its value, the tolerance and the reason for it, which
-is written out under "reasons". record.py writes the file.
+`make paper` checks all of them on what it has run (this file, which `make test` does not collect);
+tests/regression/test_golden.py runs the cheap ones again. In golden.json an experiment has, for each quantity, its value, the
+tolerance and the reason for it, which is written out under "reasons". record.py writes the file.
 """
 
 import json
@@ -30,7 +31,10 @@ def differences(name, summary):
 
 @pytest.fixture(scope="module")
 def results():
-    return Results(Runner(os.environ.get("IMPAKT", ROOT / "build/impakt"), os.environ.get("PAPER", ROOT / "out/paper") / Path("runs")), find())
+    return Results(
+        Runner(os.environ.get("IMPAKT", ROOT / "build/impakt"), os.environ.get("PAPER", ROOT / "out/paper") / Path("runs")),
+        find(),
+    )
 
 
 @pytest.mark.parametrize("name", list(GOLDEN["figures"]))

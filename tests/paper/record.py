@@ -2,9 +2,10 @@
 
     python tests/paper/record.py --program build/impakt [--out out/paper]
 
-For when a change of the figures is meant: look at what is printed before the file is committed. Runs of `make paper` are used where they are there, and its own, in out/paper/shifted, are made once too.
-How far a figure may be off is measured: each run is made again with the bars shifted by some 1e-17 m, which is a few units in the last place
-of their coordinates. Runs that chatter amplify such differences, others do not.
+For when a change of the figures is meant: look at what is printed before the file is committed. Runs of `make paper` are used
+where they are there, and its own, in out/paper/shifted, are made once too. How far a figure may be off is measured: each run is
+made again with one bar shifted by some 1e-17 m, a few units in the last place of its coordinates. Runs that chatter amplify
+such differences, others do not.
 """
 
 import argparse
@@ -49,7 +50,14 @@ SLOW = 5.0  # s; such runs are made again with one shift only
 
 
 def floor(kind, value, steps_of_contact):
-    return {"count": 0, "mean of counts": 1e-3, "scatter": max(1e-3 * abs(value), 1e-8), "energy": max(1e-3 * abs(value), 1e-9), "error": 1e-6 * abs(value), "step": 1.01 / steps_of_contact}[kind]
+    return {
+        "count": 0,
+        "mean of counts": 1e-3,
+        "scatter": max(1e-3 * abs(value), 1e-8),
+        "energy": max(1e-3 * abs(value), 1e-9),
+        "error": 1e-6 * abs(value),
+        "step": 1.01 / steps_of_contact,
+    }[kind]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,7 +95,11 @@ def measure(program, runs, folder):
     runner = Runner(program, runs)
     run_all(runner, list(experiments.values()))
     base = Results(runner, experiments)
-    quick = {name: experiment for name, experiment in experiments.items() if not base[name].error and base[name].figure("timing.cpu") < SLOW}
+    quick = {
+        name: experiment
+        for name, experiment in experiments.items()
+        if not base[name].error and base[name].figure("timing.cpu") < SLOW
+    }
     others = []
     for number, words in enumerate(SHIFTS):
         chosen = shifted(experiments if number == 0 else quick, words)
@@ -136,8 +148,16 @@ def main():
             before, after = (book.get(name, {}).get(quantity, [None])[0] for book in (old, figures))
             if before != after:
                 print(f"{name} {quantity}: {before} -> {after}")
-    lines = ",\n".join(f"    {json.dumps(name)}: {{\n" + ",\n".join(f"      {json.dumps(q)}: {json.dumps(v)}" for q, v in entries.items()) + "\n    }" for name, entries in figures.items())
-    FILE.write_text(f'{{\n  "reasons": {json.dumps(REASONS, indent=4)},\n  "cheap": {json.dumps(cheap)},\n  "figures": {{\n{lines}\n  }}\n}}\n', encoding="utf-8")
+    lines = ",\n".join(
+        f"    {json.dumps(name)}: {{\n"
+        + ",\n".join(f"      {json.dumps(q)}: {json.dumps(v)}" for q, v in entries.items())
+        + "\n    }"
+        for name, entries in figures.items()
+    )
+    FILE.write_text(
+        f'{{\n  "reasons": {json.dumps(REASONS, indent=4)},\n  "cheap": {json.dumps(cheap)},\n  "figures": {{\n{lines}\n  }}\n}}\n',
+        encoding="utf-8",
+    )
 
 
 if __name__ == "__main__":

@@ -108,7 +108,9 @@ def test_progress(made):
 
 def test_done_is_not_run_again(made):
     runner, found, _, _ = made
-    before = {name: runner.path(one, ".json").stat().st_mtime_ns for name, one in found.items() if runner.path(one, ".json").exists()}
+    before = {
+        name: runner.path(one, ".json").stat().st_mtime_ns for name, one in found.items() if runner.path(one, ".json").exists()
+    }
     assert len(before) == 3
     said = io.StringIO()
     errors = running.run_all(runner, list(found.values()), 1, said)
@@ -175,7 +177,9 @@ def test_pictures_are_inside(tmp_path):
 
 
 def test_command_fails_when_a_run_does(root, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(program, "find", lambda: {name: one for name, one in experiments.find(root).items() if "variants" in name})
+    monkeypatch.setattr(
+        program, "find", lambda: {name: one for name, one in experiments.find(root).items() if "variants" in name}
+    )
     monkeypatch.setattr(program, "Runner", lambda path, runs: running.Runner(path, runs, root))
     assert program.main(["--program", str(IMPAKT), "--out", str(tmp_path), "--jobs", "1"]) == 1
     assert "FAILED variants/paper/broken-ii" in capsys.readouterr().err
@@ -188,7 +192,19 @@ def test_missing_program(tmp_path, capsys):
     assert "nowhere" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("value", "digits", "wanted"), [(0.005229, 3, "0.00523"), (1.2345e-6, 2, "1.2e-6"), (5, 3, "5"), (0, 3, "0"), (0.0, 3, "0"), (None, 3, "–"), (-2765.9, 2, "-2766"), (99.9996, 3, "100")])
+@pytest.mark.parametrize(
+    ("value", "digits", "wanted"),
+    [
+        (0.005229, 3, "0.00523"),
+        (1.2345e-6, 2, "1.2e-6"),
+        (5, 3, "5"),
+        (0, 3, "0"),
+        (0.0, 3, "0"),
+        (None, 3, "–"),
+        (-2765.9, 2, "-2766"),
+        (99.9996, 3, "100"),
+    ],
+)
 def test_number(value, digits, wanted):
     assert tables.number(value, digits) == wanted
 
@@ -203,7 +219,9 @@ def test_claims_are_judged_by_figures(made):
     results = Results(runner, found)
     overshoot = next(claim for claim in claims.CLAIMS if "overshoots" in claim.text)
     measured, verdict = claims.judge(overshoot, results)
-    peak = figure(results["high-speed/lagrange"].summary, "contact.force_peak") / figure(results["high-speed/lagrange"].summary, "contact.force_mean")
+    peak = figure(results["high-speed/lagrange"].summary, "contact.force_peak") / figure(
+        results["high-speed/lagrange"].summary, "contact.force_mean"
+    )
     assert measured.startswith(f"{peak:.2f} times")
     assert verdict == (claims.YES if peak > 1.5 else claims.NO)
     assert any(claims.judge(claim, results)[1] == "–" for claim in claims.CLAIMS)
