@@ -46,6 +46,7 @@ REASONS = {
     "spread": "where five times the spread among runs that differ by round-off only is more than the floor, that: chatter amplifies round-off",
 }
 SHIFTS = ("-left_initial_displacement 1e-17", "-right_initial_displacement -2e-17")
+MOST = 0.3  # of the value: where the tolerance were larger, the figure says nothing, and is left out
 SLOW = 5.0  # s; such runs are made again with one shift only
 
 
@@ -122,7 +123,8 @@ def entry(result, others):
         least = floor(kind, value, contact)
         wide = 5 * spread > least
         tolerance = math.ceil(5 * spread) if wide and kind == "count" else float(f"{max(least, 5 * spread):.1e}")
-        found[quantity] = [value, tolerance, "spread" if wide else kind]
+        if not wide or tolerance <= MOST * abs(value):
+            found[quantity] = [value if kind == "count" else float(f"{value:.9g}"), tolerance, "spread" if wide else kind]
     return found
 
 
