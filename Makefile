@@ -74,7 +74,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg
 
-.PHONY: all run test bench format lint force
+.PHONY: all run paper test bench format lint force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units))
 
@@ -85,6 +85,11 @@ run: $(BUILD)/impakt ## the paper's high-speed impact: results table, history, s
 	$(BUILD)/impakt -options_file options/impact-high-speed.opts
 	@$(PYTHON) plots/impact.py out/impact-high-speed.h5 out/impact-high-speed.png
 	@printf '%s\n' 'history  out/impact-high-speed.h5' 'summary  out/impact-high-speed.json' 'plot     out/impact-high-speed.png'
+
+paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in out/paper/
+	@status=0; export PYTHONPATH=plots IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD); \
+	$(PYTHON) -m paper --program $(BUILD)/impakt --out out/paper || status=$$?; \
+	$(PYTHON) -m pytest -q -p no:cacheprovider --rootdir=. tests/paper/golden.py || status=$$?; exit $$status
 
 test: $(BUILD)/impakt $(units) ## unit tests on 1 to 3 ranks and regression tests
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \

@@ -73,17 +73,28 @@ class Impact:
         begin = np.searchsorted(self.times, times).clip(1) - 1
         return way[begin] + np.array(self.velocities[side])[begin] * (times - np.array(self.times)[begin])
 
-    def energies(self, side, times):
-        """Kinetic and potential energy of a bar, one row for each time."""
-        return np.array([self._energies(side, time) for time in times])
+    def velocity(self, side, times):
+        """Of the contact face."""
+        return self._at(self.velocities[side], times)
 
-    def _energies(self, side, time):
+    def averages(self, side, times):
+        """Kinetic energy, potential energy and mean velocity of a bar: a row for each. They are linear in time between the times at
+        which a jump meets another one or an end of the bar."""
+        period, events = self.bars[side]["period"], np.array(self.times)
+        meetings = (events[:, None] + events[None, :] + period) / 2
+        knots = np.unique([*events, *(events + period), *meetings.ravel(), times[0], times[-1]])
+        knots = knots[(knots >= times[0]) & (knots <= times[-1])]
+        values = np.array([self._averages(side, knot) for knot in knots]).T
+        return np.array([np.interp(times, knots, each) for each in values])
+
+    def _averages(self, side, time):
         period, impedance = self.bars[side]["period"], self.bars[side]["impedance"]
         jumps = [time - each for each in self.times] + [each - (time - period) for each in self.times]
         edges = np.unique([0, period / 2, *(jump for jump in jumps if 0 < jump < period / 2)])
         middles, widths = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
         out, coming = (np.array([self._sent(side, each) for each in sent]) for sent in (time - middles, time - period + middles))
-        return [impedance / 2 * np.sum(widths * (out + sign * coming) ** 2) for sign in (1, -1)]
+        energies = [impedance / 2 * np.sum(widths * (out + sign * coming) ** 2) for sign in (1, -1)]
+        return [*energies, np.sum(widths * (out + coming)) / (period / 2)]
 
     def _sent(self, side, time):
         k = bisect_left(self.times, time)

@@ -109,9 +109,13 @@ def exact_solution(history, axis):
     sign = 1 if bars[1]["position"] > bars[0]["position"] or bars[0]["velocity"] > bars[1]["velocity"] else -1
     gap = sign * (bars[1]["position"] - bars[0]["position"])
     impact = Impact([{**each, "velocity": sign * each["velocity"]} for each in bars], gap, time[0], time[-1])
-    kinetic, potential = impact.energies(0, time).T
+    averages = [impact.averages(side, time) for side in (0, 1)]
+    kinetic, potential, _ = averages[0]
+    sides = dict(enumerate(history["pair"]))
     return {
-        "position": {name: bars[side]["position"] + sign * impact.travelled(side, time) for side, name in enumerate(history["pair"])},
+        "position": {name: bars[side]["position"] + sign * impact.travelled(side, time) for side, name in sides.items()},
+        "velocity": {name: sign * impact.velocity(side, time) for side, name in sides.items()},
+        "mean_velocity": {name: sign * averages[side][2] for side, name in sides.items()},
         "force": impact.force(time),
         "kinetic": kinetic,
         "potential": potential,

@@ -13,7 +13,7 @@ SWEEPS = {"ii": ((4, 6), (2.2, 2.9)), "ie": ((1, 6), (1.8, 2.6)), "ee": ((3, 3),
 @pytest.mark.parametrize("ranks", [1, 2])  # these runs chatter, which amplifies round-off: within their bands on 2 ranks
 @pytest.mark.parametrize("pairing", list(SWEEPS))
 def test_paper(pairing, ranks, shared_run):
-    summary = shared_run(f"-options_file options/paper-{pairing}.opts", ranks).summary
+    summary = shared_run(f"-options_file options/paper/high-speed/{pairing}.opts", ranks).summary
     (least, most), (lower, upper) = SWEEPS[pairing]
     assert least <= summary["schwarz"]["max"] <= most
     assert lower <= summary["schwarz"]["mean_all_steps"] <= upper
@@ -27,7 +27,7 @@ def test_paper(pairing, ranks, shared_run):
 @pytest.mark.parametrize("pairing", list(SWEEPS))
 def test_no_sweeps_without_contact(pairing, shared_run):
     """No iterations are required before the bars come into contact and after they separate (paper, section 4.4.2)."""
-    run = shared_run(f"-options_file options/paper-{pairing}.opts")
+    run = shared_run(f"-options_file options/paper/high-speed/{pairing}.opts")
     time, sweeps = run.history["time"][()], run.history["schwarz/iterations"][()]
     contact = run.summary["contact"]
     assert not sweeps[time < contact["first_contact_time"] - 0.5e-7].any()

@@ -85,6 +85,6 @@ def test_ranks(way, shared_run):
 def test_constant_traction_calms_the_papers_mixed_variant(shared_run):
     """With the traction held over the explicit substeps the implicit-explicit variant of the paper shows the little chatter that the
     paper reports; with a linear one it does not (measured 0.0054 and 0.27)."""
-    paper = "-options_file options/paper-ie.opts"
+    paper = "-options_file options/paper/high-speed/ie.opts"
     assert force_scatter(shared_run(f"{paper} -schwarz_traction_waveform constant").summary) <= 0.01
     assert force_scatter(shared_run(paper).summary) >= 0.1

@@ -20,9 +20,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # name, options of the program, bound on (CPU time of the program) / (CPU time of the yardstick)
 CASES = (
-    ("II", "options/paper-ii.opts", 6.0),
-    ("EE", "options/paper-ee.opts", 8.0),
-    ("IE", "options/paper-ie.opts", None),
+    ("II", "options/paper/high-speed/ii.opts", 6.0),
+    ("EE", "options/paper/high-speed/ee.opts", 8.0),
+    ("IE", "options/paper/high-speed/ie.opts", None),
 )
 DEFAULT_RUN = "options/impact-high-speed.opts"
 PHASES = (("alpha2", "substeps"), ("centraldifference", "substeps"), ("sweeps", "count"))
