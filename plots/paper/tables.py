@@ -144,6 +144,9 @@ COLUMNS = {
     "position": lambda one: number(one.figure("errors.contact_position")),
     "peak potential": lambda one: number(one.figure("errors.peak_potential")),
     "release": lambda one: number(one.figure("errors.release_time"), 2),
+    "momentum error": lambda one: number(one.figure("system.momentum_error_max"), 2),
+    "kinetic, worst bar": lambda one: number(worst(one, "kinetic")),
+    "potential, worst bar": lambda one: number(worst(one, "potential")),
     "wall [s]": lambda one: f"{one.figure('timing.wall'):.2f}",
 }
 METHODS = (
@@ -174,6 +177,24 @@ VARIANTS = (
     "wall [s]",
 )
 
+CASES = (
+    "iterations, max",
+    "mean in contact",
+    "onsets",
+    "system energy error, min",
+    "max",
+    "momentum error",
+    "kinetic, worst bar",
+    "potential, worst bar",
+    "wall [s]",
+)
+
+
+def worst(one, quantity):
+    """Of the errors of all bodies that the summary knows."""
+    bodies = one.summary.get("errors", {}).get("bodies", {})
+    return max((body[quantity] for body in bodies.values()), default=None)
+
 
 def compare(results, experiments, columns, first):
     """A row for each experiment; `first` names the leading cells: (heads, function of an experiment)."""
@@ -187,9 +208,9 @@ def compare(results, experiments, columns, first):
 
 # Variants in the order in which they are told; names begin with these words, others follow by name
 ORDER = (
-    "default", "moving", "theta", "aitken", "anderson", "ngmres", "qn", "newton",
+    "default", "moving", "inside", "theta", "aitken", "anderson", "ngmres", "qn", "newton",
     "predictor", "robin", "impedance", "radius", "newmark", "reaction", "naive", "stabilized", "gap", "mass", "redistributed",
-    "lagrange", "augmented", "penalty", "swap", "sides", "convergence", "atol", "waveform",
+    "grazing", "two", "cradle", "substeps", "lagrange", "augmented", "penalty", "swap", "sides", "convergence", "atol", "waveform",
 )  # fmt: skip
 
 

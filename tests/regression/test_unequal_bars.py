@@ -116,7 +116,7 @@ def test_errors_of_the_summary(name, side, shared_run):
     impedance, speed = (np.sqrt(8), np.sqrt(2e6)) if name == "both" else (np.sqrt(0.125), np.sqrt(0.5e6))
     bars = [{"impedance": 1, "period": 5e-4, "velocity": 100}, {"impedance": impedance, "period": 0.5 / speed, "velocity": -100}]
     time = run.history["time"][()]
-    exact = Impact(bars, 0.04, time[0], time[-1]).energies(side, time[1:])
+    exact = Impact(bars, 0.04, time[0], time[-1]).averages(side, time[1:])[:2].T
     computed = np.array([run.history[f"body/{body}/{key}"][1:] for key in ("kinetic", "potential")]).T
     errors = run.summary["errors"]["bodies"][body]
     for column, key in enumerate(("kinetic", "potential")):
