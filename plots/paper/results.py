@@ -71,6 +71,14 @@ class Result:
         """Of the left bar: kinetic, potential, contact_position, contact_velocity, mean_velocity."""
         return self.history["bodies"]["left"][quantity]
 
+    def contact_velocity(self):
+        """Of the left bar. The velocities that the forward-increment multipliers leave at the end of a step do not have the force
+        yet that begins there; for them, the mean velocity of the step, which is what central differences work with."""
+        if self.summary["contact"]["type"] != "lagrange":
+            return self.left("contact_velocity")
+        rate = np.diff(self.left("contact_position")) / np.diff(self.time)
+        return np.concatenate([self.left("contact_velocity")[:1], rate])
+
     def exact(self, quantity):
         """The same, and force."""
         values = self.history["exact"][quantity.removeprefix("contact_")]
