@@ -8,46 +8,10 @@
    The body is probed once for each input, by a hat: one at the end of the first substep, zero at the start and from the second
    substep on. Since the body does not change with time, what comes out k substeps after the hat is the same wherever it stands.
 */
-#include "bodyimpl.h"
+#include "responseimpl.h"
 
 /* Above this many rows the columns of whole states would cost more memory and time than they save. */
 #define MAX_CONDENSED_ROWS 16
-#define N_BACKUP           7
-
-typedef enum {
-  INPUT_DISPLACEMENT,
-  INPUT_VELOCITY,
-  INPUT_ACCELERATION,
-  INPUT_FORCE
-} InputKind;
-
-typedef struct {
-  PetscInt     row; /* global */
-  InputKind    kind;
-  Vec          change[4];  /* of displacement, velocity, acceleration, internal force */
-  PetscBool    changes[4]; /* whether they are not zero: a velocity, say, changes little but itself */
-  PetscScalar *rows;       /* displacement, velocity, acceleration, reaction: 4 x local rows */
-} Column;
-
-struct _BodyResponse {
-  PetscBool      made;  /* there is a matrix, for `conditions` */
-  PetscBool      valid; /* these are the present conditions */
-  BodyCondition *conditions;
-  PetscBool      window_valid; /* the present end state came from `inputs` */
-  PetscBool      condensed;    /* columns hold states */
-  /* all rows by all rows, by columns: reaction of prescribed, displacement of other rows, for displacements and forces */
-  PetscScalar *waveform;       /* at the end of each substep, for a hat in the first: substeps of them */
-  PetscScalar *matrix;         /* at the end of the controller step, for inputs that rise linearly over it */
-  PetscScalar *rate_matrix[2]; /* for velocities and accelerations, with one substep */
-  PetscInt     n_columns;
-  Column      *columns;             /* at most 3 for each row */
-  PetscScalar *inputs, *new_inputs; /* of all rows on every rank, 4 kinds each */
-  PetscScalar *mine;
-  /* what probing overwrites: present and saved state, internal force; all traces */
-  Vec          backup[N_BACKUP];
-  PetscScalar *backup_traces;
-  PetscMPIInt *kinds; /* conditions of all rows */
-};
 
 PetscErrorCode BodyDestroyResponse(Body body)
 {
@@ -64,99 +28,6 @@ PetscErrorCode BodyDestroyResponse(Body body)
   PetscCall(PetscFree4(response->waveform, response->matrix, response->rate_matrix[0], response->rate_matrix[1]));
   PetscCall(PetscFree5(response->columns, response->inputs, response->new_inputs, response->mine, response->conditions));
   PetscCall(PetscFree(body->response));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether the response was made for the present conditions, as far as this rank can tell */
-PetscBool BodyMatchResponse(Body body)
-{
-  const struct _BodyResponse *response = body->response;
-
-  if (!response || !response->made) return PETSC_FALSE;
-  for (PetscInt i = 0; i < body->rows.local; i++)
-    if (response->conditions[i] != body->conditions[i]) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
-/* The conditions have changed, to some that the response was made for, or others */
-PetscErrorCode BodyValidateResponse(Body body, PetscBool valid)
-{
-  PetscFunctionBegin;
-  if (!body->response) PetscFunctionReturn(PETSC_SUCCESS);
-  body->response->valid        = valid;
-  body->response->window_valid = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The saved state has changed */
-PetscErrorCode BodyInvalidateWindow(Body body)
-{
-  PetscFunctionBegin;
-  if (body->response) body->response->window_valid = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All inputs at the end of the controller step, on every rank */
-static PetscErrorCode GatherInputs(Body body, PetscScalar all[])
-{
-  const Trace  traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
-  BodyRows    *rows     = &body->rows;
-  PetscScalar *values, *mine = body->response->mine;
-
-  PetscFunctionBegin;
-  for (PetscInt kind = 0; kind < 4; kind++) {
-    PetscCall(TraceGetLevel(traces[kind], body->substeps, &values));
-    for (PetscInt i = 0; i < rows->local; i++) mine[4 * i + kind] = values[i];
-  }
-  if (rows->size > 1) PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, all, rows->counts, rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
-  else PetscCall(PetscArraycpy(all, mine, 4 * rows->local));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A whole integration has just been done: remember what came in */
-PetscErrorCode BodyNoteWindow(Body body)
-{
-  PetscFunctionBegin;
-  if (!body->response || !body->response->valid || !body->response->condensed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GatherInputs(body, body->response->inputs));
-  body->response->window_valid = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AddColumn(Body body, const Column *column, PetscScalar change)
-{
-  const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
-  const Vec    vecs[]   = {body->state.u, body->state.v, body->state.a, body->internal_force};
-  PetscScalar *values;
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < 4; k++)
-    if (column->changes[k]) PetscCall(VecAXPY(vecs[k], change, column->change[k]));
-  for (PetscInt t = 0; t < 4; t++) {
-    PetscCall(TraceGetLevel(traces[t], body->substeps, &values));
-    for (PetscInt i = 0; i < body->rows.local; i++) values[i] += change * column->rows[t * body->rows.local + i];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Moves the end state of this controller step to the inputs as they are now, if it can be done by adding columns */
-PetscErrorCode BodyIntegrateByResponse(Body body, PetscBool *done)
-{
-  struct _BodyResponse *response = body->response;
-
-  PetscFunctionBegin;
-  *done = PETSC_FALSE;
-  if (!response || !response->window_valid) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GatherInputs(body, response->new_inputs));
-  for (PetscInt c = 0; c < response->n_columns; c++) {
-    const PetscInt  input  = 4 * response->columns[c].row + response->columns[c].kind;
-    const PetscReal change = response->new_inputs[input] - response->inputs[input];
-
-    if (change != 0) PetscCall(AddColumn(body, &response->columns[c], change));
-  }
-  PetscCall(PetscArraycpy(response->inputs, response->new_inputs, 4 * body->rows.global));
-  body->total_substeps += body->substeps;
-  *done = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -45,7 +45,7 @@ REASONS = {
     "step": "floor: one controller step, the resolution of the release time, relative to the time in contact",
     "spread": "where five times the spread among runs that differ by round-off only is more than the floor, that: chatter amplifies round-off",
 }
-SHIFTS = ("-left_initial_displacement 1e-17", "-right_initial_displacement -2e-17")
+SHIFTS = ((0, "1e-17"), (1, "-2e-17"))  # number of the body, displacement [m]
 MOST = 0.3  # of the value: where the tolerance were larger, the figure says nothing, and is left out
 SLOW = 5.0  # s; such runs are made again with one shift only
 
@@ -69,8 +69,14 @@ class Shifted(Experiment):
     keeps_history = False
 
 
-def shifted(experiments, words):
-    return {name: Shifted(*dataclasses.astuple(experiment), words) for name, experiment in experiments.items()}
+def shifted(experiments, body, displacement):
+    return {
+        name: Shifted(
+            *dataclasses.astuple(experiment),
+            f"-{experiment.last('bodies').split(',')[body]}_initial_displacement {displacement}",
+        )
+        for name, experiment in experiments.items()
+    }
 
 
 class ShiftedRunner(Runner):
@@ -102,8 +108,8 @@ def measure(program, runs, folder):
         if not base[name].error and base[name].figure("timing.cpu") < SLOW
     }
     others = []
-    for number, words in enumerate(SHIFTS):
-        chosen = shifted(experiments if number == 0 else quick, words)
+    for number, shift in enumerate(SHIFTS):
+        chosen = shifted(experiments if number == 0 else quick, *shift)
         again = ShiftedRunner(program, folder / str(number))
         run_all(again, list(chosen.values()))
         others.append(Results(again, chosen))
