@@ -44,9 +44,9 @@ START_VALUES.append("variants/paper/waveform-constant-ie")
 VARIANTS = """High-speed impact, N_x = 200, ΔT = 1e-7 s; IE with ten explicit substeps. Wall times are of runs of which several
 shared the machine. Energy errors are of the system, relative to its initial energy; 'onsets' counts how often contact begins.
 As the paper has it the impact is symmetric, and where contact is quiet the trace of the step before is the solution already,
-whatever the outer iteration. In a frame that moves it is not; the rows of moving frames tell what each method costs then (their
-kinetic errors are relative to a larger energy). The default start value, the common velocity of an inelastic collision, finds
-the solution there too as long as both bars make the same substeps.
+whatever the outer iteration. In a frame that moves it is not (there kinetic errors are relative to a larger energy): the rows
+of outer iterations in a moving frame start from that trace, and tell what each costs. The default start value, the common
+velocity of an inelastic collision, finds the solution there too as long as both bars make the same substeps.
 """
 
 CASES = """Bars of unequal length and material, rows of bars, and other ratios of substeps, by the defaults unless a row says

@@ -60,7 +60,7 @@ def test_naive_with_both_constraints(frame, shared_run):
 @pytest.mark.parametrize("paper", ["ii", "ee"])
 def test_naive_for_schwarz(paper, shared_run):
     """The scatter of the contact force, 0.27 without it, falls to a tenth of that or less, and so does the loss of energy."""
-    options = f"-options_file options/paper-{paper}.opts"
+    options = f"-options_file options/paper/high-speed/{paper}.opts"
     plain, run = shared_run(options), shared_run(f"{options} -contact_stabilization naive")
     assert force_scatter(plain.summary) > 0.2
     assert force_scatter(run.summary) <= 0.15 * force_scatter(plain.summary)
