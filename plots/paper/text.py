@@ -50,7 +50,7 @@ velocity of an inelastic collision, finds the solution there too as long as both
 """
 
 CASES = """Bars of unequal length and material, rows of bars, and other ratios of substeps, by the defaults unless a row says
-otherwise. 'onsets' are those of all pairs. The kinetic and potential errors are against the exact solution by characteristics
+otherwise. 'onsets' counts how often contact comes out of none, of any pair. The kinetic and potential errors are against the exact solution by characteristics
 (`-exact characteristics`), of the bar that has the larger one. In the grazing impact both contact faces fly side by side after
 5e-4 s, gap and force zero: nothing but round-off decides whether they touch.
 """
