@@ -36,7 +36,7 @@ include $(PETSC_ROOT)/lib/petsc/conf/petscvariables
 endif
 
 BUILD    := build
-OPTIMISE := -O3 -fno-math-errno
+OPTIMISE := -O3 -fno-math-errno -fopenmp-simd
 ifeq ($(DEBUG),1)
 BUILD    := build/debug
 OPTIMISE := -O0 -g3
@@ -52,8 +52,8 @@ endif
 WARNINGS := -Wall -Wextra -Werror
 CFLAGS   := -std=c11 $(WARNINGS) $(OPTIMISE)
 # Other people's headers are system headers: their warnings are not ours to mend.
-CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(PETSC_CC_INCLUDES) $(shell pkg-config --cflags jansson)))
-LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson) -lm
+CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(PETSC_CC_INCLUDES) $(shell pkg-config --cflags jansson muparser netcdf-mpi)))
+LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lm
 
 members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c'))))
 units     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/unit/*.c)))

@@ -130,6 +130,8 @@ PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);
 PETSC_EXTERN PetscErrorCode BodyIsExplicit(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsRedistributed(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetMeasures(Body, BodyMeasures *);
+PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
+PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDouble *);
 
 PETSC_EXTERN PetscErrorCode BodySave(Body);

@@ -4,8 +4,10 @@
 #include <contact.h>
 #include <controller.h>
 #include <exact.h>
+#include <expression.h>
 #include <io.h>
 #include <material.h>
+#include <mesh.h>
 #include <surface.h>
 #include <trace.h>
 #include <transfer.h>

@@ -15,14 +15,42 @@ typedef struct _p_Material *Material;
    MaterialType - name of a constitutive model
 
    Values:
-. `MATERIAL_LINEAR_ELASTIC` - isotropic linear elasticity
++ `MATERIAL_LINEAR_ELASTIC`          - isotropic linear elasticity
+. `MATERIAL_SAINT_VENANT_KIRCHHOFF` - stress proportional to the Green-Lagrange strain
+- `MATERIAL_NEO_HOOKEAN`            - compressible neo-Hookean hyperelasticity
 
    Level: beginner
 
 .seealso: `MaterialSetType()`
 J*/
 typedef const char *MaterialType;
-#define MATERIAL_LINEAR_ELASTIC "linear_elastic"
+#define MATERIAL_LINEAR_ELASTIC         "linear_elastic"
+#define MATERIAL_SAINT_VENANT_KIRCHHOFF "saint_venant_kirchhoff"
+#define MATERIAL_NEO_HOOKEAN            "neo_hookean"
+
+/*S
+   MaterialKernels - what the element loops call: plain functions of batches of 8 points, for speed without error codes
+
+   Level: developer
+
+   Notes:
+   Tensors are laid out component first: H[3 i + k][p] is du_i/dX_k of point p. In plane strain the third row and column are zero.
+   In plane stress (`MaterialSetPlaneStress()`) what is given for H[8], and for H[2], H[5], H[6], H[7], is not read, and the stress
+   across the plane is zero.
+
+   Every function returns NaN for a point at which the material is not defined (an inverted one, det(I + H) <= 0).
+
+.seealso: `MaterialGetKernels()`
+S*/
+typedef struct {
+  const void *data; /* to be handed to the functions; owned by the material */
+  /* first Piola-Kirchhoff stress [Pa] at 8 points, for displacement gradients H */
+  void (*stress)(const void *data, const PetscReal H[9][8], PetscReal P[9][8]);
+  /* stored energy [J/m^3] at 8 points */
+  void (*energy)(const void *data, const PetscReal H[9][8], PetscReal W[8]);
+  /* dP/dH at one point: tangent[9 (3 i + j) + 3 k + l] = dP_ij / dH_kl [Pa] */
+  void (*tangent)(const void *data, const PetscReal H[9], PetscReal tangent[81]);
+} MaterialKernels;
 
 PETSC_EXTERN PetscClassId MATERIAL_CLASSID;
 
@@ -39,4 +67,9 @@ PETSC_EXTERN PetscErrorCode MaterialFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode MaterialGetDensity(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialGetUniaxialModulus(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialIsLinear(Material, PetscBool *);
+PETSC_EXTERN PetscErrorCode MaterialGetWaveModulus(Material, PetscReal *);
+PETSC_EXTERN PetscErrorCode MaterialSetPlaneStress(Material, PetscBool);
+PETSC_EXTERN PetscErrorCode MaterialGetKernels(Material, MaterialKernels *);
 PETSC_EXTERN PetscErrorCode MaterialComputeUniaxial(Material, PetscInt, const PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode MaterialComputeUniaxialTangent(Material, PetscInt, const PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode MaterialComputeUniaxialEnergy(Material, PetscInt, const PetscReal[], PetscReal[]);

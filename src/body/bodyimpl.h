@@ -84,6 +84,7 @@ struct _p_Body {
   Vec                   layer_rhs, layer_solution;
   VecScatter            layer_scatter;
   struct _BodyResponse *response;
+  struct _BodyLoads    *loads; /* conditions on surfaces and forces from outside; NULL: none */
   PetscInt64            total_substeps;
   PetscLogDouble        seconds;
   PetscBool             setup;
@@ -120,3 +121,10 @@ PETSC_INTERN PetscErrorCode BodyInvalidateWindow(Body);
 PETSC_INTERN PetscBool      BodyMatchResponse(Body);
 PETSC_INTERN PetscErrorCode BodyValidateResponse(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyDestroyResponse(Body);
+PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);
+PETSC_INTERN PetscErrorCode BodyLoadsDestroy(Body);
+PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[]);
+PETSC_INTERN PetscErrorCode BodyLoadsHaveForce(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyLoadsAddForce(Body, PetscReal, PetscScalar, Vec);
+PETSC_INTERN PetscErrorCode BodyLoadsPrescribe(Body, PetscReal, Vec, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyLoadsInitialState(Body, Vec, Vec);

@@ -10,20 +10,26 @@ typedef struct _n_Element *Element;
 typedef struct {
   PetscErrorCode (*setfromoptions)(Element, MPI_Comm, const char[]);
   PetscErrorCode (*setup)(Element, const PetscReal[]);                                /* coordinates of the rank's nodes */
-  PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]);       /* adds to the second */
-  PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[], PetscScalar[]); /* tangent of one element, row by row */
-  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]);                           /* consistent mass of one element */
+  PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]);       /* adds to the second [N] */
+  PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);                /* stored by all elements of this rank [J] */
+  PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[], PetscScalar[]); /* tangent of one element at the displacement of the rank's nodes, row by row [N/m] */
+  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]);                           /* consistent mass of one element [kg] */
+  PetscErrorCode (*stress)(Element, const PetscScalar[], PetscReal[]);                /* Cauchy stress, mean of each element: xx yy zz xy yz xz, 6 x count [Pa] */
+  PetscErrorCode (*points)(Element, PetscInt, PetscReal[], PetscReal[]);              /* of one element: reference positions of its load points, n_points x dim [m], and their weights [m^3, m^2 x thickness] */
   PetscErrorCode (*destroy)(Element);
 } ElementOps;
 
 struct _n_Element {
-  ElementOps      ops;
-  PetscInt        dim, nodes;   /* space dimension; nodes of one element */
-  PetscInt        count;        /* elements of this rank */
-  const PetscInt *connectivity; /* count x nodes: local node numbers; owned by the body */
-  Material        material;
-  PetscReal       cross_section; /* of bars [m^2]; 1 for other shapes */
-  void           *data;
+  ElementOps       ops;
+  PetscInt         dim, nodes;   /* space dimension; nodes of one element */
+  PetscInt         count;        /* elements of this rank */
+  const PetscInt  *connectivity; /* count x nodes: local node numbers; owned by the body */
+  Material         material;
+  PetscReal        cross_section; /* of bars [m^2], thickness of plane bodies [m]; 1 for other shapes */
+  PetscInt         n_points;      /* load points of one element: a rule exact for quadratic functions at least */
+  const PetscReal *shape;         /* shape functions there, n_points x nodes; static */
+  PetscInt         inverted;      /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
+  void            *data;
 };
 
 PETSC_INTERN PetscErrorCode ElementRegister(DMPolytopeType, PetscErrorCode (*)(Element));
@@ -34,3 +40,7 @@ PETSC_INTERN PetscErrorCode ElementSetUp(Element, PetscInt, const PetscInt[], co
 PETSC_INTERN PetscErrorCode ElementDestroy(Element *);
 
 PETSC_INTERN PetscErrorCode ElementCreate_Bar2(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Tri3(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Quad4(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Tet4(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Hex8(Element);

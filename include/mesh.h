@@ -1,0 +1,7 @@
+/* Meshes from options: boxes, Gmsh and Exodus II files, distributed over the ranks; their surfaces and node sets by name. */
+#pragma once
+#include <petscdmplex.h>
+
+PETSC_EXTERN PetscErrorCode MeshCreate(MPI_Comm, const char[], const char[], DM *);
+PETSC_EXTERN PetscErrorCode MeshGetSurface(DM, const char[], PetscInt *, PetscInt **);
+PETSC_EXTERN PetscErrorCode MeshGetNodeSet(DM, const char[], PetscInt *, PetscInt **);

@@ -1,0 +1,22 @@
+/* Loops over batches of points or elements, laid out as structures of arrays so that one instruction serves a whole batch. */
+#pragma once
+#include <petscsystypes.h>
+
+/* Elements or points in a batch: one AVX-512 register of doubles, two AVX2 ones */
+#define SIMD_WIDTH 8
+
+/* A function with SIMD_CLONES before it is compiled for several generations of processors; the program loader picks one. What it
+   calls should be inlined (SIMD_INLINE), or it is compiled for the oldest. */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#  define SIMD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#  define SIMD_CLONES
+#endif
+#if defined(__GNUC__)
+#  define SIMD_INLINE static inline __attribute__((always_inline))
+#else
+#  define SIMD_INLINE static inline
+#endif
+
+/* One number for each member of a batch */
+typedef PetscReal SimdReal[SIMD_WIDTH] __attribute__((aligned(64)));
