@@ -129,6 +129,8 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
   PetscCheck(create, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%smaterial_type '%s'; known: linear_elastic", ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", type);
   PetscTryTypeMethod(material, destroy);
   PetscCall(PetscMemzero(material->ops, sizeof(*material->ops)));
+  material->data   = NULL;
+  material->linear = PETSC_FALSE;
   PetscCall((*create)(material));
   PetscCall(PetscObjectChangeTypeName((PetscObject)material, type));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,7 +189,7 @@ PetscErrorCode MaterialView(Material material, PetscViewer viewer)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)material, viewer));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  density %g kg/m^3\n", (double)material->density));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  density %g kg/m^3%s\n", (double)material->density, material->plane_stress ? ", plane stress" : ""));
   PetscTryTypeMethod(material, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -238,75 +240,5 @@ PetscErrorCode MaterialGetDensity(Material material, PetscReal *density)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
   *density = material->density;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialGetUniaxialModulus - tangent of uniaxial stress against uniaxial strain, at zero strain (Young's modulus)
-
-  Not Collective
-
-  Input Parameter:
-. material - the `Material`
-
-  Output Parameter:
-. modulus - [Pa]
-
-  Level: developer
-
-.seealso: `Material`, `MaterialComputeUniaxial()`
-@*/
-PetscErrorCode MaterialGetUniaxialModulus(Material material, PetscReal *modulus)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscUseTypeMethod(material, uniaxialmodulus, modulus);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialIsLinear - whether stress is proportional to strain, so that stiffness matrices are constant
-
-  Not Collective
-
-  Input Parameter:
-. material - the `Material`
-
-  Output Parameter:
-. linear - `PETSC_TRUE` if so
-
-  Level: developer
-
-.seealso: `Material`
-@*/
-PetscErrorCode MaterialIsLinear(Material material, PetscBool *linear)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  *linear = material->linear;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialComputeUniaxial - uniaxial stress for a batch of uniaxial strains
-
-  Not Collective
-
-  Input Parameters:
-+ material - the `Material`
-. n        - number of points
-- strain   - strains, n of them
-
-  Output Parameter:
-. stress - stresses [Pa], n of them
-
-  Level: developer
-
-.seealso: `Material`
-@*/
-PetscErrorCode MaterialComputeUniaxial(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
-{
-  PetscFunctionBegin;
-  PetscUseTypeMethod(material, uniaxial, n, strain, stress);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,14 +6,19 @@ struct _MaterialOps {
   PetscErrorCode (*setfromoptions)(Material);
   PetscErrorCode (*view)(Material, PetscViewer);
   PetscErrorCode (*destroy)(Material);
-  PetscErrorCode (*uniaxialmodulus)(Material, PetscReal *);                       /* at zero strain */
-  PetscErrorCode (*uniaxial)(Material, PetscInt, const PetscReal[], PetscReal[]); /* strain -> stress, a batch of points */
+  PetscErrorCode (*kernels)(Material, PetscBool, MaterialKernels *);                     /* in plane stress, or not */
+  PetscErrorCode (*wavemodulus)(Material, PetscBool, PetscReal *);                       /* at zero strain; in plane stress, or not */
+  PetscErrorCode (*uniaxialmodulus)(Material, PetscReal *);                              /* at zero strain */
+  PetscErrorCode (*uniaxial)(Material, PetscInt, const PetscReal[], PetscReal[]);        /* strain -> stress, a batch of points */
+  PetscErrorCode (*uniaxialtangent)(Material, PetscInt, const PetscReal[], PetscReal[]); /* strain -> its derivative */
+  PetscErrorCode (*uniaxialenergy)(Material, PetscInt, const PetscReal[], PetscReal[]);  /* strain -> its integral */
 };
 
 struct _p_Material {
   PETSCHEADER(struct _MaterialOps);
-  PetscReal density; /* kg/m^3; 0 until set */
-  PetscBool linear;  /* stress proportional to strain: matrices are constant */
+  PetscReal density;      /* kg/m^3; 0 until set */
+  PetscBool linear;       /* stress proportional to strain: matrices are constant */
+  PetscBool plane_stress; /* what MaterialGetKernels() and MaterialGetWaveModulus() speak of */
   void     *data;
 };
 
