@@ -84,10 +84,13 @@ PETSC_EXTERN const char *const BodyTractionTypes[];
 .seealso: `BodyGetMeasures()`
 S*/
 typedef struct {
-  PetscReal kinetic;          /* J; staggered, for central differences */
-  PetscReal potential;        /* J */
-  PetscReal momentum[3];      /* kg m/s */
-  PetscReal mean_velocity[3]; /* mass-averaged, m/s */
+  PetscReal kinetic;             /* J; staggered, for central differences */
+  PetscReal potential;           /* J */
+  PetscReal external_work;       /* done since the start by forces from outside and by held displacements, J */
+  PetscReal momentum[3];         /* kg m/s */
+  PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
+  PetscReal mean_velocity[3];    /* mass-averaged, m/s */
+  PetscBool loaded;              /* whether forces from outside or held displacements act at all */
 } BodyMeasures;
 
 /*S

@@ -3,6 +3,7 @@
 #include <petscts.h>
 
 #define TSCENTRALDIFFERENCE "centraldifference"
+#define TSSTATIC            "static"
 
 typedef PetscErrorCode TSCentralDifferenceFn(TS, PetscReal, Vec, Vec, Vec, void *);
 

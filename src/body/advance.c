@@ -31,6 +31,12 @@ PetscErrorCode BodySave(Body body)
       PetscCall(PetscArraycpy(start, end, body->rows.local));
     }
   }
+  if (body->loads) {
+    /* repeated sweeps of one substep may have moved its end by adding responses: the work is found when the step is accepted */
+    if (body->substeps == 1 && body->step != body->saved_step) PetscCall(BodyAddWork(body, body->substep_start.u));
+    PetscCall(VecCopy(body->applied, body->saved_applied));
+    body->saved_work = body->external_work;
+  }
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
   if (body->step != body->saved_step) PetscCall(TSMonitor(body->ts, body->step, body->time, body->state.u));
   body->saved_time = body->time;
@@ -61,6 +67,10 @@ PetscErrorCode BodyRestore(Body body)
   PetscCall(VecCopy(body->saved.a, body->state.a));
   body->time = body->saved_time;
   body->step = body->saved_step;
+  if (body->loads) {
+    PetscCall(VecCopy(body->saved_applied, body->applied));
+    body->external_work = body->saved_work;
+  }
   PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -165,39 +175,51 @@ PetscErrorCode BodyResetTraces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NaN or infinity in the solution, told with body, time and step. The sum of squares hands a NaN of any rank on; a maximum
-   over ranks may lose it. */
-static PetscErrorCode CheckFinite(Body body)
+/* A substep that failed, or NaN or infinity in its solution, told with body, time and step. The sum of squares hands a NaN of any rank
+   on; a maximum over ranks may lose it. */
+static PetscErrorCode CheckSubstep(Body body)
 {
-  TSConvergedReason reason;
-  PetscReal         norm;
+  MPI_Comm            comm = PetscObjectComm((PetscObject)body);
+  TSConvergedReason   reason;
+  SNESConvergedReason newton;
+  PetscReal           norm;
+  SNES                snes;
+  PetscInt            iterations;
 
   PetscFunctionBegin;
   PetscCall(TSGetConvergedReason(body->ts, &reason));
   PetscCall(VecNorm(body->state.u, NORM_2, &norm));
-  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)body), PETSC_ERR_FP, "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT "); is a time step too large, or a penalty too stiff for it?", body->hdr.name, (double)body->time, body->step);
+  if (!body->is_explicit && !body->linear) {
+    PetscCall(TSGetSNES(body->ts, &snes));
+    PetscCall(SNESGetConvergedReason(snes, &newton));
+    PetscCall(SNESGetIterationNumber(snes, &iterations));
+    if (newton < 0) {
+      PetscCall(BodyCheckInverted(body, body->time));
+      SETERRQ(comm, PETSC_ERR_NOT_CONVERGED, "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor", body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[newton], iterations, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+    }
+  }
+  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), comm, PETSC_ERR_FP, "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT "); is a time step too large, or a penalty too stiff for it?", body->hdr.name, (double)body->time, body->step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* All substeps, by the TS */
 PetscErrorCode BodyIntegrateWindow(Body body)
 {
-  const PetscBool keep_start = (PetscBool)(!body->is_explicit || body->layer_scatter);
-
   PetscFunctionBegin;
   if (body->step != body->saved_step) PetscCall(BodyRestore(body));
   for (body->substep = 0; body->substep < body->substeps; body->substep++) {
-    if (keep_start) {
+    if (body->keeps_start) {
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
     PetscCall(TSStep(body->ts));
     body->step++;
     body->time = body->saved_time + (body->substep + 1) * body->time_step;
-    PetscCall(CheckFinite(body));
+    PetscCall(CheckSubstep(body));
     if (body->is_explicit) PetscCall(BodyFinishSubstepExplicit(body));
     else PetscCall(BodyFinishSubstepImplicit(body));
     PetscCall(BodyWriteTraces(body, body->substep + 1));
+    if (body->substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
   }
   body->total_substeps += body->substeps;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,7 +2,7 @@
 #include "bodyimpl.h"
 
 PetscClassId  BODY_CLASSID = 0;
-PetscLogEvent BODY_Integrate, BODY_Response;
+PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_Tangent;
 
 /*@
   BodyRegisterAll - registers the class, its materials and elements
@@ -19,6 +19,8 @@ PetscErrorCode BodyRegisterAll(void)
   PetscCall(PetscClassIdRegister("Body", &BODY_CLASSID));
   PetscCall(PetscLogEventRegister("BodyIntegrate", BODY_CLASSID, &BODY_Integrate));
   PetscCall(PetscLogEventRegister("BodyResponse", BODY_CLASSID, &BODY_Response));
+  PetscCall(PetscLogEventRegister("BodyForce", BODY_CLASSID, &BODY_InternalForce));
+  PetscCall(PetscLogEventRegister("BodyTangent", BODY_CLASSID, &BODY_Tangent));
   PetscCall(MaterialRegisterAll());
   PetscCall(ElementRegisterAll());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -179,7 +181,7 @@ static PetscErrorCode SetUpRows(Body body)
   PetscCall(PetscCalloc4(rows->local, &body->conditions, rows->local, &body->held, rows->local, &body->flexibility, rows->local, &body->robin));
   PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[0]));
   PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[1]));
-  body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute);
+  body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute && !body->is_static);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,18 +199,27 @@ static PetscErrorCode SetUpRows(Body body)
 @*/
 PetscErrorCode BodySetUp(Body body)
 {
-  Vec *vecs[] = {&body->state.u, &body->state.v, &body->state.a, &body->saved.u, &body->saved.v, &body->saved.a, &body->substep_start.u, &body->substep_start.v, &body->internal_force, &body->previous_u, &body->kept[0], &body->kept[1], &body->kept[2], &body->kept[3], &body->work[0], &body->work[1], &body->work[2]};
+  Vec *always[] = {&body->state.u, &body->state.v, &body->state.a, &body->saved.u, &body->saved.v, &body->saved.a, &body->internal_force, &body->work[0], &body->work[1], &body->work[2]};
+  Vec *sweeps[] = {&body->previous_u, &body->kept[0], &body->kept[1], &body->kept[2], &body->kept[3]};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
-  for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(BodyCreateVec(body, vecs[i]));
   PetscCall(SetUpRows(body));
-  PetscCall(BodySetUpStiffness(body));
+  for (size_t i = 0; i < sizeof(always) / sizeof(always[0]); i++) PetscCall(BodyCreateVec(body, always[i]));
+  if (body->rows.global) {
+    for (size_t i = 0; i < sizeof(sweeps) / sizeof(sweeps[0]); i++) PetscCall(BodyCreateVec(body, sweeps[i]));
+  }
+  PetscCheck(!body->is_static || body->any_held || body->rows.global, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s' is static, but nothing holds it; prescribe displacements with -%sboundary_displacement", body->hdr.name, ((PetscObject)body)->prefix);
   PetscCall(BodySetUpMass(body));
-  PetscCall(BodyComputeStableStep(body));
   PetscCall(BodySetUpSubsteps(body));
+  body->keeps_start = (PetscBool)(!body->is_explicit || body->n_layer_dofs > 0 || body->loads);
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &body->keeps_start, 1, MPI_C_BOOL, MPI_LOR, PetscObjectComm((PetscObject)body)));
+  if (body->keeps_start) {
+    PetscCall(BodyCreateVec(body, &body->substep_start.u));
+    PetscCall(BodyCreateVec(body, &body->substep_start.v));
+  }
   PetscCall(CreateTraces(body));
   PetscCall(BodySetUpTime(body));
   PetscCall(TSViewFromOptions(body->ts, NULL, "-ts_view"));
@@ -241,10 +252,11 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec   *vecs[]   = {&b->state.u, &b->state.v, &b->state.a, &b->saved.u, &b->saved.v, &b->saved.a, &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u, &b->work[0], &b->work[1], &b->work[2], &b->positions, &b->mass_row_sum, &b->mass_diagonal, &b->inverse_mass, &b->row_vec[0], &b->row_vec[1], &b->layer_rhs, &b->layer_solution, &b->kept[0], &b->kept[1], &b->kept[2], &b->kept[3]};
+    Vec   *vecs[]   = {&b->state.u, &b->state.v, &b->state.a, &b->saved.u, &b->saved.v, &b->saved.a, &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u, &b->work[0], &b->work[1], &b->work[2], &b->positions, &b->mass_row_sum, &b->orphan_mass, &b->applied, &b->saved_applied, &b->mass_diagonal, &b->inverse_mass, &b->row_vec[0], &b->row_vec[1], &b->layer_rhs, &b->layer_solution, &b->kept[0], &b->kept[1], &b->kept[2], &b->kept[3]};
     Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in, &b->traces.displacement, &b->traces.velocity, &b->traces.acceleration, &b->traces.reaction};
 
     PetscCall(BodyDestroyResponse(b));
+    PetscCall(BodyLoadsDestroy(b));
     for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
     for (size_t i = 0; i < sizeof(traces) / sizeof(traces[0]); i++) PetscCall(TraceDestroy(traces[i]));
   }

@@ -20,44 +20,47 @@ typedef struct {
 struct _p_Body {
   PETSCHEADER(int);
   /* mesh and numbering: nodes of this rank are numbered owned first, then ghosts */
-  DM         dm;
-  PetscInt   dim;
-  PetscInt   owned_nodes, local_nodes;
-  PetscInt   vertex_start;
-  PetscInt  *node_of_vertex;
-  PetscInt  *connectivity;
-  PetscReal *coordinates; /* local_nodes x dim */
-  PetscInt  *ghost_dofs;  /* global numbers */
-  Vec        positions;   /* reference positions of owned nodes [m] */
-  Element    element;
-  Material   material;
+  DM             dm;
+  PetscInt       dim;
+  PetscInt       owned_nodes, local_nodes;
+  DMPolytopeType cell_shape;
+  PetscInt       vertex_start;
+  PetscInt      *node_of_vertex;
+  PetscInt      *connectivity;
+  PetscReal     *coordinates; /* local_nodes x dim */
+  PetscInt      *ghost_dofs;  /* global numbers */
+  Vec            positions;   /* reference positions of owned nodes [m] */
+  Element        element;
+  Material       material;
+  PetscBool      linear; /* constant stiffness */
   /* mass */
   BodyMassType      mass_type;
   PetscBool         mass_redistribute;
-  PetscBool        *in_layer;      /* per local node: belongs to a contact surface */
-  PetscInt          n_layer_dofs;  /* owned */
-  PetscInt         *layer_dofs;    /* owned dof (rank numbering) of massless nodes; empty unless redistributed */
-  Vec               mass_row_sum;  /* M 1: the lumped mass */
-  Vec               mass_diagonal; /* the mass matrix where it is diagonal, else NULL */
-  Mat               mass_matrix;   /* the mass matrix where it is not diagonal, else NULL */
-  Vec               inverse_mass;  /* diagonal: 1/m, 0 on massless nodes */
-  ConstrainedSolver mass_solver;   /* not diagonal; an implicit body makes it when first needed */
-  PetscReal         total_mass;
-  /* stiffness */
-  Mat stiffness;
+  PetscBool        *in_layer;                  /* per local node: belongs to a contact surface */
+  PetscInt          n_layer_dofs;              /* owned */
+  PetscInt         *layer_dofs;                /* owned dof (rank numbering) of massless nodes; empty unless redistributed */
+  Vec               mass_row_sum;              /* M 1: the lumped mass */
+  Vec               mass_diagonal;             /* the mass matrix where it is diagonal, else NULL */
+  Mat               mass_matrix;               /* the mass matrix where it is not diagonal, else NULL */
+  Vec               orphan_mass;               /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
+  Vec               inverse_mass;              /* diagonal: 1/m, 0 on massless nodes */
+  ConstrainedSolver mass_solver;               /* not diagonal; an implicit body makes it when first needed */
+  PetscReal         total_mass, mass_shift[3]; /* [kg]; how far redistribution has moved the centre of mass [m] */
+  Mat               stiffness;                 /* of the undeformed body; NULL until BodyGetStiffness() */
   /* time */
-  TS        ts;
-  PetscBool is_explicit;
-  PetscReal requested_step; /* 0: the controller step; < 0: automatic */
-  PetscReal controller_step, time_step, time_start;
-  PetscInt  substeps;
-  PetscReal alpha_m, alpha_f, gamma, beta;
-  PetscReal stable_step;
+  TS         ts;
+  PetscBool  is_explicit, is_static;
+  PetscReal  requested_step; /* 0: the controller step; < 0: automatic */
+  PetscReal  controller_step, time_step, time_start;
+  PetscInt   substeps;
+  PetscReal  alpha_m, alpha_f, gamma, beta;
+  PetscReal  stable_step;       /* 0 until BodyComputeStableStep() */
+  PetscReal *zero_displacement; /* of the rank's nodes, while that runs */
   /* state */
-  PetscReal    initial_velocity[3], initial_displacement[3];
-  BodyState    state, saved, substep_start;
+  BodyState    state, saved, substep_start; /* of the latter, u and v only, and NULL where nobody reads it */
   PetscReal    time, saved_time;
   PetscInt     step, saved_step;
+  PetscBool    keeps_start;    /* substep_start is there */
   Vec          internal_force; /* at state.u */
   Vec          previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
   PetscBool    swept;          /* previous_u holds such a state */
@@ -79,25 +82,44 @@ struct _p_Body {
   PetscInt              substep; /* 0 to substeps - 1 */
   Vec                   row_vec[2];
   Mat                   shifted; /* implicit: stiffness + shift mass */
-  ConstrainedSolver     solver;  /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
+  PetscReal             shift;
+  PetscReal             force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
+  ConstrainedSolver     solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
   IS                    layer_is;
   Vec                   layer_rhs, layer_solution;
   VecScatter            layer_scatter;
   struct _BodyResponse *response;
-  struct _BodyLoads    *loads; /* conditions on surfaces and forces from outside; NULL: none */
-  PetscInt64            total_substeps;
-  PetscLogDouble        seconds;
-  PetscBool             setup;
+  /* loads */
+  struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
+  PetscInt           n_held;
+  PetscBool          any_held;                  /* on any rank */
+  const PetscInt    *held_dofs;                 /* owned dofs whose displacement is prescribed; owned by the loads */
+  PetscBool          unloaded;                  /* while responses are probed: no forces from outside, held dofs at zero */
+  Vec                applied, saved_applied;    /* forces from outside and reactions of held dofs; NULL without loads [N] */
+  PetscReal          external_work, saved_work; /* done by them since the start [J] */
+  PetscInt64         total_substeps;
+  PetscLogDouble     seconds;
+  PetscBool          setup;
 };
 
-PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response;
+PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_Tangent;
 
 PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
 PETSC_INTERN PetscErrorCode BodyCreateVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
-PETSC_INTERN PetscErrorCode BodySetUpStiffness(Body);
+PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
+PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyCheckInverted(Body, PetscReal);
+PETSC_INTERN PetscErrorCode BodyZeroHeld(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyPrescribeHeld(Body, PetscReal, Vec, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyAddExternalForce(Body, PetscReal, PetscScalar, Vec);
+PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
+PETSC_INTERN PetscErrorCode BodyAddWork(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
+PETSC_INTERN PetscErrorCode BodyRedistributeOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);

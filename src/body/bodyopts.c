@@ -61,7 +61,8 @@ static PetscErrorCode CreateTime(Body body)
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
   PetscCall(PetscStrcmp(type, TSALPHA2, &alpha2));
   PetscCall(PetscStrcmp(type, TSCENTRALDIFFERENCE, &body->is_explicit));
-  PetscCheck(alpha2 || body->is_explicit, comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%sts_type '%s'; known: alpha2 (implicit), centraldifference (explicit)", prefix, type);
+  PetscCall(PetscStrcmp(type, TSSTATIC, &body->is_static));
+  PetscCheck(alpha2 || body->is_explicit || body->is_static, comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%sts_type '%s'; known: alpha2 (implicit), centraldifference (explicit), static (without inertia)", prefix, type);
   PetscCall(ReadTimeStep(body, &hidden));
   PetscCall(TSCreate(comm, &body->ts));
   PetscCall(TSSetOptionsPrefix(body->ts, prefix));
@@ -81,23 +82,35 @@ static PetscErrorCode CreateTime(Body body)
     PetscCall(PetscOptionsSetValue(NULL, full, "auto"));
     PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_time_step", NULL)); /* it has been used */
   }
-  if (alpha2) {
+  if (!body->is_explicit) {
     PetscCall(TSAlpha2GetParams(body->ts, &body->alpha_m, &body->alpha_f, &body->gamma, &body->beta));
+    if (body->is_static) PetscCheck(body->alpha_m == 1 && body->alpha_f == 1, comm, PETSC_ERR_USER_INPUT, "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", prefix);
     PetscCheck(body->beta > 0 && body->alpha_f > 0 && body->alpha_m > 0 && body->gamma > 0, comm, PETSC_ERR_USER_INPUT, "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose -%sts_type centraldifference", prefix, (double)body->alpha_m, (double)body->alpha_f, (double)body->gamma, (double)body->beta, prefix);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadVector(Body body, const char option[], const char text[], PetscReal value[])
+/* Mass matrices that are not diagonal have to be factored, which explicit bodies in two and three dimensions do not pay for */
+static PetscErrorCode ReadMass(Body body)
 {
-  PetscInt  n = 3;
-  PetscBool set;
-
   PetscFunctionBegin;
+  body->mass_type         = body->is_explicit && body->dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
+  body->mass_redistribute = PETSC_TRUE;
   PetscObjectOptionsBegin((PetscObject)body);
-  PetscCall(PetscOptionsRealArray(option, text, "BodySetFromOptions", value, &n, &set));
+  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type, (PetscEnum *)&body->mass_type, NULL));
+  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions", body->mass_redistribute, &body->mass_redistribute, NULL));
   PetscOptionsEnd();
-  PetscCheck(!set || n == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " components; body '%s' is %" PetscInt_FMT "-dimensional", ((PetscObject)body)->prefix, option + 1, n, body->hdr.name, body->dim);
+  if (body->is_static) body->mass_redistribute = PETSC_FALSE; /* it has no inertia to move */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadLoads(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyLoadsSetFromOptions(body));
+  PetscCall(BodyLoadsGetHeld(body, &body->n_held, &body->held_dofs));
+  body->any_held = (PetscBool)(body->n_held > 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &body->any_held, 1, MPI_C_BOOL, MPI_LOR, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,13 +126,12 @@ static PetscErrorCode ReadVector(Body body, const char option[], const char text
 + -<body>_dm_plex_...                                - the mesh: `DMPLEX`'s own options
 . -<body>_material_type, -<body>_density, ...        - the material, see `MaterialSetFromOptions()`
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
-. -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged
+. -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
 . -<body>_mass_redistribute (true|false)             - moves the mass of contact nodes to their inner neighbours, default true
-. -<body>_ts_type (alpha2|centraldifference)         - implicit or explicit, default alpha2
+. -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
 . -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
 . -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
-. -<body>_initial_velocity v[,v,v]                   - [m/s], default 0
-- -<body>_initial_displacement u[,u,u]               - [m], default 0
+- -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
 
   Level: beginner
 
@@ -134,17 +146,29 @@ PetscErrorCode BodySetFromOptions(Body body)
   PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->material));
   PetscCall(MaterialSetOptionsPrefix(body->material, ((PetscObject)body)->prefix));
   PetscCall(MaterialSetFromOptions(body->material));
-  body->mass_type         = BODY_MASS_AVERAGED;
-  body->mass_redistribute = PETSC_TRUE;
-  PetscObjectOptionsBegin((PetscObject)body);
-  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type, (PetscEnum *)&body->mass_type, NULL));
-  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions", body->mass_redistribute, &body->mass_redistribute, NULL));
-  PetscOptionsEnd();
+  PetscCall(MaterialIsLinear(body->material, &body->linear));
   PetscCall(CreateMesh(body));
   PetscCall(BodySetUpLayout(body));
-  PetscCall(ReadVector(body, "-initial_velocity", "Initial velocity [m/s]", body->initial_velocity));
-  PetscCall(ReadVector(body, "-initial_displacement", "Initial displacement [m]", body->initial_displacement));
   PetscCall(CreateTime(body));
+  PetscCall(ReadMass(body));
+  PetscCall(ReadLoads(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* M a = forces, where there are any */
+static PetscErrorCode ComputeInitialAcceleration(Body body)
+{
+  Vec       force = body->work[0];
+  PetscReal norm;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(body->internal_force, force));
+  PetscCall(VecScale(force, -1));
+  PetscCall(BodyAddExternalForce(body, body->time, 1, force));
+  PetscCall(VecNorm(force, NORM_INFINITY, &norm));
+  PetscCall(VecZeroEntries(body->state.a));
+  if (norm > 0) PetscCall(BodySolveMass(body, force, 0, PETSC_FALSE, body->state.a));
+  if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, NULL, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,31 +190,24 @@ PetscErrorCode BodySetFromOptions(Body body)
 PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *), void *ctx)
 {
   PetscScalar *u, *v;
-  PetscReal    norm;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup && !body->step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp(), before the first step");
-  PetscCall(VecGetArrayWrite(body->state.u, &u));
-  PetscCall(VecGetArrayWrite(body->state.v, &v));
-  for (PetscInt node = 0; node < body->owned_nodes; node++) {
-    for (PetscInt d = 0; d < body->dim; d++) {
-      u[node * body->dim + d] = body->initial_displacement[d];
-      v[node * body->dim + d] = body->initial_velocity[d];
-    }
-    if (function) PetscCall((*function)(body->dim, body->coordinates + node * body->dim, u + node * body->dim, v + node * body->dim, ctx));
+  PetscCall(BodyLoadsInitialState(body, body->state.u, body->state.v));
+  if (function) {
+    PetscCall(VecGetArray(body->state.u, &u));
+    PetscCall(VecGetArray(body->state.v, &v));
+    for (PetscInt node = 0; node < body->owned_nodes; node++) PetscCall((*function)(body->dim, body->coordinates + node * body->dim, u + node * body->dim, v + node * body->dim, ctx));
+    PetscCall(VecRestoreArray(body->state.v, &v));
+    PetscCall(VecRestoreArray(body->state.u, &u));
   }
-  PetscCall(VecRestoreArrayWrite(body->state.v, &v));
-  PetscCall(VecRestoreArrayWrite(body->state.u, &u));
+  PetscCall(BodyPrescribeHeld(body, body->time, body->state.u, body->state.v, NULL));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
-  PetscCall(VecNorm(body->internal_force, NORM_INFINITY, &norm));
-  PetscCall(VecZeroEntries(body->state.a));
-  if (norm > 0) {
-    PetscCall(VecCopy(body->internal_force, body->work[0]));
-    PetscCall(VecScale(body->work[0], -1));
-    PetscCall(BodySolveMass(body, body->work[0], 0, PETSC_FALSE, body->state.a));
-  }
+  PetscCall(BodyCheckInverted(body, body->time));
+  PetscCall(ComputeInitialAcceleration(body));
   PetscCall(BodyWriteTraces(body, 0));
+  PetscCall(BodySetUpWork(body));
   PetscCall(BodySave(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,19 @@
 /* What a body tells about itself. */
 #include "bodyimpl.h"
 
+/* What there is to tell of bodies in two and three dimensions */
+static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
+{
+  PetscInt count = body->element->count;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->cell_shape]));
+  if (body->is_explicit) PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->stable_step));
+  if (body->mass_shift[0] != 0 || body->mass_shift[1] != 0 || body->mass_shift[2] != 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n", (double)body->mass_shift[0], (double)body->mass_shift[1], (double)body->mass_shift[2]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyView - prints a body
 
@@ -25,6 +38,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscCall(VecGetSize(body->positions, &dofs));
   PetscCall(TSGetType(body->ts, &type));
   PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name, dofs, (double)body->total_mass, BodyMassTypes[body->mass_type], body->mass_redistribute ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s", (double)body->time_step));
+  if (body->dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,7 +137,7 @@ PetscErrorCode BodyGetSubsteps(Body body, PetscInt *substeps)
 /*@
   BodyGetStableStep - the largest step for which central differences are stable, from below
 
-  Not Collective
+  Collective
 
   Input Parameter:
 . body - the `Body`, set up
@@ -142,6 +156,7 @@ PetscErrorCode BodyGetStableStep(Body body, PetscReal *step)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyComputeStableStep(body));
   *step = body->stable_step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -231,7 +246,7 @@ PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
 . body - the `Body`
 
   Output Parameter:
-. redistributed - `PETSC_TRUE` if so
+. redistributed - `PETSC_TRUE` if so, also of a static body, which has no inertia at all
 
   Level: intermediate
 
@@ -241,7 +256,7 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *redistributed = body->mass_redistribute;
+  *redistributed = (PetscBool)(body->mass_redistribute || body->is_static);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -271,15 +286,16 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
 PetscErrorCode BodyGetNewmark(Body body, PetscReal *v_u, PetscReal *v_v, PetscReal *v_a, PetscReal *a_u, PetscReal *a_v, PetscReal *a_a)
 {
   const PetscReal dt = body->time_step, beta = body->beta, gamma = body->gamma;
+  const PetscBool massless = (PetscBool)(body->mass_redistribute || body->is_static);
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->is_explicit, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
-  *a_u = body->mass_redistribute ? 0 : 1 / (beta * dt * dt);
-  *a_v = body->mass_redistribute ? 0 : -1 / (beta * dt);
-  *a_a = body->mass_redistribute ? 0 : -(1 - 2 * beta) / (2 * beta);
-  *v_u = body->mass_redistribute ? 1 / dt : gamma / (beta * dt);
-  *v_v = body->mass_redistribute ? 0 : 1 - gamma / beta;
-  *v_a = body->mass_redistribute ? 0 : dt * (1 - gamma / (2 * beta));
+  *a_u = massless ? 0 : 1 / (beta * dt * dt);
+  *a_v = massless ? 0 : -1 / (beta * dt);
+  *a_a = massless ? 0 : -(1 - 2 * beta) / (2 * beta);
+  *v_u = massless ? 1 / dt : gamma / (beta * dt);
+  *v_v = massless ? 0 : 1 - gamma / beta;
+  *v_a = massless ? 0 : dt * (1 - gamma / (2 * beta));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

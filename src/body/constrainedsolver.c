@@ -20,6 +20,7 @@ struct _n_ConstrainedSolver {
   PetscReal    *mine, *constrained; /* flexibility of a row, 0 where it is held, less than 0 where it is free: this rank's rows, and all rows */
   PetscInt      n;                  /* how many of them */
   PetscInt     *rows;               /* which */
+  PetscBool    *stale;              /* per row: its column was made with an earlier A */
   Vec          *columns;            /* per row: A^{-1} B^T e, or NULL until needed */
   PetscScalar  *compliance;         /* global x global, by columns; column j valid where columns[j] is */
   PetscScalar  *factor;             /* n x n, LU of the constrained part */
@@ -31,19 +32,34 @@ struct _n_ConstrainedSolver {
 
 /* Bodies up to this size are factored whole on every rank; larger ones by MUMPS */
 #define MAX_REDUNDANT_SIZE 5000
-/* PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies on one rank */
-#define MAX_SEQUENTIAL_SIZE 50000
+/* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension
+   of the blocks. In more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
+static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
+/* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
+#define MAX_DIRECT_SIZE_3D 150000
+/* of multigrid: what is left of the residual must not show in energies and momenta */
+#define ITERATIVE_TOLERANCE 1e-12
 
 /* How A is factored, unless options say otherwise */
-static PetscErrorCode ChooseFactorisation(KSP ksp, PetscInt n)
+static PetscErrorCode ChooseSolver(KSP ksp, Mat A)
 {
   PetscMPIInt size;
+  PetscInt    n, dim;
   PC          pc;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(MatGetSize(A, &n, NULL));
+  PetscCall(MatGetBlockSize(A, &dim));
+  dim = PetscMin(dim, 3);
   PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetTolerances(ksp, ITERATIVE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
+  if (dim == 3 && n > MAX_DIRECT_SIZE_3D) {
+    PetscCall(KSPSetType(ksp, KSPCG));
+    PetscCall(PCSetType(pc, PCGAMG));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
   if (size > 1 && n <= MAX_REDUNDANT_SIZE) {
     KSP inner;
 
@@ -52,12 +68,12 @@ static PetscErrorCode ChooseFactorisation(KSP ksp, PetscInt n)
     PetscCall(KSPSetType(inner, KSPPREONLY));
     PetscCall(KSPGetPC(inner, &pc));
     PetscCall(PCSetType(pc, PCLU));
-    PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+    PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PCSetType(pc, PCLU));
-  if (size > 1 || n > MAX_SEQUENTIAL_SIZE) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  else PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+  if (size > 1 || n > max_sequential_size[dim]) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  else PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,7 +82,6 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
   ConstrainedSolver s;
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
   PetscMPIInt       size;
-  PetscInt          n;
   PetscBool         direct;
 
   PetscFunctionBegin;
@@ -76,9 +91,8 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
   PetscCall(KSPSetOperators(s->ksp, A, A));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   s->size = size;
-  PetscCall(MatGetSize(A, &n, NULL));
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
-  PetscCall(ChooseFactorisation(s->ksp, n));
+  PetscCall(ChooseSolver(s->ksp, A));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(KSPSetUp(s->ksp));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));
@@ -100,7 +114,8 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
     for (PetscMPIInt r = 0; r < size; total += s->counts[r++]) s->offsets[r] = total;
   }
   PetscCall(PetscCalloc6(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->active_columns, s->global * s->global, &s->compliance));
-  PetscCall(PetscMalloc4(s->global * s->global, &s->factor, s->global, &s->pivots, s->global, &s->gathered, s->global, &s->force));
+  PetscCall(PetscCalloc5(s->global * s->global, &s->factor, s->global, &s->pivots, s->global, &s->gathered, s->global, &s->force, s->global, &s->stale));
+  for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
   *solver = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -113,7 +128,7 @@ PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *solver)
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
   PetscCall(PetscFree6(s->mine, s->constrained, s->rows, s->columns, s->active_columns, s->compliance));
-  PetscCall(PetscFree4(s->factor, s->pivots, s->gathered, s->force));
+  PetscCall(PetscFree5(s->factor, s->pivots, s->gathered, s->force, s->stale));
   PetscCall(PetscFree2(s->counts, s->offsets));
   PetscCall(VecDestroy(&s->row));
   PetscCall(VecDestroy(&s->rhs));
@@ -148,7 +163,8 @@ static PetscErrorCode GatherRows(ConstrainedSolver s, Vec z)
 static PetscErrorCode MakeColumn(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
-  PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+  if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+  s->stale[j] = PETSC_FALSE;
   PetscCall(VecZeroEntries(s->row));
   if (j >= s->begin && j < s->begin + s->local) PetscCall(VecSetValue(s->row, j, 1.0, INSERT_VALUES));
   PetscCall(VecAssemblyBegin(s->row));
@@ -160,18 +176,16 @@ static PetscErrorCode MakeColumn(ConstrainedSolver s, PetscInt j)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of this rank's rows are held from now on, or on springs with those flexibilities (NULL: all held). Collective. */
-PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[], const PetscReal flexibility[])
+/* The constraint forces' matrix, for the rows that are constrained now */
+static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 {
   PetscBLASInt n, info;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
-  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL, PetscObjectComm((PetscObject)s->ksp)));
   s->n = 0;
   for (PetscInt j = 0; j < s->global; j++) {
     if (s->constrained[j] < 0) continue;
-    if (!s->columns[j]) PetscCall(MakeColumn(s, j));
+    if (!s->columns[j] || s->stale[j]) PetscCall(MakeColumn(s, j));
     s->active_columns[s->n] = s->columns[j];
     s->rows[s->n++]         = j;
   }
@@ -181,6 +195,26 @@ PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscB
   PetscCall(PetscBLASIntCast(s->n, &n));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, s->factor, &n, s->pivots, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "The prescribed contact rows of a body are not independent (LAPACK getrf info %d); is a node in two contact pairs?", (int)info);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which of this rank's rows are held from now on, or on springs with those flexibilities (NULL: all held). Collective. */
+PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[], const PetscReal flexibility[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
+  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL, PetscObjectComm((PetscObject)s->ksp)));
+  PetscCall(FactorConstraints(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A has new values, as that of a nonlinear body has in every Newton iteration */
+PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  PetscCall(KSPSetUp(s->ksp));
+  for (PetscInt j = 0; j < s->global; j++) s->stale[j] = PETSC_TRUE;
+  PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,26 +1,60 @@
 /* A body under central differences. */
 #include "bodyimpl.h"
 
-/* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (contact forces - internal force)_L,
-   with prescribed rows held and Robin rows on their springs. One round is exact for linear materials. */
-static PetscErrorCode BalanceLayer(Body body, PetscReal position, Vec u)
+/* Rounds of chord Newton's method that the layer of a nonlinear body may take, and when it is in balance: what is left, relative to
+   the largest change */
+#define MAX_BALANCE_ROUNDS 100
+#define BALANCE_TOLERANCE  1e-12
+
+/* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (forces - internal force)_L, with prescribed
+   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the undeformed layer's
+   factors. */
+static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position, Vec u)
 {
-  Vec force = body->work[0];
+  Vec       force = body->work[0];
+  PetscReal first = 0;
 
   PetscFunctionBegin;
-  PetscCall(BodyComputeInternalForce(body, u, body->internal_force));
-  PetscCall(VecCopy(body->internal_force, force));
-  PetscCall(VecScale(force, -1));
-  PetscCall(BodyAddContactForce(body, position, 1, u, force));
-  PetscCall(VecScatterBegin(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(ConstrainedSolverSolve(body->solver, body->layer_rhs, body->layer_solution));
-  PetscCall(VecScatterBegin(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
+  for (PetscInt round = 0; round < (body->linear ? 1 : MAX_BALANCE_ROUNDS); round++) {
+    PetscReal change;
+
+    PetscCall(BodyComputeInternalForce(body, u, body->internal_force));
+    PetscCall(BodyCheckInverted(body, time));
+    PetscCall(VecCopy(body->internal_force, force));
+    PetscCall(VecScale(force, -1));
+    PetscCall(BodyAddExternalForce(body, time, 1, force));
+    PetscCall(BodyAddContactForce(body, position, 1, u, force));
+    PetscCall(VecScatterBegin(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterEnd(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(ConstrainedSolverSolve(body->solver, body->layer_rhs, body->layer_solution));
+    PetscCall(VecScatterBegin(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecScatterEnd(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
+    if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(VecNorm(body->layer_solution, NORM_2, &change));
+    first = PetscMax(first, change);
+    if (change <= BALANCE_TOLERANCE * first) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED, "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or -%smass_redistribute false", body->hdr.name, MAX_BALANCE_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+}
+
+/* a = -f / m in one pass */
+static PetscErrorCode DivideByMass(Body body, Vec A)
+{
+  const PetscScalar *force, *inverse;
+  PetscScalar       *a;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(body->internal_force, &force));
+  PetscCall(VecGetArrayRead(body->inverse_mass, &inverse));
+  PetscCall(VecGetArrayWrite(A, &a));
+  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) a[i] = -force[i] * inverse[i];
+  PetscCall(VecRestoreArrayWrite(A, &a));
+  PetscCall(VecRestoreArrayRead(body->inverse_mass, &inverse));
+  PetscCall(VecRestoreArrayRead(body->internal_force, &force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `TSCentralDifferenceFn`: contact conditions on U, then the acceleration it brings about */
+/* `TSCentralDifferenceFn`: held and contact conditions on U, then the acceleration it brings about */
 static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
 {
   Body            body       = (Body)ctx;
@@ -30,25 +64,91 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
 
   PetscFunctionBegin;
   (void)ts;
-  (void)t;
   (void)V;
+  PetscCall(BodyPrescribeHeld(body, t, U, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
-  if (body->layer_scatter) PetscCall(BalanceLayer(body, position, U));
+  if (body->layer_scatter) PetscCall(BalanceLayer(body, t, position, U));
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
-  if (body->inverse_mass && !body->n_forced) {
-    PetscCall(VecPointwiseMult(A, body->inverse_mass, body->internal_force));
-    PetscCall(VecScale(A, -1));
+  PetscCall(BodyCheckInverted(body, t));
+  if (body->inverse_mass && !body->n_forced && !body->loads) {
+    PetscCall(DivideByMass(body, A));
     if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecCopy(body->internal_force, force));
   PetscCall(VecScale(force, -1));
+  PetscCall(BodyAddExternalForce(body, t, 1, force));
   PetscCall(BodyAddContactForce(body, position, 1, U, force));
   PetscCall(BodySolveMass(body, force, position, prescribed, A));
+  PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The stiffness of the massless layer alone, factored once */
+/* The number of each dof of this rank's nodes, ghosts too, within the layer; -1 for others */
+static PetscErrorCode NumberLayer(Body body, PetscInt first, Vec *numbers, PetscScalar **number)
+{
+  PetscScalar *array;
+  Vec          local;
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateVec(body, numbers));
+  PetscCall(VecSet(*numbers, -1));
+  PetscCall(VecGetArray(*numbers, &array));
+  for (PetscInt i = 0; i < body->n_layer_dofs; i++) array[body->layer_dofs[i]] = first + i;
+  PetscCall(VecRestoreArray(*numbers, &array));
+  local = *numbers;
+  if (body->rows.size > 1) {
+    PetscCall(VecGhostUpdateBegin(*numbers, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostUpdateEnd(*numbers, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostGetLocalForm(*numbers, &local));
+  }
+  PetscCall(PetscMalloc1(body->local_nodes * body->dim, number));
+  PetscCall(VecGetArray(local, &array));
+  PetscCall(PetscArraycpy(*number, array, body->local_nodes * body->dim));
+  PetscCall(VecRestoreArray(local, &array));
+  if (body->rows.size > 1) PetscCall(VecGhostRestoreLocalForm(*numbers, &local));
+  PetscCall(VecDestroy(numbers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness of the massless layer, from the elements that touch it: the whole body's matrix would be many times as large */
+static PetscErrorCode AssembleLayer(Body body, Mat *K)
+{
+  const PetscInt n = body->element->nodes * body->dim;
+  PetscInt       end, dofs[ELEMENT_MAX_DOFS];
+  PetscScalar    element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *number, *zero;
+  Vec            numbers;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), K));
+  PetscCall(MatSetSizes(*K, body->n_layer_dofs, body->n_layer_dofs, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(*K, body->dim));
+  PetscCall(MatSetType(*K, MATAIJ));
+  PetscCall(MatSetUp(*K));
+  PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatGetOwnershipRange(*K, &end, NULL));
+  PetscCall(NumberLayer(body, end, &numbers, &number));
+  PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    const PetscInt *nodes   = body->connectivity + e * body->element->nodes;
+    PetscBool       touches = PETSC_FALSE;
+
+    for (PetscInt i = 0; i < n; i++) {
+      dofs[i] = (PetscInt)number[nodes[i / body->dim] * body->dim + i % body->dim];
+      if (dofs[i] >= 0) touches = PETSC_TRUE;
+    }
+    if (!touches) continue;
+    PetscCall((*body->element->ops.stiffness)(body->element, e, zero, element));
+    PetscCall(MatSetValues(*K, n, dofs, n, dofs, element, ADD_VALUES));
+  }
+  PetscCall(PetscFree(zero));
+  PetscCall(PetscFree(number));
+  PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The layer's balance, its matrix factored once */
 static PetscErrorCode SetUpLayerBalance(Body body)
 {
   Mat      K, B;
@@ -61,7 +161,7 @@ static PetscErrorCode SetUpLayerBalance(Body body)
   PetscCall(PetscMalloc1(body->n_layer_dofs, &global));
   for (PetscInt i = 0; i < body->n_layer_dofs; i++) global[i] = rstart + body->layer_dofs[i];
   PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), body->n_layer_dofs, global, PETSC_OWN_POINTER, &body->layer_is));
-  PetscCall(MatCreateSubMatrix(body->stiffness, body->layer_is, body->layer_is, MAT_INITIAL_MATRIX, &K));
+  PetscCall(AssembleLayer(body, &K));
   PetscCall(MatGetOwnershipRange(body->interface, &row_begin, NULL));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
   PetscCall(MatCreateSubMatrix(body->interface, rows, body->layer_is, MAT_INITIAL_MATRIX, &B));
@@ -105,5 +205,6 @@ PetscErrorCode BodyFinishSubstepExplicit(Body body)
     PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   }
   if (body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->substep + 1) / body->substeps, body->state.v));
+  PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

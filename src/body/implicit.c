@@ -2,7 +2,26 @@
 #include "bodyimpl.h"
 #include <sys/petsccompat.h>
 
-/* F = M A + internal force - contact forces, with prescribed rows projected out */
+/* What a nonlinear residual is measured against: its terms, and the round-off of the largest numbers in it */
+static PetscErrorCode NoteScale(Body body, Vec U, Vec inertia)
+{
+  PetscReal force, mass = 0, position = 0;
+
+  PetscFunctionBegin;
+  PetscCall(VecNorm(body->internal_force, NORM_2, &force));
+  if (!body->is_static) {
+    PetscCall(VecNorm(inertia, NORM_2, &mass));
+    /* the acceleration is a difference of displacements over dt^2 */
+    PetscCall(VecPointwiseMult(body->work[2], body->mass_row_sum, U));
+    PetscCall(VecNorm(body->work[2], NORM_2, &position));
+    position *= body->shift;
+  }
+  body->force_scale = force + mass;
+  body->force_floor = 8 * PETSC_MACHINE_EPSILON * (position + force);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = M A + internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */
 static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
 {
   Body            body     = (Body)ctx;
@@ -10,37 +29,59 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
 
   PetscFunctionBegin;
   (void)ts;
-  (void)t;
   (void)V;
-  /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's */
-  if (body->n_prescribed && body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
-  if (body->mass_diagonal) PetscCall(VecPointwiseMult(F, body->mass_diagonal, A));
-  else PetscCall(MatMult(body->mass_matrix, A, F));
+  if (body->is_static) PetscCall(VecZeroEntries(F));
+  else {
+    /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's, or the load's */
+    if (body->n_prescribed && body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
+    if (body->any_held && !body->mass_diagonal) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
+    PetscCall(BodyMultiplyMass(body, A, F));
+  }
+  if (!body->linear) PetscCall(NoteScale(body, U, F));
   PetscCall(VecAXPY(F, 1, body->internal_force));
+  PetscCall(BodyAddExternalForce(body, t, -1, F));
   PetscCall(BodyAddContactForce(body, position, -1, U, F));
   PetscCall(BodyPrescribe(body, NULL, position, F));
+  PetscCall(BodyZeroHeld(body, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix is constant, and was assembled at set-up */
+/* The effective matrix K + shift M, its held dofs eliminated */
+static PetscErrorCode AssembleShifted(Body body, Vec u)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyAssembleTangent(body, u, body->shifted));
+  if (body->shift > 0 && body->mass_diagonal) {
+    PetscCall(VecCopy(body->mass_diagonal, body->work[0]));
+    PetscCall(VecScale(body->work[0], body->shift));
+    PetscCall(MatDiagonalSet(body->shifted, body->work[0], ADD_VALUES));
+  } else if (body->shift > 0) PetscCall(MatAXPY(body->shifted, body->shift, body->mass_matrix, SAME_NONZERO_PATTERN));
+  PetscCall(BodyEliminateHeld(body, body->shifted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The matrix of a linear body is constant, and was assembled at set-up */
 static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P, void *ctx)
 {
+  Body body = (Body)ctx;
+
   PetscFunctionBegin;
   (void)ts;
   (void)t;
-  (void)U;
   (void)V;
   (void)A;
   (void)shift_v;
   (void)shift_a;
   (void)J;
   (void)P;
-  (void)ctx;
+  if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AssembleShifted(body, U));
+  PetscCall(ConstrainedSolverRefactor(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First iterate: the last displacement, with prescribed rows in place. Also brings the acceleration, which TSALPHA2 would
+/* First iterate: the last displacement, of nonlinear bodies that at the last velocity, with held dofs and prescribed rows in place. Also brings the acceleration, which TSALPHA2 would
    take from its last step, even if that step has been undone since. */
 static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 {
@@ -48,9 +89,10 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 
   PetscFunctionBegin;
   (void)ts;
-  (void)V0;
   PetscCall(VecCopy(body->state.a, A0));
-  PetscCall(VecCopy(X0, X1));
+  if (body->linear || body->is_static) PetscCall(VecCopy(X0, X1));
+  else PetscCall(VecWAXPY(X1, body->time_step, V0, X0)); /* a body that turns fast would need many iterations from where it was */
+  PetscCall(BodyPrescribeHeld(body, body->time + body->time_step, X1, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, (PetscReal)(body->substep + 1) / body->substeps, X1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,25 +121,81 @@ static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The effective matrix K + alpha_m / (alpha_f beta dt^2) M, factored once */
-PetscErrorCode BodySetUpImplicit(Body body)
+/* Newton's method has converged where the residual is small against the forces that it is the balance of */
+static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
 {
-  const PetscReal shift  = body->alpha_m / (body->alpha_f * body->beta * PetscSqr(body->time_step));
-  const char     *prefix = ((PetscObject)body)->prefix;
-  SNES            snes;
-  SNESLineSearch  line_search;
-  KSP             ksp;
-  PC              pc;
-  Vec             residual;
-  char            outer[128];
+  Body      body = (Body)ctx;
+  PetscReal rtol, atol;
 
   PetscFunctionBegin;
-  PetscCall(MatDuplicate(body->stiffness, MAT_COPY_VALUES, &body->shifted));
-  if (body->mass_diagonal) {
-    PetscCall(VecCopy(body->mass_diagonal, body->work[0]));
-    PetscCall(VecScale(body->work[0], shift));
-    PetscCall(MatDiagonalSet(body->shifted, body->work[0], ADD_VALUES));
-  } else PetscCall(MatAXPY(body->shifted, shift, body->mass_matrix, SAME_NONZERO_PATTERN));
+  (void)xnorm;
+  (void)gnorm;
+  PetscCall(SNESGetTolerances(snes, &atol, &rtol, NULL, NULL, NULL));
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
+  else if (fnorm <= atol) *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (it && fnorm <= rtol * body->force_scale + body->force_floor) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For CG with multigrid: what the body can do without strain */
+static PetscErrorCode SetNearNullSpace(Body body)
+{
+  MatNullSpace rigid;
+  Vec          coordinates;
+
+  PetscFunctionBegin;
+  if (body->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(body->positions, &coordinates));
+  PetscCall(VecCopy(body->positions, coordinates));
+  PetscCall(VecSetBlockSize(coordinates, body->dim));
+  PetscCall(MatSetBlockSize(body->shifted, body->dim));
+  PetscCall(MatNullSpaceCreateRigidBody(coordinates, &rigid));
+  PetscCall(MatSetNearNullSpace(body->shifted, rigid));
+  PetscCall(MatNullSpaceDestroy(&rigid));
+  PetscCall(VecDestroy(&coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Newton's method for nonlinear bodies; one iteration of it for linear ones */
+static PetscErrorCode SetUpNewton(Body body, SNES snes)
+{
+  SNESLineSearch line_search;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetLineSearch(snes, &line_search));
+  if (!body->linear) {
+    PetscCall(SNESSetTolerances(snes, 1e-30, 1e-12, 1e-15, 50, PETSC_CURRENT));
+    PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
+    PetscCall(SNESSetFromOptions(snes));
+    PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SNESSetLagJacobian(snes, -2));
+  PetscCall(SNESSetLagJacobianPersists(snes, PETSC_TRUE));
+  PetscCall(SNESSetLagPreconditioner(snes, -2));
+  PetscCall(SNESSetLagPreconditionerPersists(snes, PETSC_TRUE));
+  PetscCall(SNESSetConvergenceTest(snes, StopAfterOneIteration, NULL, NULL));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+  PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The effective matrix K + alpha_m / (alpha_f beta dt^2) M; of linear bodies, factored once */
+PetscErrorCode BodySetUpImplicit(Body body)
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  SNES        snes;
+  KSP         ksp;
+  PC          pc;
+  Vec         residual;
+  char        outer[128];
+
+  PetscFunctionBegin;
+  body->shift = body->is_static ? 0 : body->alpha_m / (body->alpha_f * body->beta * PetscSqr(body->time_step));
+  PetscCall(BodyCreateMatrix(body, &body->shifted));
+  PetscCall(AssembleShifted(body, NULL));
+  PetscCall(SetNearNullSpace(body));
   PetscCall(ConstrainedSolverCreate(body->shifted, body->interface, prefix, &body->solver));
 
   PetscCall(BodyCreateVec(body, &residual));
@@ -106,17 +204,10 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(VecDestroy(&residual));
   PetscCall(TSAlpha2SetPredictor(body->ts, Predict, body));
   PetscCall(TSGetSNES(body->ts, &snes));
-  PetscCall(SNESSetLagJacobian(snes, -2));
-  PetscCall(SNESSetLagJacobianPersists(snes, PETSC_TRUE));
-  PetscCall(SNESSetLagPreconditioner(snes, -2));
-  PetscCall(SNESSetLagPreconditionerPersists(snes, PETSC_TRUE));
-  PetscCall(SNESSetConvergenceTest(snes, StopAfterOneIteration, NULL, NULL));
+  PetscCall(SetUpNewton(body, snes));
   /* BodyIntegrate() tells, with body and time */
   PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_FALSE));
   PetscCall(TSSetErrorIfStepFails(body->ts, PETSC_FALSE));
-  PetscCall(SNESGetLineSearch(snes, &line_search));
-  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */
   PetscCall(SNESGetKSP(snes, &ksp));
   /* the user's -<body>_ksp_... options are for the solver with the factors, inside */
   PetscCall(PetscSNPrintf(outer, sizeof(outer), "%sconstrained_", prefix));
@@ -144,7 +235,14 @@ PetscErrorCode BodyFinishSubstepImplicit(Body body)
   PetscCall(VecGetArrayRead(body->state.u, &u1));
   PetscCall(VecGetArray(body->state.v, &v1));
   PetscCall(VecGetArray(body->state.a, &a));
-  for (PetscInt i = 0; i < n; i++) a[i] = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a[i];
+  if (body->is_static) {
+    for (PetscInt i = 0; i < n; i++) {
+      v1[i] = (u1[i] - u0[i]) / dt;
+      a[i]  = 0;
+    }
+  } else {
+    for (PetscInt i = 0; i < n; i++) a[i] = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a[i];
+  }
   for (PetscInt i = 0; i < body->n_layer_dofs; i++) {
     const PetscInt dof = body->layer_dofs[i];
 
@@ -162,6 +260,7 @@ PetscErrorCode BodyFinishSubstepImplicit(Body body)
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
   }
+  if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, body->state.a));
   if (body->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -92,8 +92,9 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
   shape[0] = -shape[0];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shape, 2, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
   PetscCheck(shape[1] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s' has no cells: check -%s_dm_plex_box_faces or the mesh file", body->hdr.name, body->hdr.name);
-  cell = (DMPolytopeType)shape[1];
-  PetscCheck(-shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported", body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
+  cell             = (DMPolytopeType)shape[1];
+  body->cell_shape = cell;
+  PetscCheck(-shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported; give each shape a body of its own", body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
   PetscCall(ElementCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, cell, body->material, &body->element));
   PetscCheck(body->element->dim == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s': cells of shape '%s' in %" PetscInt_FMT " dimensions are not supported", body->hdr.name, DMPolytopeTypes[cell], body->dim);
   PetscCall(PetscMalloc1((cend - cstart) * body->element->nodes, &body->connectivity));
@@ -104,6 +105,7 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
     for (PetscInt p = 0; p < n_points; p++)
       if (closure[2 * p] >= vstart && closure[2 * p] < vend) body->connectivity[(c - cstart) * body->element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
     PetscCall(DMPlexRestoreTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
+    PetscCall(DMPlexInvertCell(cell, body->connectivity + (c - cstart) * body->element->nodes)); /* from DMPLEX's order of vertices to the usual one */
   }
   PetscCall(ElementSetUp(body->element, cend - cstart, body->connectivity, body->coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,5 +146,46 @@ PetscErrorCode BodyCreateVec(Body body, Vec *vec)
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size == 1) PetscCall(VecCreateSeq(comm, owned, vec));
   else PetscCall(VecCreateGhost(comm, owned, PETSC_DETERMINE, ghosts, body->ghost_dofs, vec));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetCells - the elements of the mesh, for output
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, with its mesh
+
+  Output Parameters:
++ shape   - of all cells
+. n_cells - those of this rank
+. n_nodes - nodes of a cell
+- cells   - per cell of this rank: the global numbers of its nodes, in the order of VTK; free with `PetscFree()`
+
+  Level: intermediate
+
+  Note:
+  Global node k is the k-th block of `dim` displacements in the vectors of `BodyGetSolution()`.
+
+.seealso: `Body`, `BodyGetReferencePositions()`, `BodyComputeStress()`
+@*/
+PetscErrorCode BodyGetCells(Body body, DMPolytopeType *shape, PetscInt *n_cells, PetscInt *n_nodes, PetscInt *cells[])
+{
+  const PetscInt n = body->element->count * body->element->nodes;
+  PetscInt       rstart;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(n, cells));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt node = body->connectivity[i];
+
+    (*cells)[i] = (node < body->owned_nodes ? rstart + node * body->dim : body->ghost_dofs[(node - body->owned_nodes) * body->dim]) / body->dim;
+  }
+  *shape   = body->cell_shape;
+  *n_cells = body->element->count;
+  *n_nodes = body->element->nodes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

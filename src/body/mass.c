@@ -28,7 +28,10 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
   if (!body->mass_redistribute) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt a = 0; a < n_nodes; a++) inner += !body->in_layer[nodes[a]];
   if (inner == n_nodes) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(inner, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Body '%s': all nodes of an element lie on contact surfaces, so its mass has no inner node to go to; refine the mesh or set -%smass_redistribute false", body->hdr.name, ((PetscObject)body)->prefix);
+  if (!inner) {
+    PetscCall(PetscArrayzero(M, n * n)); /* BodyRedistributeOrphans() finds its mass a place */
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt d = 0; d < dim; d++) {
     PetscScalar moved = 0;
 
@@ -52,7 +55,7 @@ static PetscErrorCode AssembleMass(Body body)
 
   PetscFunctionBegin;
   if (body->mass_type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass_diagonal));
-  else PetscCall(DMCreateMatrix(body->dm, &body->mass_matrix));
+  else PetscCall(BodyCreateMatrix(body, &body->mass_matrix));
   for (PetscInt e = 0; e < body->element->count; e++) {
     PetscCall(BodyGetElementMass(body, e, M));
     PetscCall(BodyGetElementDofs(body, e, dofs));
@@ -70,16 +73,57 @@ static PetscErrorCode AssembleMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the massless nodes and their displacements */
+/* Mass times position, summed over this rank's elements as the shape functions have it, and over its nodes as the body has it */
+static PetscErrorCode ComputeMassShift(Body body)
+{
+  const PetscInt     n = body->element->nodes, dim = body->dim;
+  PetscScalar        M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscReal          sums[3] = {0};
+  const PetscScalar *mass;
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    const PetscInt *nodes = body->connectivity + e * n;
+    PetscBool       moved = PETSC_FALSE;
+
+    for (PetscInt a = 0; a < n; a++) moved = (PetscBool)(moved || body->in_layer[nodes[a]]);
+    if (!moved) continue;
+    PetscCall((*body->element->ops.mass)(body->element, e, M));
+    for (PetscInt a = 0; a < n; a++)
+      for (PetscInt b = 0; b < n; b++)
+        for (PetscInt d = 0; d < dim; d++) sums[d] -= M[(a * dim) * n * dim + b * dim] * body->coordinates[nodes[a] * dim + d];
+    PetscCall(BodyGetElementMass(body, e, M));
+    for (PetscInt a = 0; a < n; a++)
+      for (PetscInt b = 0; b < n; b++)
+        for (PetscInt d = 0; d < dim; d++) sums[d] += M[(a * dim) * n * dim + b * dim] * body->coordinates[nodes[a] * dim + d];
+  }
+  if (body->orphan_mass) {
+    PetscCall(VecGetArrayRead(body->orphan_mass, &mass));
+    for (PetscInt i = 0; i < body->owned_nodes * dim; i++) sums[i % dim] += mass[i] * body->coordinates[i];
+    PetscCall(VecRestoreArrayRead(body->orphan_mass, &mass));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  for (PetscInt d = 0; d < dim; d++) body->mass_shift[d] = sums[d] / body->total_mass;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the massless nodes and their displacements, but those that are held */
 static PetscErrorCode SetUpLayer(Body body)
 {
+  PetscInt held = 0;
+
   PetscFunctionBegin;
   body->n_layer_dofs = 0;
-  PetscCall(PetscMalloc1(body->owned_nodes * body->dim, &body->layer_dofs));
+  PetscCall(PetscMalloc1(body->mass_redistribute ? body->owned_nodes * body->dim : 0, &body->layer_dofs));
   if (!body->mass_redistribute) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt node = 0; node < body->owned_nodes; node++)
-    for (PetscInt d = 0; d < body->dim; d++)
-      if (body->in_layer[node]) body->layer_dofs[body->n_layer_dofs++] = node * body->dim + d;
+    for (PetscInt d = 0; d < body->dim; d++) {
+      const PetscInt dof = node * body->dim + d;
+
+      while (held < body->n_held && body->held_dofs[held] < dof) held++;
+      if (held < body->n_held && body->held_dofs[held] == dof) continue;
+      if (body->in_layer[node]) body->layer_dofs[body->n_layer_dofs++] = dof;
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,6 +136,7 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
   PetscCall(AssembleMass(body));
+  if (body->mass_redistribute) PetscCall(BodyRedistributeOrphans(body));
   PetscCall(BodyCreateVec(body, &body->mass_row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));
@@ -99,6 +144,7 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscCall(VecDestroy(&ones));
   PetscCall(VecSum(body->mass_row_sum, &sum));
   body->total_mass = sum / body->dim;
+  if (body->mass_redistribute) PetscCall(ComputeMassShift(body));
   if (body->mass_diagonal) {
     PetscScalar       *inverse;
     const PetscScalar *mass;
@@ -148,7 +194,8 @@ PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
 PetscErrorCode BodySolveMass(Body body, Vec f, PetscReal position, PetscBool prescribed, Vec a)
 {
   PetscFunctionBegin;
-  if (body->inverse_mass) {
+  if (body->is_static) PetscCall(VecZeroEntries(a));
+  else if (body->inverse_mass) {
     PetscCall(VecPointwiseMult(a, body->inverse_mass, f));
     if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, a));
   } else {

@@ -1,8 +1,101 @@
 /* Energies and momentum. */
 #include "bodyimpl.h"
 
+/* Stored energy of this rank's elements, or of its dofs where half the work of the internal force is all there is to it [J] */
+static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
+{
+  const PetscScalar *u, *force;
+  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  const PetscInt     n       = body->owned_nodes * body->dim;
+  Vec                local   = body->state.u;
+  PetscReal          sum     = 0;
+
+  PetscFunctionBegin;
+  if (body->linear) {
+    PetscCall(VecGetArrayRead(body->state.u, &u));
+    PetscCall(VecGetArrayRead(body->internal_force, &force));
+    for (PetscInt i = 0; i < n; i++) sum += u[i] * force[i];
+    PetscCall(VecRestoreArrayRead(body->internal_force, &force));
+    PetscCall(VecRestoreArrayRead(body->state.u, &u));
+    *potential = 0.5 * sum;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (ghosted) {
+    PetscCall(VecGhostUpdateBegin(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostUpdateEnd(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostGetLocalForm(body->state.u, &local));
+  }
+  PetscCall(VecGetArrayRead(local, &u));
+  PetscCall((*body->element->ops.energy)(body->element, u, potential));
+  PetscCall(VecRestoreArrayRead(local, &u));
+  if (ghosted) PetscCall(VecGhostRestoreLocalForm(body->state.u, &local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Momentum of each owned node, and the sums that make kinetic energy, momentum and angular momentum of it */
+static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal momentum[3], PetscReal angular[3])
+{
+  const PetscReal    quarter = body->is_explicit ? 0.25 * PetscSqr(body->time_step) : 0;
+  const PetscInt     dim = body->dim, n = body->owned_nodes * dim;
+  const PetscScalar *x, *u, *v, *a, *p, *mass;
+  PetscReal          twice = 0;
+  Vec                nodal = body->work[0];
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(body->state.v, &v));
+  PetscCall(VecGetArrayRead(body->state.a, &a));
+  PetscCall(BodyMultiplyMass(body, body->state.v, nodal));
+  PetscCall(VecGetArrayRead(nodal, &p));
+  for (PetscInt i = 0; i < n; i++) twice += v[i] * p[i];
+  PetscCall(VecRestoreArrayRead(nodal, &p));
+  if (quarter > 0 && body->mass_diagonal) {
+    PetscCall(VecGetArrayRead(body->mass_diagonal, &mass));
+    for (PetscInt i = 0; i < n; i++) twice -= quarter * mass[i] * a[i] * a[i];
+    PetscCall(VecRestoreArrayRead(body->mass_diagonal, &mass));
+  } else if (quarter > 0) {
+    PetscCall(BodyMultiplyMass(body, body->state.a, body->work[1]));
+    PetscCall(VecGetArrayRead(body->work[1], &mass));
+    for (PetscInt i = 0; i < n; i++) twice -= quarter * a[i] * mass[i];
+    PetscCall(VecRestoreArrayRead(body->work[1], &mass));
+  }
+  *kinetic = 0.5 * twice;
+  PetscCall(VecRestoreArrayRead(body->state.a, &a));
+  PetscCall(VecRestoreArrayRead(body->state.v, &v));
+  PetscCall(VecGetArrayRead(nodal, &p));
+  PetscCall(VecGetArrayRead(body->positions, &x));
+  PetscCall(VecGetArrayRead(body->state.u, &u));
+  for (PetscInt i = 0; i < n; i += dim) {
+    PetscReal r[3] = {0}, q[3] = {0};
+
+    for (PetscInt d = 0; d < dim; d++) {
+      r[d] = x[i + d] + u[i + d];
+      q[d] = p[i + d];
+      momentum[d] += q[d];
+    }
+    for (PetscInt d = 0; d < 3; d++) angular[d] += r[(d + 1) % 3] * q[(d + 2) % 3] - r[(d + 2) % 3] * q[(d + 1) % 3];
+  }
+  PetscCall(VecRestoreArrayRead(body->state.u, &u));
+  PetscCall(VecRestoreArrayRead(body->positions, &x));
+  PetscCall(VecRestoreArrayRead(nodal, &p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean velocity of a body without inertia, weighted by its mass all the same */
+static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
+{
+  const PetscScalar *v, *mass;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(body->state.v, &v));
+  PetscCall(VecGetArrayRead(body->mass_row_sum, &mass));
+  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) sum[i % body->dim] += mass[i] * v[i];
+  PetscCall(VecRestoreArrayRead(body->mass_row_sum, &mass));
+  PetscCall(VecRestoreArrayRead(body->state.v, &v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  BodyGetMeasures - energies, momentum and mean velocity at the current time
+  BodyGetMeasures - energies, momenta and mean velocity at the current time
 
   Collective
 
@@ -14,60 +107,35 @@
 
   Level: intermediate
 
-  Note:
+  Notes:
   The kinetic energy of a body under central differences is the staggered one, 1/2 v'Mv - dt^2/8 a'Ma: together with the
   potential energy it is what the scheme conserves.
+
+  A static body has neither kinetic energy nor momentum.
 
 .seealso: `Body`, `BodyMeasures`
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  const PetscInt     n       = body->owned_nodes * body->dim;
-  const PetscReal    quarter = body->is_explicit ? 0.25 * PetscSqr(body->time_step) : 0;
-  const PetscScalar *u, *v, *a, *force, *mass, *momentum_v, *momentum_a;
-  PetscReal          kinetic = 0, potential = 0, sums[5] = {0};
+  PetscReal sums[11] = {0};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(VecGetArrayRead(body->state.u, &u));
-  PetscCall(VecGetArrayRead(body->state.v, &v));
-  PetscCall(VecGetArrayRead(body->state.a, &a));
-  PetscCall(VecGetArrayRead(body->internal_force, &force));
-  PetscCall(VecGetArrayRead(body->mass_row_sum, &mass));
-  for (PetscInt i = 0; i < n; i++) potential += u[i] * force[i];
-  if (body->mass_diagonal) {
-    for (PetscInt i = 0; i < n; i++) kinetic += mass[i] * (v[i] * v[i] - quarter * a[i] * a[i]);
-  } else {
-    PetscCall(MatMult(body->mass_matrix, body->state.v, body->work[0]));
-    PetscCall(VecGetArrayRead(body->work[0], &momentum_v));
-    for (PetscInt i = 0; i < n; i++) kinetic += v[i] * momentum_v[i];
-    PetscCall(VecRestoreArrayRead(body->work[0], &momentum_v));
-    if (quarter > 0) {
-      PetscCall(MatMult(body->mass_matrix, body->state.a, body->work[0]));
-      PetscCall(VecGetArrayRead(body->work[0], &momentum_a));
-      for (PetscInt i = 0; i < n; i++) kinetic -= quarter * a[i] * momentum_a[i];
-      PetscCall(VecRestoreArrayRead(body->work[0], &momentum_a));
-    }
+  PetscCall(ComputePotential(body, &sums[1]));
+  if (body->is_static) PetscCall(SumMassVelocity(body, sums + 8));
+  else {
+    PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
+    for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
   }
-  for (PetscInt d = 0; d < body->dim; d++) {
-    PetscReal momentum = 0;
-
-    for (PetscInt i = d; i < n; i += body->dim) momentum += mass[i] * v[i];
-    sums[2 + d] = momentum;
-  }
-  sums[0] = 0.5 * kinetic;
-  sums[1] = 0.5 * potential; /* linear materials: half the work of the internal force */
-  PetscCall(VecRestoreArrayRead(body->mass_row_sum, &mass));
-  PetscCall(VecRestoreArrayRead(body->internal_force, &force));
-  PetscCall(VecRestoreArrayRead(body->state.a, &a));
-  PetscCall(VecRestoreArrayRead(body->state.v, &v));
-  PetscCall(VecRestoreArrayRead(body->state.u, &u));
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  measures->kinetic   = sums[0];
-  measures->potential = sums[1];
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 11, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  measures->kinetic       = sums[0];
+  measures->potential     = sums[1];
+  measures->external_work = body->external_work;
+  measures->loaded        = (PetscBool)(body->loads != NULL);
   for (PetscInt d = 0; d < 3; d++) {
-    measures->momentum[d]      = sums[2 + d];
-    measures->mean_velocity[d] = sums[2 + d] / body->total_mass;
+    measures->momentum[d]         = sums[2 + d];
+    measures->angular_momentum[d] = sums[5 + d];
+    measures->mean_velocity[d]    = sums[8 + d] / body->total_mass;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

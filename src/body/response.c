@@ -121,7 +121,7 @@ static PetscErrorCode CreateResponse(Body body)
 
 /* Where a body is in time, beside what its response keeps of its state */
 typedef struct {
-  PetscReal time, saved_time;
+  PetscReal time, saved_time, work;
   PetscInt  step, saved_step;
 } Clock;
 
@@ -155,6 +155,8 @@ static PetscErrorCode BeginProbing(Body body, Clock *clock)
   clock->saved_time = body->saved_time;
   clock->step       = body->step;
   clock->saved_step = body->saved_step;
+  clock->work       = body->external_work;
+  body->unloaded    = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,10 +168,12 @@ static PetscErrorCode EndProbing(Body body, const Clock *clock)
   PetscFunctionBegin;
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecCopy(response->backup[k], vecs[k]));
   PetscCall(CopyTraces(body, response->backup_traces, PETSC_FALSE));
-  body->time       = clock->time;
-  body->saved_time = clock->saved_time;
-  body->step       = clock->step;
-  body->saved_step = clock->saved_step;
+  body->time          = clock->time;
+  body->saved_time    = clock->saved_time;
+  body->step          = clock->step;
+  body->saved_step    = clock->saved_step;
+  body->external_work = clock->work;
+  body->unloaded      = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -208,6 +212,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   kinds    = response->kinds;
   *matrix  = response->matrix;
   if (response->valid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(body->linear, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s' is nonlinear, and the outer iteration wants its response as if it were linear; choose one that does without, as -schwarz_snes_type anderson, or explicit penalty", body->hdr.name);
   PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
   response->n_columns = 0;
   PetscCall(PetscArrayzero(response->waveform, body->substeps * rows->global * rows->global));

@@ -24,10 +24,12 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
 {
   const BodyRows    *rows = &body->rows;
   const PetscScalar *row;
+  Mat                K;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  PetscCall(BodyGetStiffness(body, &K));
   for (PetscInt j = 0; j < rows->global; j++) {
     const PetscInt local = j - rows->begin;
 
@@ -36,7 +38,7 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
     PetscCall(VecAssemblyBegin(body->row_vec[0]));
     PetscCall(VecAssemblyEnd(body->row_vec[0]));
     PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
-    PetscCall(MatMult(body->stiffness, body->work[0], body->work[2]));
+    PetscCall(MatMult(K, body->work[0], body->work[2]));
     PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
     PetscCall(VecGetArrayRead(body->row_vec[0], &row));
     if (local >= 0 && local < rows->local) stiffness[local] = PetscRealPart(row[local]);
@@ -54,7 +56,7 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
 . body - the `Body`
 
   Output Parameter:
-. impedance - sqrt(E rho), E being the uniaxial modulus [N s/m^3]; of a bar, times its cross-section [N s/m]
+. impedance - sqrt(M rho), M being the modulus of plane waves, lambda + 2 mu [N s/m^3]; of a bar, sqrt(E rho) times its cross-section [N s/m]
 
   Level: intermediate
 
@@ -67,7 +69,8 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(MaterialGetDensity(body->material, &density));
-  PetscCall(MaterialGetUniaxialModulus(body->material, &modulus));
+  if (body->dim == 1) PetscCall(MaterialGetUniaxialModulus(body->material, &modulus));
+  else PetscCall(MaterialGetWaveModulus(body->material, &modulus));
   *impedance = PetscSqrtReal(modulus * density) * body->element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

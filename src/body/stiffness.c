@@ -1,4 +1,4 @@
-/* Internal force and stiffness matrix. */
+/* Internal force, tangent and stiffness matrix. */
 #include "bodyimpl.h"
 
 /* f = internal force for displacement u [N] */
@@ -10,6 +10,7 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
 
   PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(BODY_InternalForce, body, 0, 0, 0));
   if (ghosted) {
     PetscCall(VecGhostUpdateBegin(u, INSERT_VALUES, SCATTER_FORWARD));
     PetscCall(VecGhostUpdateEnd(u, INSERT_VALUES, SCATTER_FORWARD));
@@ -28,7 +29,21 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
     PetscCall(VecGhostUpdateBegin(f, ADD_VALUES, SCATTER_REVERSE));
     PetscCall(VecGhostUpdateEnd(f, ADD_VALUES, SCATTER_REVERSE));
   }
+  PetscCall(PetscLogEventEnd(BODY_InternalForce, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An error that names the element which the last internal force of this rank found inverted, if any */
+PetscErrorCode BodyCheckInverted(Body body, PetscReal time)
+{
+  const PetscInt e         = body->element->inverted;
+  PetscReal      centre[3] = {0};
+
+  PetscFunctionBegin;
+  if (e < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt n = 0; n < body->element->nodes; n++)
+    for (PetscInt d = 0; d < body->dim; d++) centre[d] += body->coordinates[body->connectivity[e * body->element->nodes + n] * body->dim + d] / body->element->nodes;
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FP, "Body '%s': element %" PetscInt_FMT " of this rank, in the undeformed mesh around (%g, %g, %g) m, is inverted or not a number at time %.9g s (step %" PetscInt_FMT " of the body); is a time step too large, a load too strong, or the mesh too coarse there?", body->hdr.name, e, (double)centre[0], (double)centre[1], (double)centre[2], (double)time, body->step);
 }
 
 /* The global numbers of an element's displacements, from the numbers of its nodes on this rank */
@@ -44,22 +59,99 @@ PetscErrorCode BodyGetElementDofs(Body body, PetscInt e, PetscInt dofs[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The stiffness matrix of the undeformed body */
-PetscErrorCode BodySetUpStiffness(Body body)
+/* An empty matrix with room for what elements couple */
+PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
 {
-  const PetscInt n = body->element->nodes * body->dim;
-  PetscInt       dofs[ELEMENT_MAX_DOFS];
-  PetscScalar    zero[ELEMENT_MAX_DOFS] = {0}, K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-
   PetscFunctionBegin;
   PetscCall(DMSetMatType(body->dm, MATAIJ));
-  PetscCall(DMCreateMatrix(body->dm, &body->stiffness));
-  for (PetscInt e = 0; e < body->element->count; e++) {
-    PetscCall((*body->element->ops.stiffness)(body->element, e, zero, K));
-    PetscCall(BodyGetElementDofs(body, e, dofs));
-    PetscCall(MatSetValues(body->stiffness, n, dofs, n, dofs, K, ADD_VALUES));
+  PetscCall(DMCreateMatrix(body->dm, A));
+  PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatSetOption(*A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
+  PetscCall(MatSetOption(*A, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K = tangent stiffness at displacement u; NULL: undeformed [N/m] */
+PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
+{
+  const PetscInt     n       = body->element->nodes * body->dim;
+  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  PetscInt           dofs[ELEMENT_MAX_DOFS];
+  PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero = NULL;
+  const PetscScalar *array;
+  Vec                local = u;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(BODY_Tangent, body, 0, 0, 0));
+  PetscCall(MatZeroEntries(K));
+  if (u && ghosted) {
+    PetscCall(VecGhostUpdateBegin(u, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostUpdateEnd(u, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostGetLocalForm(u, &local));
   }
-  PetscCall(MatAssemblyBegin(body->stiffness, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(body->stiffness, MAT_FINAL_ASSEMBLY));
+  if (u) PetscCall(VecGetArrayRead(local, &array));
+  else {
+    PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
+    array = zero;
+  }
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    PetscCall((*body->element->ops.stiffness)(body->element, e, array, element));
+    PetscCall(BodyGetElementDofs(body, e, dofs));
+    PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES));
+  }
+  if (u) PetscCall(VecRestoreArrayRead(local, &array));
+  if (u && ghosted) PetscCall(VecGhostRestoreLocalForm(u, &local));
+  PetscCall(PetscFree(zero));
+  PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
+  PetscCall(PetscLogEventEnd(BODY_Tangent, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The stiffness matrix of the undeformed body, made when it is first asked for: explicit bodies without contact never need it */
+PetscErrorCode BodyGetStiffness(Body body, Mat *K)
+{
+  PetscFunctionBegin;
+  if (!body->stiffness) {
+    PetscCall(BodyCreateMatrix(body, &body->stiffness));
+    PetscCall(BodyAssembleTangent(body, NULL, body->stiffness));
+  }
+  *K = body->stiffness;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeStress - mean Cauchy stress of each element at the current displacement
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. stress - xx, yy, zz, xy, yz, xz for each cell of this rank, in the order of `BodyGetCells()` [Pa]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetCells()`
+@*/
+PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
+{
+  const PetscScalar *u;
+  Vec                local   = body->state.u;
+  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  if (ghosted) {
+    PetscCall(VecGhostUpdateBegin(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostUpdateEnd(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostGetLocalForm(body->state.u, &local));
+  }
+  PetscCall(VecGetArrayRead(local, &u));
+  PetscCall((*body->element->ops.stress)(body->element, u, stress));
+  PetscCall(VecRestoreArrayRead(local, &u));
+  if (ghosted) PetscCall(VecGhostRestoreLocalForm(body->state.u, &local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -57,7 +57,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
   PetscCall(PetscMalloc1(history->n_bodies, &history->dims));
-  PetscCall(PetscCalloc1(2 + 3 * n_pairs + 5 * history->n_bodies, &history->series));
+  PetscCall(PetscCalloc1(2 + 3 * n_pairs + 8 * history->n_bodies, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -77,6 +77,9 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(AddSeries(history, "/body/", name, "contact_position", "m", *dim, PETSC_FALSE));
     PetscCall(AddSeries(history, "/body/", name, "contact_velocity", "m/s", *dim, PETSC_FALSE));
     PetscCall(AddSeries(history, "/body/", name, "mean_velocity", "m/s", *dim, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "external_work", "J", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "momentum", "kg m/s", *dim, PETSC_FALSE));
+    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_momentum", "kg m^2/s", 3, PETSC_FALSE));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,6 +194,9 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], Pets
     for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->contact_positions[3 * i + d];
     for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->contact_velocities[3 * i + d];
     for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].mean_velocity[d];
+    *next++ = frame->bodies[i].external_work;
+    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
+    for (PetscInt d = 0; d < 3 && dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
   }
 }
 

@@ -80,10 +80,11 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g J kinetic, %.6g J potential at the end\n", name, (double)body->kinetic, (double)body->potential));
+    if (body->external_work != 0) PetscCall(PrintValue(viewer, "    work of its loads", body->external_work, "J", NAN));
   }
   PetscCall(PrintPercent(viewer, "system energy error, worst", worst));
   PetscCall(PrintPercent(viewer, "system energy error, final", results->energy_error_final));
-  PetscCall(PrintPercent(viewer, "momentum error, worst", results->momentum_error_max));
+  if (!PetscIsInfOrNanReal(results->momentum_error_max)) PetscCall(PrintPercent(viewer, "momentum error, worst", results->momentum_error_max));
   if (results->penalty_energy_max > 0) PetscCall(PrintValue(viewer, "energy in penalty springs, most", results->penalty_energy_max, "J", NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,10 +13,13 @@ struct _n_Statistics {
   ContactMemory     any, *pair;
   PetscReal         time; /* of the last frame [s] */
   PetscInt          total_sweeps, contact_sweeps;
-  PetscReal        *initial_energy; /* of each body [J] */
-  PetscReal         system_energy;  /* at the start [J] */
-  PetscReal         momentum[3];    /* of the system at the start [kg m/s] */
-  PetscReal         momentum_scale; /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
+  PetscReal        *initial_energy;            /* of each body [J] */
+  PetscReal         system_energy;             /* at the start [J] */
+  PetscReal         largest_energy;            /* energies and work of all bodies, so far [J] */
+  PetscBool         loaded;                    /* forces from outside, or held displacements, act on some body */
+  PetscReal         momentum[3];               /* of the system at the start [kg m/s] */
+  PetscReal         momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
+  PetscReal         angular[3], angular_scale; /* the same of angular momenta about the origin [kg m^2/s] */
   PetscInt          n_series, capacity;
   PetscReal        *series; /* from first contact on: time, and for each pair force and nodes in contact */
 };
@@ -62,9 +65,10 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What stays as it is but for errors and exchange with other bodies */
 static PetscReal BodyEnergy(const BodyMeasures *body)
 {
-  return body->kinetic + body->potential;
+  return body->kinetic + body->potential - body->external_work;
 }
 
 static PetscReal Norm(const PetscReal x[3])
@@ -79,7 +83,12 @@ static void NoteInitialState(Statistics s, const ControllerFrame *frame)
     s->initial_energy[i] = BodyEnergy(&frame->bodies[i]);
     s->system_energy += s->initial_energy[i];
     s->momentum_scale += Norm(frame->bodies[i].momentum);
-    for (PetscInt d = 0; d < 3; d++) s->momentum[d] += frame->bodies[i].momentum[d];
+    s->angular_scale += Norm(frame->bodies[i].angular_momentum);
+    for (PetscInt d = 0; d < 3; d++) {
+      s->momentum[d] += frame->bodies[i].momentum[d];
+      s->angular[d] += frame->bodies[i].angular_momentum[d];
+    }
+    s->loaded = (PetscBool)(s->loaded || frame->bodies[i].loaded);
   }
 }
 
@@ -92,27 +101,38 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
 {
   StatisticsResults *r             = &s->results;
   PetscReal          change[3]     = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
-  PetscReal          system_energy = 0;
+  PetscReal          turn[3]       = {-s->angular[0], -s->angular[1], -s->angular[2]};
+  PetscReal          system_energy = 0, size = 0, scale;
 
+  /* bodies that start at rest have no initial energy: then, the largest energy or work so far */
+  for (PetscInt i = 0; i < frame->n_bodies; i++) size += frame->bodies[i].kinetic + frame->bodies[i].potential + PetscAbsReal(frame->bodies[i].external_work);
+  s->largest_energy = PetscMax(s->largest_energy, size);
+  scale             = s->system_energy != 0 ? s->system_energy : s->largest_energy;
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     const BodyMeasures *measures = &frame->bodies[i];
     BodyStatistics     *body     = &r->bodies[i];
     const PetscReal     energy = BodyEnergy(measures), start = s->initial_energy[i];
-    const PetscReal     error = Relative(energy - start, start != 0 ? start : s->system_energy);
+    const PetscReal     error = Relative(energy - start, start != 0 ? start : scale);
 
     body->kinetic          = measures->kinetic;
     body->potential        = measures->potential;
+    body->external_work    = measures->external_work;
     body->peak_potential   = PetscMax(body->peak_potential, measures->potential);
     body->energy_error_min = PetscMin(body->energy_error_min, error);
     body->energy_error_max = PetscMax(body->energy_error_max, error);
     system_energy += energy;
-    for (PetscInt d = 0; d < 3; d++) change[d] += measures->momentum[d];
+    for (PetscInt d = 0; d < 3; d++) {
+      change[d] += measures->momentum[d];
+      turn[d] += measures->angular_momentum[d];
+    }
   }
-  r->energy_error_final = Relative(system_energy - s->system_energy, s->system_energy);
+  r->energy_error_final = Relative(system_energy - s->system_energy, scale);
   r->energy_error_min   = PetscMin(r->energy_error_min, r->energy_error_final);
   r->energy_error_max   = PetscMax(r->energy_error_max, r->energy_error_final);
-  r->momentum_error_max = PetscMax(r->momentum_error_max, Relative(Norm(change), s->momentum_scale));
-  r->penalty_energy_max = PetscMax(r->penalty_energy_max, frame->penalty_energy);
+  /* loads change the momentum, and there is nothing to compare it with */
+  r->momentum_error_max         = s->loaded ? PETSC_INFINITY : PetscMax(r->momentum_error_max, Relative(Norm(change), s->momentum_scale));
+  r->angular_momentum_error_max = s->loaded ? PETSC_INFINITY : PetscMax(r->angular_momentum_error_max, Relative(Norm(turn), s->angular_scale));
+  r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
 /* One step of one pair, or of all together */

@@ -16,7 +16,8 @@ typedef struct {
 
 typedef struct {
   PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
-  PetscReal energy_error_min, energy_error_max; /* of kinetic + potential, relative to its start, or to the system's if that is 0 */
+  PetscReal external_work;                      /* at the end, by loads [J] */
+  PetscReal energy_error_min, energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;
 
 typedef struct {
@@ -29,7 +30,8 @@ typedef struct {
   PetscReal          mean_sweeps;                                            /* over all steps */
   PetscReal          mean_sweeps_contact;                                    /* over steps that end in contact */
   PetscReal          energy_error_min, energy_error_max, energy_error_final; /* of the system, relative to its start */
-  PetscReal          momentum_error_max;                                     /* relative to the sum of the bodies' initial momenta; absolute if that is 0 [kg m/s] */
+  PetscReal          momentum_error_max;                                     /* relative to the sum of the bodies' initial momenta; absolute if that is 0 [kg m/s]; infinite with loads */
+  PetscReal          angular_momentum_error_max;                             /* about the origin, likewise [kg m^2/s] */
   PetscReal          penalty_energy_max;                                     /* [J] */
 } StatisticsResults;
 

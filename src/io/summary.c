@@ -112,6 +112,7 @@ static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const Statist
     PetscCall(SetReal(object, "kinetic", body->kinetic));
     PetscCall(SetReal(object, "potential", body->potential));
     PetscCall(SetReal(object, "peak_potential", body->peak_potential));
+    PetscCall(SetReal(object, "external_work", body->external_work));
     PetscCall(SetReal(object, "total_energy_error_min", body->energy_error_min));
     PetscCall(SetReal(object, "total_energy_error_max", body->energy_error_max));
     PetscCall(SetInteger(object, "substeps", substeps));
@@ -129,6 +130,7 @@ static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
   PetscCall(SetReal(object, "energy_error_max", results->energy_error_max));
   PetscCall(SetReal(object, "energy_error_final", results->energy_error_final));
   PetscCall(SetReal(object, "momentum_error_max", results->momentum_error_max));
+  PetscCall(SetReal(object, "angular_momentum_error_max", results->angular_momentum_error_max));
   PetscCall(SetReal(object, "penalty_energy_max", results->penalty_energy_max));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

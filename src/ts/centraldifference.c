@@ -9,9 +9,34 @@
 typedef struct {
   TSCentralDifferenceFn *acceleration;
   void                  *ctx;
-  Vec                    A;          /* acceleration at ts->ptime, owned by the caller of TSCentralDifferenceSetAccelerationVec() */
-  Vec                    U0, V0, A0; /* state at the start of the step, for TSRollBack() */
+  Vec                    A; /* acceleration at ts->ptime, owned by the caller of TSCentralDifferenceSetAccelerationVec() */
 } TS_CentralDifference;
+
+/* v += half a, and u += dt v where dt is not 0: one pass over memory, which is what large bodies wait for */
+static PetscErrorCode Kick(Vec U, Vec V, Vec A, PetscReal half, PetscReal dt)
+{
+  const PetscScalar *a;
+  PetscScalar       *u, *v;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(V, &n));
+  PetscCall(VecGetArrayRead(A, &a));
+  PetscCall(VecGetArray(V, &v));
+  if (dt != 0) {
+    PetscCall(VecGetArray(U, &u));
+    for (PetscInt i = 0; i < n; i++) {
+      v[i] += half * a[i];
+      u[i] += dt * v[i];
+    }
+    PetscCall(VecRestoreArray(U, &u));
+  } else {
+    for (PetscInt i = 0; i < n; i++) v[i] += half * a[i];
+  }
+  PetscCall(VecRestoreArray(V, &v));
+  PetscCall(VecRestoreArrayRead(A, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode TSStep_CentralDifference(TS ts)
 {
@@ -21,27 +46,12 @@ static PetscErrorCode TSStep_CentralDifference(TS ts)
   PetscBool             accept;
 
   PetscFunctionBegin;
-  PetscCall(VecCopy(ts->vec_sol, cd->U0));
-  PetscCall(VecCopy(ts->vec_dot, cd->V0));
-  PetscCall(VecCopy(cd->A, cd->A0));
-  PetscCall(VecAXPY(ts->vec_dot, half, cd->A));
-  PetscCall(VecAXPY(ts->vec_sol, ts->time_step, ts->vec_dot));
+  PetscCall(Kick(ts->vec_sol, ts->vec_dot, cd->A, half, ts->time_step));
   PetscCall((*cd->acceleration)(ts, ts->ptime + ts->time_step, ts->vec_sol, ts->vec_dot, cd->A, cd->ctx));
-  PetscCall(VecAXPY(ts->vec_dot, half, cd->A));
+  PetscCall(Kick(NULL, ts->vec_dot, cd->A, half, 0));
   PetscCall(TSAdaptChoose(ts->adapt, ts, ts->time_step, NULL, &next, &accept));
   ts->ptime += ts->time_step;
   ts->time_step = next;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode TSRollBack_CentralDifference(TS ts)
-{
-  TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
-
-  PetscFunctionBegin;
-  PetscCall(VecCopy(cd->U0, ts->vec_sol));
-  PetscCall(VecCopy(cd->V0, ts->vec_dot));
-  PetscCall(VecCopy(cd->A0, cd->A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,9 +63,6 @@ static PetscErrorCode TSSetUp_CentralDifference(TS ts)
   PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TS2SetSolution() first");
   PetscCheck(cd->acceleration, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAcceleration() first");
   PetscCheck(cd->A, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAccelerationVec() first");
-  PetscCall(VecDuplicate(ts->vec_sol, &cd->U0));
-  PetscCall(VecDuplicate(ts->vec_sol, &cd->V0));
-  PetscCall(VecDuplicate(ts->vec_sol, &cd->A0));
   PetscCall(TSGetAdapt(ts, &ts->adapt));
   PetscCall(TSAdaptCandidatesClear(ts->adapt));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,9 +73,6 @@ static PetscErrorCode TSReset_CentralDifference(TS ts)
   TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
 
   PetscFunctionBegin;
-  PetscCall(VecDestroy(&cd->U0));
-  PetscCall(VecDestroy(&cd->V0));
-  PetscCall(VecDestroy(&cd->A0));
   PetscCall(VecDestroy(&cd->A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -156,7 +160,8 @@ PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS ts, Vec A)
    Level: beginner
 
    Note:
-   One evaluation of the acceleration in a step. It conserves the staggered energy 1/2 v'Mv - dt^2/8 a'Ma + potential.
+   One evaluation of the acceleration in a step. It conserves the staggered energy 1/2 v'Mv - dt^2/8 a'Ma + potential. There is no
+   `TSRollBack()`: whoever wants to undo a step keeps displacement, velocity and acceleration, and calls `TSSecondOrderSetState()`.
 
 .seealso: `TSALPHA2`, `TSCentralDifferenceSetAcceleration()`
 M*/
@@ -169,12 +174,28 @@ static PetscErrorCode TSCreate_CentralDifference(TS ts)
   ts->data               = cd;
   ts->ops->setup         = TSSetUp_CentralDifference;
   ts->ops->step          = TSStep_CentralDifference;
-  ts->ops->rollback      = TSRollBack_CentralDifference;
   ts->ops->reset         = TSReset_CentralDifference;
   ts->ops->destroy       = TSDestroy_CentralDifference;
   ts->default_adapt_type = TSADAPTNONE;
   PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C", TSCentralDifferenceSetAcceleration_CentralDifference));
   PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C", TSCentralDifferenceSetAccelerationVec_CentralDifference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*MC
+   TSSTATIC - static balance at the end of each step, K(u) = f(t): `TSALPHA2` with its stage at the end of the step, for bodies without
+   inertia
+
+   Level: beginner
+
+.seealso: `TSALPHA2`
+M*/
+static PetscErrorCode TSCreate_Static(TS ts)
+{
+  PetscFunctionBegin;
+  PetscCall(TSSetType(ts, TSALPHA2));
+  PetscCall(TSAlpha2SetParams(ts, 1, 1, 0.5, 0.25));
+  PetscCall(PetscObjectChangeTypeName((PetscObject)ts, TSSTATIC));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,6 +212,7 @@ PetscErrorCode TSSecondOrderRegisterAll(void)
 {
   PetscFunctionBegin;
   PetscCall(TSRegister(TSCENTRALDIFFERENCE, TSCreate_CentralDifference));
+  PetscCall(TSRegister(TSSTATIC, TSCreate_Static));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -42,13 +42,14 @@ SUMMARY = {
             "kinetic": float,
             "potential": float,
             "peak_potential": float,
+            "external_work": float,
             "total_energy_error_min": float,
             "total_energy_error_max": float,
             "substeps": int,
         }
         for name in ("left", "right")
     },
-    "system": {key: float for key in ("energy_error_min", "energy_error_max", "energy_error_final", "momentum_error_max", "penalty_energy_max")},
+    "system": {key: float for key in ("energy_error_min", "energy_error_max", "energy_error_final", "momentum_error_max", "angular_momentum_error_max", "penalty_energy_max")},
     "errors": {
         **{
             key: float
@@ -75,6 +76,8 @@ UNITS = {
     "body/{}/contact_position": "m",
     "body/{}/contact_velocity": "m/s",
     "body/{}/mean_velocity": "m/s",
+    "body/{}/external_work": "J",
+    "body/{}/momentum": "kg m/s",
 }
 
 

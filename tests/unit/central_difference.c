@@ -160,36 +160,6 @@ static void conserves_staggered_energy(void **state)
   destroy_springs(&s);
 }
 
-static void rolls_back_bit_for_bit(void **state)
-{
-  PetscReal before[3][2], after[3][2], again[3][2], time;
-  Springs   s;
-
-  (void)state;
-  create_springs(&s, 0.25); /* a power of two: TSRollBack() makes the step anew, as a difference of times */
-  step(&s, 7);
-  get(s.u, before[0]);
-  get(s.v, before[1]);
-  get(s.a, before[2]);
-  step(&s, 1);
-  get(s.u, again[0]);
-  get(s.v, again[1]);
-  get(s.a, again[2]);
-  ok(TSRollBack(s.ts));
-  get(s.u, after[0]);
-  get(s.v, after[1]);
-  get(s.a, after[2]);
-  assert_memory_equal(before, after, sizeof(before));
-  ok(TSGetTime(s.ts, &time));
-  assert_true(time == 1.75);
-  step(&s, 1);
-  get(s.u, after[0]);
-  get(s.v, after[1]);
-  get(s.a, after[2]);
-  assert_memory_equal(again, after, sizeof(again));
-  destroy_springs(&s);
-}
-
 /* Another time, step and number of steps, and on from there */
 static void can_be_put_at_another_time(void **state)
 {
@@ -251,7 +221,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(is_of_second_order),
       cmocka_unit_test(has_the_frequency_of_central_differences),
       cmocka_unit_test(conserves_staggered_energy),
-      cmocka_unit_test(rolls_back_bit_for_bit),
       cmocka_unit_test(can_be_put_at_another_time),
       cmocka_unit_test(refuses_to_set_up_without_its_parts),
   };

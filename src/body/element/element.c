@@ -35,6 +35,7 @@ PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType 
   PetscCall(PetscNew(element));
   (*element)->material      = material;
   (*element)->cross_section = 1;
+  (*element)->inverted      = -1;
   PetscCall((*create)(*element));
   if ((*element)->ops.setfromoptions) PetscCall((*(*element)->ops.setfromoptions)(*element, comm, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);

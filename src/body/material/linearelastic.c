@@ -1,72 +1,127 @@
-#include "materialimpl.h"
+/* Linear elasticity: P = lambda tr(H) I + mu (H + H^T), with no regard to rotations; defined for every H. */
+#include "isotropic.h"
+#include "tensor.h"
 
-typedef struct {
-  PetscReal youngs_modulus; /* Pa */
-  PetscReal poissons_ratio;
-} LinearElastic;
-
-static PetscErrorCode MaterialSetFromOptions_LinearElastic(Material material)
+SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
 {
-  LinearElastic *elastic = (LinearElastic *)material->data;
-  const char    *prefix  = ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "";
-  MPI_Comm       comm    = PetscObjectComm((PetscObject)material);
-  PetscBool      set;
+  const PetscReal lambda = ((const Isotropic *)data)->lambda, mu = ((const Isotropic *)data)->mu;
 
-  PetscFunctionBegin;
-  PetscObjectOptionsBegin((PetscObject)material);
-  PetscCall(PetscOptionsReal("-youngs_modulus", "Young's modulus [Pa]", "", elastic->youngs_modulus, &elastic->youngs_modulus, &set));
-  PetscCall(PetscOptionsReal("-poissons_ratio", "Poisson's ratio", "", elastic->poissons_ratio, &elastic->poissons_ratio, NULL));
-  PetscOptionsEnd();
-  PetscCheck(set, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus in Pa", prefix);
-  PetscCheck(elastic->youngs_modulus > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is %g Pa; it must be positive", prefix, (double)elastic->youngs_modulus);
-  PetscCheck(elastic->poissons_ratio > -1 && elastic->poissons_ratio < 0.5, comm, PETSC_ERR_USER_INPUT, "-%spoissons_ratio is %g; it must lie between -1 and 0.5", prefix, (double)elastic->poissons_ratio);
-  PetscFunctionReturn(PETSC_SUCCESS);
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const Tensor    h = TensorLoad(H, p);
+    const PetscReal d = lambda * (h.xx + h.yy + h.zz), xy = mu * (h.xy + h.yx), xz = mu * (h.xz + h.zx), yz = mu * (h.yz + h.zy);
+
+    TensorStore((Tensor){d + 2 * mu * h.xx, xy, xz, xy, d + 2 * mu * h.yy, yz, xz, yz, d + 2 * mu * h.zz}, P, p);
+  }
 }
 
-static PetscErrorCode MaterialView_LinearElastic(Material material, PetscViewer viewer)
+SIMD_CLONES static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
 {
-  const LinearElastic *elastic = (const LinearElastic *)material->data;
+  const PetscReal lambda = ((const Isotropic *)data)->lambda, mu = ((const Isotropic *)data)->mu;
 
-  PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g Pa, Poisson's ratio %g\n", (double)elastic->youngs_modulus, (double)elastic->poissons_ratio));
-  PetscFunctionReturn(PETSC_SUCCESS);
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const Tensor    h     = TensorLoad(H, p);
+    const PetscReal trace = h.xx + h.yy + h.zz, xy = h.xy + h.yx, xz = h.xz + h.zx, yz = h.yz + h.zy;
+
+    W[p] = 0.5 * lambda * trace * trace + mu * (h.xx * h.xx + h.yy * h.yy + h.zz * h.zz + 0.5 * (xy * xy + xz * xz + yz * yz));
+  }
 }
 
-static PetscErrorCode MaterialDestroy_LinearElastic(Material material)
+/* Of the first `dim` rows and columns; zero elsewhere */
+static void FillTangent(PetscReal lambda, PetscReal mu, int dim, PetscReal tangent[81])
 {
-  PetscFunctionBegin;
-  PetscCall(PetscFree(material->data));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; i < 81; i++) tangent[i] = 0;
+  for (int i = 0; i < dim; i++)
+    for (int j = 0; j < dim; j++) {
+      tangent[9 * (3 * i + i) + 3 * j + j] += lambda;
+      tangent[9 * (3 * i + j) + 3 * i + j] += mu;
+      tangent[9 * (3 * i + j) + 3 * j + i] += mu;
+    }
 }
 
-static PetscErrorCode MaterialUniaxialModulus_LinearElastic(Material material, PetscReal *modulus)
+static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81])
+{
+  (void)H;
+  FillTangent(((const Isotropic *)data)->lambda, ((const Isotropic *)data)->mu, 3, tangent);
+}
+
+SIMD_CLONES static void PlaneStress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
+{
+  const PetscReal lambda = ((const Isotropic *)data)->plane_lambda, mu = ((const Isotropic *)data)->mu;
+
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const Tensor    h = TensorLoad(H, p);
+    const PetscReal d = lambda * (h.xx + h.yy), xy = mu * (h.xy + h.yx);
+
+    TensorStore((Tensor){d + 2 * mu * h.xx, xy, 0, xy, d + 2 * mu * h.yy, 0, 0, 0, 0}, P, p);
+  }
+}
+
+SIMD_CLONES static void PlaneEnergy(const void *data, const PetscReal H[9][8], PetscReal W[8])
+{
+  const PetscReal lambda = ((const Isotropic *)data)->plane_lambda, mu = ((const Isotropic *)data)->mu;
+
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const Tensor    h     = TensorLoad(H, p);
+    const PetscReal trace = h.xx + h.yy, xy = h.xy + h.yx;
+
+    W[p] = 0.5 * lambda * trace * trace + mu * (h.xx * h.xx + h.yy * h.yy + 0.5 * xy * xy);
+  }
+}
+
+static void PlaneTangent(const void *data, const PetscReal H[9], PetscReal tangent[81])
+{
+  (void)H;
+  FillTangent(((const Isotropic *)data)->plane_lambda, ((const Isotropic *)data)->mu, 2, tangent);
+}
+
+static PetscErrorCode MaterialKernels_LinearElastic(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
-  *modulus = ((const LinearElastic *)material->data)->youngs_modulus;
+  if (plane_stress) *kernels = (MaterialKernels){material->data, PlaneStress, PlaneEnergy, PlaneTangent};
+  else *kernels = (MaterialKernels){material->data, Stress, Energy, Tangent};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode MaterialUniaxial_LinearElastic(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
 {
-  const PetscReal youngs_modulus = ((const LinearElastic *)material->data)->youngs_modulus;
+  const PetscReal youngs_modulus = ((const Isotropic *)material->data)->youngs_modulus;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++) stress[i] = youngs_modulus * strain[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MaterialCreate_LinearElastic(Material material)
+static PetscErrorCode MaterialUniaxialTangent_LinearElastic(Material material, PetscInt n, const PetscReal strain[], PetscReal tangent[])
 {
-  LinearElastic *elastic;
+  const PetscReal youngs_modulus = ((const Isotropic *)material->data)->youngs_modulus;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&elastic));
-  material->data                 = elastic;
+  (void)strain;
+  for (PetscInt i = 0; i < n; i++) tangent[i] = youngs_modulus;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MaterialUniaxialEnergy_LinearElastic(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
+{
+  const PetscReal youngs_modulus = ((const Isotropic *)material->data)->youngs_modulus;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++) energy[i] = 0.5 * youngs_modulus * strain[i] * strain[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MaterialCreate_LinearElastic(Material material)
+{
+  PetscFunctionBegin;
+  PetscCall(MaterialCreate_Isotropic(material));
   material->linear               = PETSC_TRUE;
-  material->ops->setfromoptions  = MaterialSetFromOptions_LinearElastic;
-  material->ops->view            = MaterialView_LinearElastic;
-  material->ops->destroy         = MaterialDestroy_LinearElastic;
-  material->ops->uniaxialmodulus = MaterialUniaxialModulus_LinearElastic;
+  material->ops->kernels         = MaterialKernels_LinearElastic;
   material->ops->uniaxial        = MaterialUniaxial_LinearElastic;
+  material->ops->uniaxialtangent = MaterialUniaxialTangent_LinearElastic;
+  material->ops->uniaxialenergy  = MaterialUniaxialEnergy_LinearElastic;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

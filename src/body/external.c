@@ -1,0 +1,106 @@
+/* What loads do to a body: forces from outside, held displacements, and the work of both. */
+#include "bodyimpl.h"
+
+/* f += scale * forces from outside at time t [N] */
+PetscErrorCode BodyAddExternalForce(Body body, PetscReal t, PetscScalar scale, Vec f)
+{
+  PetscFunctionBegin;
+  if (body->loads && !body->unloaded) PetscCall(BodyLoadsAddForce(body, t, scale, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Held dofs of any of u, v, a at time t */
+PetscErrorCode BodyPrescribeHeld(Body body, PetscReal t, Vec u, Vec v, Vec a)
+{
+  PetscFunctionBegin;
+  if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->unloaded) {
+    if (u) PetscCall(BodyZeroHeld(body, u));
+    if (v) PetscCall(BodyZeroHeld(body, v));
+    if (a) PetscCall(BodyZeroHeld(body, a));
+  } else PetscCall(BodyLoadsPrescribe(body, t, u, v, a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyZeroHeld(Body body, Vec vec)
+{
+  PetscScalar *array;
+
+  PetscFunctionBegin;
+  if (!body->n_held) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(vec, &array));
+  for (PetscInt i = 0; i < body->n_held; i++) array[body->held_dofs[i]] = 0;
+  PetscCall(VecRestoreArray(vec, &array));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows and columns of held dofs become those of the identity */
+PetscErrorCode BodyEliminateHeld(Body body, Mat A)
+{
+  PetscInt rstart, *rows;
+
+  PetscFunctionBegin;
+  if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(body->n_held, &rows));
+  for (PetscInt i = 0; i < body->n_held; i++) rows[i] = rstart + body->held_dofs[i];
+  PetscCall(MatZeroRowsColumns(A, body->n_held, rows, 1, NULL, NULL));
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forces from outside and the reactions that hold held dofs, at the current state: what does work on the body, beside contact */
+static PetscErrorCode ComputeApplied(Body body, Vec applied)
+{
+  const PetscScalar *force;
+  PetscScalar       *values;
+
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(applied));
+  PetscCall(BodyAddExternalForce(body, body->time, 1, applied));
+  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->is_static) PetscCall(VecCopy(body->internal_force, body->work[0]));
+  else {
+    PetscCall(BodyMultiplyMass(body, body->state.a, body->work[0]));
+    PetscCall(VecAXPY(body->work[0], 1, body->internal_force));
+  }
+  /* contact forces on held dofs are carried by the reaction, and do no work of their own */
+  PetscCall(VecGetArrayRead(body->work[0], &force));
+  PetscCall(VecGetArray(applied, &values));
+  for (PetscInt i = 0; i < body->n_held; i++) values[body->held_dofs[i]] = force[body->held_dofs[i]];
+  PetscCall(VecRestoreArray(applied, &values));
+  PetscCall(VecRestoreArrayRead(body->work[0], &force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* To be called when the initial state is there */
+PetscErrorCode BodySetUpWork(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->applied) {
+    PetscCall(BodyCreateVec(body, &body->applied));
+    PetscCall(BodyCreateVec(body, &body->saved_applied));
+  }
+  body->external_work = body->saved_work = 0;
+  PetscCall(ComputeApplied(body, body->applied));
+  PetscCall(VecCopy(body->applied, body->saved_applied));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The work from displacement `start` to the present one, by the trapezoidal rule; collective only where there are loads */
+PetscErrorCode BodyAddWork(Body body, Vec start)
+{
+  Vec       sum = body->work[2], way = body->work[1];
+  PetscReal work;
+
+  PetscFunctionBegin;
+  if (!body->loads || body->unloaded) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCopy(body->applied, sum));
+  PetscCall(ComputeApplied(body, body->applied));
+  PetscCall(VecAXPY(sum, 1, body->applied));
+  PetscCall(VecWAXPY(way, -1, start, body->state.u));
+  PetscCall(VecDot(sum, way, &work));
+  body->external_work += 0.5 * work;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
