@@ -27,7 +27,7 @@
 PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscReal *difference, PetscReal *norm)
 {
   const Element      element = body->element;
-  const PetscInt     n       = element->nodes, dim = body->dim;
+  const PetscInt     n = element->nodes, dim = body->dim;
   const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
   const PetscScalar *u;
   PetscReal          x[ELEMENT_MAX_DOFS], weight[ELEMENT_MAX_DOFS], sums[2] = {0, 0};
