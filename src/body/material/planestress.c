@@ -16,16 +16,17 @@ static void FindThickness(const MaterialKernels *solid, PetscReal H[9][8])
   for (int iteration = 0; iteration < MAX_ITERATIONS && left; iteration++) {
     (*solid->stress)(solid->data, H, P);
     for (int p = 0; p < 8; p++) {
-      PetscReal size = 0, step;
+      const PetscReal limit = -0.5 * (1 + H[8][p]); /* not beyond an inverted point */
+      PetscReal       size  = 0, step;
 
       if (done[p]) continue;
       for (int i = 0; i < 9; i++) point[i] = H[i][p];
       for (int i = 0; i < 9; i++) size = PetscMax(size, PetscAbsReal(point[i]));
       (*solid->tangent)(solid->data, point, tangent);
-      step = PetscMax(-P[8][p] / tangent[80], -0.5 * (1 + H[8][p])); /* not beyond an inverted point */
-      /* convergence is quadratic: the error left is the square of this step, relative to the strain */
-      done[p] = PetscNot(PetscAbsReal(step) > 1e-9 * size);
-      H[8][p] += step;
+      step = -P[8][p] / tangent[80];
+      /* convergence is quadratic: the error left is the square of this step, relative to the strain. NaN remains what it is. */
+      done[p] = PetscNot(PetscAbsReal(step) > 1e-9 * size || step < limit);
+      H[8][p] += step < limit ? limit : step;
       if (done[p]) left--;
     }
   }
