@@ -14,6 +14,10 @@ PetscErrorCode ElementRegisterAll(void)
 {
   PetscFunctionBegin;
   PetscCall(ElementRegister(DM_POLYTOPE_SEGMENT, ElementCreate_Bar2));
+  PetscCall(ElementRegister(DM_POLYTOPE_TRIANGLE, ElementCreate_Tri3));
+  PetscCall(ElementRegister(DM_POLYTOPE_QUADRILATERAL, ElementCreate_Quad4));
+  PetscCall(ElementRegister(DM_POLYTOPE_TETRAHEDRON, ElementCreate_Tet4));
+  PetscCall(ElementRegister(DM_POLYTOPE_HEXAHEDRON, ElementCreate_Hex8));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -31,7 +35,7 @@ PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType 
 
   PetscFunctionBegin;
   PetscCall(PetscFunctionListFind(ElementList, DMPolytopeTypes[cell], &create));
-  PetscCheck(create, comm, PETSC_ERR_SUP, "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar)", prefix, DMPolytopeTypes[cell]);
+  PetscCheck(create, comm, PETSC_ERR_SUP, "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar), triangle (3 nodes), quad (4 nodes), tetrahedron (4 nodes), hexahedron (8 nodes)", prefix, DMPolytopeTypes[cell]);
   PetscCall(PetscNew(element));
   (*element)->material      = material;
   (*element)->cross_section = 1;
@@ -41,7 +45,8 @@ PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the element its cells (count x nodes local node numbers, kept by reference) and the coordinates of the rank's nodes. */
+/* Gives the element its cells (count x nodes local node numbers, in the usual order: VTK's) and the coordinates of the rank's nodes; both
+   are kept by reference. */
 PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt connectivity[], const PetscReal coordinates[])
 {
   PetscFunctionBegin;

@@ -23,11 +23,11 @@ struct _n_Element {
   ElementOps       ops;
   PetscInt         dim, nodes;   /* space dimension; nodes of one element */
   PetscInt         count;        /* elements of this rank */
-  const PetscInt  *connectivity; /* count x nodes: local node numbers; owned by the body */
+  const PetscInt  *connectivity; /* count x nodes: local node numbers, in VTK's order of vertices; owned by the body */
   Material         material;
   PetscReal        cross_section; /* of bars [m^2], thickness of plane bodies [m]; 1 for other shapes */
   PetscInt         n_points;      /* load points of one element: a rule exact for quadratic functions at least */
-  const PetscReal *shape;         /* shape functions there, n_points x nodes; static */
+  const PetscReal *shape;         /* shape functions there, n_points x nodes; owned by the element */
   PetscInt         inverted;      /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
   void            *data;
 };

@@ -1,0 +1,216 @@
+/* Solid elements: set-up, and what is found of one element at a time. */
+#include "solid.h"
+
+/* Below this, times the largest extent of an element to the power of the dimension, a determinant is round-off */
+#define DEGENERATE 1e-14
+
+/* Shape functions at a point of an element and their gradients by the undeformed position (nodes x dim); returns det(dX/dxi) */
+static PetscReal GetShape(Element element, PetscInt e, const PetscReal xi[], PetscReal N[], PetscReal gradient[])
+{
+  const Solid    *solid = (const Solid *)element->data;
+  const PetscInt *nodes = element->connectivity + e * element->nodes;
+  const PetscInt  dim   = element->dim;
+  PetscReal       dN[SOLID_MAX_NODES * 3], x[3][3] = {{0}}, cofactor[3][3], determinant;
+
+  (*solid->shape->shape)(xi, N, dN);
+  if (dim == 2) x[2][2] = 1;
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++)
+      for (PetscInt j = 0; j < dim; j++) x[i][j] += solid->coordinates[dim * nodes[a] + i] * dN[dim * a + j];
+  for (PetscInt i = 0; i < 3; i++)
+    for (PetscInt j = 0; j < 3; j++) cofactor[i][j] = x[(i + 1) % 3][(j + 1) % 3] * x[(i + 2) % 3][(j + 2) % 3] - x[(i + 1) % 3][(j + 2) % 3] * x[(i + 2) % 3][(j + 1) % 3];
+  determinant = x[0][0] * cofactor[0][0] + x[0][1] * cofactor[0][1] + x[0][2] * cofactor[0][2];
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++) {
+      gradient[dim * a + i] = 0;
+      for (PetscInt j = 0; j < dim; j++) gradient[dim * a + i] += cofactor[i][j] * dN[dim * a + j] / determinant;
+    }
+  return determinant;
+}
+
+/* An error where the map from the reference element folds over, at a point of integration or at a node */
+static PetscErrorCode CheckElement(Element element, PetscInt e)
+{
+  const Solid      *solid  = (const Solid *)element->data;
+  const SolidShape *shape  = solid->shape;
+  const PetscInt   *nodes  = element->connectivity + e * element->nodes;
+  const PetscInt    dim    = element->dim;
+  const PetscReal  *origin = solid->coordinates + dim * nodes[0];
+  PetscReal         N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3], extent = 0, least = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  for (PetscInt a = 1; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++) extent = PetscMax(extent, PetscAbsReal(solid->coordinates[dim * nodes[a] + i] - origin[i]));
+  for (PetscInt k = 0; k < shape->n_points + element->nodes; k++) {
+    const PetscReal *xi          = k < shape->n_points ? shape->points + dim * k : shape->corners + dim * (k - shape->n_points);
+    const PetscReal  determinant = GetShape(element, e, xi, N, gradient);
+
+    if (!(determinant >= least)) least = determinant; /* keeps a NaN */
+  }
+  PetscCheck(least > DEGENERATE * PetscPowRealInt(extent, (int)dim), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Element %" PetscInt_FMT " of this rank, with a node at (%g, %g, %g) m, is inverted or degenerate: its Jacobian falls to %g; mend the mesh, in which vertices must run counterclockwise (the lower face of a hexahedron seen from above, the first face of a tetrahedron seen from its fourth vertex)", e, (double)origin[0], (double)origin[1],
+             (double)(dim == 3 ? origin[2] : 0), (double)least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementSetFromOptions_Solid(Element element, MPI_Comm comm, const char prefix[])
+{
+  PetscBool plane_stress = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (element->dim == 3) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscOptionsBegin(comm, prefix, "Plane elements", "Element");
+  PetscCall(PetscOptionsReal("-thickness", "Thickness of a plane body [m]", "", element->cross_section, &element->cross_section, NULL));
+  PetscCall(PetscOptionsBool("-plane_stress", "Plane stress, else plane strain", "MaterialSetPlaneStress", plane_stress, &plane_stress, NULL));
+  PetscOptionsEnd();
+  PetscCheck(element->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%sthickness is %g m; it must be positive", prefix, (double)element->cross_section);
+  PetscCall(MaterialSetPlaneStress(element->material, plane_stress));
+  ((Solid *)element->data)->plane_stress = plane_stress;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordinates[])
+{
+  Solid *solid = (Solid *)element->data;
+
+  PetscFunctionBegin;
+  solid->coordinates = coordinates;
+  PetscCall(MaterialIsLinear(element->material, &solid->linear));
+  PetscCall(MaterialSetPlaneStress(element->material, PETSC_FALSE));
+  PetscCall(MaterialGetKernels(element->material, &solid->unconstrained));
+  PetscCall(MaterialSetPlaneStress(element->material, solid->plane_stress));
+  PetscCall(MaterialGetKernels(element->material, &solid->kernels));
+  for (PetscInt e = 0; e < element->count; e++) PetscCall(CheckElement(element, e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K_(a i)(b k) = sum over the points of w dN_a/dX_j (dP_ij/dH_kl) dN_b/dX_l */
+static PetscErrorCode ElementStiffness_Solid(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+{
+  const Solid      *solid = (const Solid *)element->data;
+  const SolidShape *shape = solid->shape;
+  const PetscInt   *nodes = element->connectivity + e * element->nodes;
+  const PetscInt    dim = element->dim, n = element->nodes * dim;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(K, n * n));
+  for (PetscInt g = 0; g < shape->n_points; g++) {
+    PetscReal       N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3], H[9] = {0}, tangent[81];
+    const PetscReal weight = GetShape(element, e, shape->points + dim * g, N, gradient) * element->cross_section * shape->volume / shape->n_points;
+
+    for (PetscInt a = 0; a < element->nodes; a++)
+      for (PetscInt i = 0; i < dim; i++)
+        for (PetscInt j = 0; j < dim; j++) H[3 * i + j] += u[dim * nodes[a] + i] * gradient[dim * a + j];
+    (*solid->kernels.tangent)(solid->kernels.data, H, tangent);
+    for (PetscInt b = 0; b < element->nodes; b++)
+      for (PetscInt k = 0; k < dim; k++) {
+        PetscReal stress[3][3]; /* for a displacement of this degree of freedom */
+
+        for (PetscInt i = 0; i < dim; i++)
+          for (PetscInt j = 0; j < dim; j++) {
+            stress[i][j] = 0;
+            for (PetscInt l = 0; l < dim; l++) stress[i][j] += weight * tangent[9 * (3 * i + j) + 3 * k + l] * gradient[dim * b + l];
+          }
+        for (PetscInt a = 0; a < element->nodes; a++)
+          for (PetscInt i = 0; i < dim; i++)
+            for (PetscInt j = 0; j < dim; j++) K[(dim * a + i) * n + dim * b + k] += stress[i][j] * gradient[dim * a + j];
+      }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal positions[], PetscReal weights[])
+{
+  const Solid      *solid = (const Solid *)element->data;
+  const SolidShape *shape = solid->shape;
+  const PetscInt   *nodes = element->connectivity + e * element->nodes;
+  const PetscInt    dim   = element->dim;
+
+  PetscFunctionBegin;
+  for (PetscInt g = 0; g < shape->n_load_points; g++) {
+    PetscReal N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3];
+
+    weights[g] = GetShape(element, e, shape->load_points + dim * g, N, gradient) * element->cross_section * shape->volume / shape->n_load_points;
+    for (PetscInt i = 0; i < dim; i++) {
+      positions[dim * g + i] = 0;
+      for (PetscInt a = 0; a < element->nodes; a++) positions[dim * g + i] += N[a] * solid->coordinates[dim * nodes[a] + i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By the load points: exact on simplices and parallelepipeds, where products of two shape functions are quadratic in each coordinate */
+static PetscErrorCode ElementMass_Solid(Element element, PetscInt e, PetscScalar M[])
+{
+  const PetscInt dim = element->dim, n = element->nodes * dim;
+  PetscReal      positions[SOLID_MAX_POINTS * 3], weights[SOLID_MAX_POINTS], density;
+
+  PetscFunctionBegin;
+  PetscCall(MaterialGetDensity(element->material, &density));
+  PetscCall(ElementPoints_Solid(element, e, positions, weights));
+  PetscCall(PetscArrayzero(M, n * n));
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt b = 0; b < element->nodes; b++) {
+      PetscReal mass = 0;
+
+      for (PetscInt g = 0; g < element->n_points; g++) mass += density * weights[g] * element->shape[g * element->nodes + a] * element->shape[g * element->nodes + b];
+      for (PetscInt i = 0; i < dim; i++) M[(dim * a + i) * n + dim * b + i] = mass;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In plane stress, the stretch of the thickness, which the kernels keep to themselves: P_zz(H_zz) = 0 by Newton's method */
+void SolidStretchThickness(const Solid *solid, PetscReal H[9][SIMD_WIDTH])
+{
+  for (PetscInt k = 2; k < 9; k++)
+    if (k == 2 || k > 4)
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[k][p] = 0;
+  for (PetscInt iteration = 0; iteration < 50; iteration++) {
+    SimdReal  P[9];
+    PetscReal largest = 0;
+
+    (*solid->unconstrained.stress)(solid->unconstrained.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+      PetscReal one[9], tangent[81], change;
+
+      for (PetscInt k = 0; k < 9; k++) one[k] = H[k][p];
+      (*solid->unconstrained.tangent)(solid->unconstrained.data, one, tangent);
+      change = -P[8][p] / tangent[80];
+      /* no further than half way to a thickness of zero */
+      change = PetscMax(change, -0.5 * (1 + H[8][p]));
+      if (change == change) H[8][p] += change;
+      if (change == change) largest = PetscMax(largest, PetscAbsReal(change));
+    }
+    if (largest < 1e-14) return;
+  }
+}
+
+static PetscErrorCode ElementDestroy_Solid(Element element)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(element->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All but the loops over all elements, which each shape has of its own */
+PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
+{
+  PetscReal gradient[SOLID_MAX_NODES * 3];
+  Solid    *solid;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&solid));
+  solid->shape = shape;
+  for (PetscInt g = 0; g < shape->n_load_points; g++) (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, gradient);
+  element->data               = solid;
+  element->dim                = shape->dim;
+  element->nodes              = shape->nodes;
+  element->n_points           = shape->n_load_points;
+  element->shape              = solid->load_shape;
+  element->ops.setfromoptions = ElementSetFromOptions_Solid;
+  element->ops.setup          = ElementSetUp_Solid;
+  element->ops.stiffness      = ElementStiffness_Solid;
+  element->ops.mass           = ElementMass_Solid;
+  element->ops.points         = ElementPoints_Solid;
+  element->ops.destroy        = ElementDestroy_Solid;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,297 @@
+/*
+   The loops over all elements of one shape: internal force, energy, stress. A template: a shape's file defines
+
+     DIM, NODES, POINTS            space dimension, nodes, points of integration
+     MODES                         monomials beyond 1 that its shape functions span, of which the first DIM are the coordinates
+     points[POINTS][DIM], WEIGHT   where in the reference element, and the weight of each
+     ModesOfNodes(n, m)            coefficients of those monomials in the function with values n at the nodes
+     NodesOfModes(m, n)            the transpose
+     GradientOfModes(m, xi, d)     gradient in the reference element of the function with coefficients m
+     ModesOfGradient(d, xi, m)     adds the transpose to m
+
+   and includes this. Everything of an element but its nodes is found anew from the coordinates each time: it costs less than fetching it
+   from memory. By monomials, gradients at a point of a hexahedron take 27 multiplications where nodes would take 72.
+*/
+#include "solid.h"
+
+/* Gradients of a batch at a point of integration */
+typedef struct {
+  SimdReal H[9];               /* du_i/dX_j; third row and column zero in two dimensions */
+  SimdReal cofactor[DIM][DIM]; /* of dX_i/dxi_j: its inverse is their transpose over the determinant */
+  SimdReal determinant;
+} Gradients;
+
+/* Values at the nodes of a batch of elements, as coefficients of monomials; past the last element, it is taken again */
+SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[], SimdReal modes[DIM][MODES])
+{
+  SimdReal nodal[DIM][NODES];
+
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+    const PetscInt *nodes = connectivity + NODES * PetscMin(first + p, count - 1);
+
+    for (PetscInt a = 0; a < NODES; a++)
+      for (PetscInt i = 0; i < DIM; i++) nodal[i][a][p] = values[DIM * nodes[a] + i];
+  }
+  for (PetscInt i = 0; i < DIM; i++) {
+#pragma omp simd
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+      PetscReal n[NODES], m[MODES];
+
+#pragma GCC unroll 8
+      for (PetscInt a = 0; a < NODES; a++) n[a] = nodal[i][a][p];
+      ModesOfNodes(n, m);
+#pragma GCC unroll 8
+      for (PetscInt k = 0; k < MODES; k++) modes[i][k][p] = m[k];
+    }
+  }
+}
+
+/* Cofactors of a matrix; returns its determinant */
+SIMD_INLINE PetscReal Cofactors(const PetscReal a[3][3], PetscReal c[3][3])
+{
+#if DIM == 2
+  c[0][0] = a[1][1];
+  c[0][1] = -a[1][0];
+  c[1][0] = -a[0][1];
+  c[1][1] = a[0][0];
+  return a[0][0] * c[0][0] + a[0][1] * c[0][1];
+#else
+  c[0][0] = a[1][1] * a[2][2] - a[1][2] * a[2][1];
+  c[0][1] = a[1][2] * a[2][0] - a[1][0] * a[2][2];
+  c[0][2] = a[1][0] * a[2][1] - a[1][1] * a[2][0];
+  c[1][0] = a[2][1] * a[0][2] - a[2][2] * a[0][1];
+  c[1][1] = a[2][2] * a[0][0] - a[2][0] * a[0][2];
+  c[1][2] = a[2][0] * a[0][1] - a[2][1] * a[0][0];
+  c[2][0] = a[0][1] * a[1][2] - a[0][2] * a[1][1];
+  c[2][1] = a[0][2] * a[1][0] - a[0][0] * a[1][2];
+  c[2][2] = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+  return a[0][0] * c[0][0] + a[0][1] * c[0][1] + a[0][2] * c[0][2];
+#endif
+}
+
+SIMD_INLINE void GetGradients(const SimdReal X[DIM][MODES], const SimdReal U[DIM][MODES], const PetscReal xi[DIM], Gradients *at)
+{
+#pragma omp simd
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+    PetscReal m[MODES], x[3][3], u[3][3], c[3][3], determinant, inverse;
+
+#pragma GCC unroll 3
+    for (PetscInt i = 0; i < DIM; i++) {
+#pragma GCC unroll 8
+      for (PetscInt k = 0; k < MODES; k++) m[k] = X[i][k][p];
+      GradientOfModes(m, xi, x[i]);
+#pragma GCC unroll 8
+      for (PetscInt k = 0; k < MODES; k++) m[k] = U[i][k][p];
+      GradientOfModes(m, xi, u[i]);
+    }
+    determinant = Cofactors(x, c);
+    inverse     = 1 / determinant;
+#pragma GCC unroll 3
+    for (PetscInt i = 0; i < DIM; i++)
+#pragma GCC unroll 3
+      for (PetscInt j = 0; j < DIM; j++) {
+        PetscReal h = u[i][0] * c[j][0];
+
+#pragma GCC unroll 3
+        for (PetscInt k = 1; k < DIM; k++) h += u[i][k] * c[j][k];
+        at->H[3 * i + j][p]   = inverse * h;
+        at->cofactor[i][j][p] = c[i][j];
+      }
+    at->determinant[p] = determinant;
+  }
+}
+
+/* Adds the force of one point, by monomials: the stress against the axes of the reference element against their gradients */
+SIMD_INLINE void AddPoint(const SimdReal P[9], const Gradients *at, const PetscReal xi[DIM], SimdReal F[DIM][MODES])
+{
+#pragma omp simd
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+#pragma GCC unroll 3
+    for (PetscInt i = 0; i < DIM; i++) {
+      PetscReal q[DIM], m[MODES];
+
+#pragma GCC unroll 3
+      for (PetscInt k = 0; k < DIM; k++) {
+        q[k] = P[3 * i][p] * at->cofactor[0][k][p];
+#pragma GCC unroll 3
+        for (PetscInt j = 1; j < DIM; j++) q[k] += P[3 * i + j][p] * at->cofactor[j][k][p];
+      }
+#pragma GCC unroll 8
+      for (PetscInt k = 0; k < MODES; k++) m[k] = F[i][k][p];
+      ModesOfGradient(q, xi, m);
+#pragma GCC unroll 8
+      for (PetscInt k = 0; k < MODES; k++) F[i][k][p] = m[k];
+    }
+  }
+}
+
+/* The first member of a batch whose number is not one; -1: none */
+SIMD_INLINE PetscInt FindNaN(const SimdReal values)
+{
+  PetscInt any = 0;
+
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) any |= values[p] != values[p];
+  if (any)
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++)
+      if (values[p] != values[p]) return p;
+  return -1;
+}
+
+/* Returns the first element with a stress that is no number; -1: none */
+SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[], const PetscReal u[], PetscReal f[])
+{
+  PetscInt  inverted = -1;
+  Gradients at       = {0};
+
+  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
+    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
+    SimdReal       X[DIM][MODES], U[DIM][MODES], F[DIM][MODES], P[9], nodal[DIM][NODES], check = {0};
+
+    GetModes(connectivity, first, count, solid->coordinates, X);
+    GetModes(connectivity, first, count, u, U);
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt k = 0; k < MODES; k++)
+        for (PetscInt p = 0; p < SIMD_WIDTH; p++) F[i][k][p] = 0;
+    for (PetscInt g = 0; g < POINTS; g++) {
+      GetGradients(X, U, points[g], &at);
+      (*solid->kernels.stress)(solid->kernels.data, at.H, P);
+      AddPoint(P, &at, points[g], F);
+    }
+    for (PetscInt i = 0; i < DIM; i++) {
+#pragma omp simd
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+        PetscReal m[MODES], values[NODES];
+
+#pragma GCC unroll 8
+        for (PetscInt k = 0; k < MODES; k++) m[k] = F[i][k][p];
+        NodesOfModes(m, values);
+        /* every stress goes into these */
+        check[p] += m[0] + m[1];
+        if (DIM == 3) check[p] += m[2];
+#pragma GCC unroll 8
+        for (PetscInt a = 0; a < NODES; a++) nodal[i][a][p] = scale * values[a];
+      }
+    }
+    if (inverted < 0) {
+      const PetscInt bad = FindNaN(check);
+
+      if (bad >= 0) inverted = first + PetscMin(bad, n - 1);
+    }
+    for (PetscInt p = 0; p < n; p++) {
+      const PetscInt *nodes = connectivity + NODES * (first + p);
+
+      for (PetscInt a = 0; a < NODES; a++)
+        for (PetscInt i = 0; i < DIM; i++) f[DIM * nodes[a] + i] += nodal[i][a][p];
+    }
+  }
+  return inverted;
+}
+
+SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[], PetscReal *energy)
+{
+  PetscInt  inverted = -1;
+  Gradients at       = {0};
+
+  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
+    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
+    SimdReal       X[DIM][MODES], U[DIM][MODES], W, sum = {0};
+    PetscInt       bad;
+
+    GetModes(connectivity, first, count, solid->coordinates, X);
+    GetModes(connectivity, first, count, u, U);
+    for (PetscInt g = 0; g < POINTS; g++) {
+      GetGradients(X, U, points[g], &at);
+      (*solid->kernels.energy)(solid->kernels.data, at.H, W);
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
+    }
+    bad = FindNaN(sum);
+    if (inverted < 0 && bad >= 0) inverted = first + PetscMin(bad, n - 1);
+    for (PetscInt p = 0; p < n; p++) *energy += sum[p];
+  }
+  return inverted;
+}
+
+/* sigma = P F^T / det F; of linear materials P, for which they are the same */
+SIMD_INLINE void Cauchy(const SimdReal H[9], const SimdReal P[9], PetscBool linear, PetscInt p, PetscReal sigma[6])
+{
+  const PetscReal xx = 1 + H[0][p], yy = 1 + H[4][p], zz = 1 + H[8][p], xy = H[1][p], xz = H[2][p], yx = H[3][p], yz = H[5][p], zx = H[6][p], zy = H[7][p];
+  const PetscReal s = 1 / (xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx));
+
+  if (linear) {
+    sigma[0] = P[0][p];
+    sigma[1] = P[4][p];
+    sigma[2] = P[8][p];
+    sigma[3] = P[1][p];
+    sigma[4] = P[5][p];
+    sigma[5] = P[2][p];
+  } else {
+    sigma[0] = s * (P[0][p] * xx + P[1][p] * xy + P[2][p] * xz);
+    sigma[1] = s * (P[3][p] * yx + P[4][p] * yy + P[5][p] * yz);
+    sigma[2] = s * (P[6][p] * zx + P[7][p] * zy + P[8][p] * zz);
+    sigma[3] = s * (P[0][p] * yx + P[1][p] * yy + P[2][p] * yz);
+    sigma[4] = s * (P[3][p] * zx + P[4][p] * zy + P[5][p] * zz);
+    sigma[5] = s * (P[0][p] * zx + P[1][p] * zy + P[2][p] * zz);
+  }
+}
+
+SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[], PetscReal stress[])
+{
+  Gradients at = {0};
+
+  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
+    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
+    SimdReal       X[DIM][MODES], U[DIM][MODES], P[9], sum[6] = {0}, volume = {0};
+
+    GetModes(connectivity, first, count, solid->coordinates, X);
+    GetModes(connectivity, first, count, u, U);
+    for (PetscInt g = 0; g < POINTS; g++) {
+      GetGradients(X, U, points[g], &at);
+      (*solid->kernels.stress)(solid->kernels.data, at.H, P);
+      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, at.H);
+#pragma omp simd
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+        PetscReal sigma[6];
+
+        Cauchy(at.H, P, solid->linear, p, sigma);
+#pragma GCC unroll 6
+        for (PetscInt k = 0; k < 6; k++) sum[k][p] += at.determinant[p] * sigma[k];
+        volume[p] += at.determinant[p];
+      }
+    }
+    for (PetscInt p = 0; p < n; p++)
+      for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];
+  }
+}
+
+static PetscErrorCode InternalForce(Element element, const PetscScalar u[], PetscScalar f[])
+{
+  PetscFunctionBegin;
+  element->inverted = AddForces((const Solid *)element->data, WEIGHT * element->cross_section, element->count, element->connectivity, u, f);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Energy(Element element, const PetscScalar u[], PetscReal *energy)
+{
+  PetscFunctionBegin;
+  *energy           = 0;
+  element->inverted = AddEnergy((const Solid *)element->data, element->count, element->connectivity, u, energy);
+  *energy *= WEIGHT * element->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Stress(Element element, const PetscScalar u[], PetscReal stress[])
+{
+  PetscFunctionBegin;
+  GetStress((const Solid *)element->data, element->count, element->connectivity, u, stress);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Create(Element element, const SolidShape *shape)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementCreate_Solid(element, shape));
+  element->ops.internalforce = InternalForce;
+  element->ops.energy        = Energy;
+  element->ops.stress        = Stress;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
