@@ -44,30 +44,38 @@ PetscErrorCode BodyLoadsRefuseNormal(Body body, const char name[], const Express
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* PetscStrToArray() would skip it */
+static PetscBool HasEmptyName(const char text[])
+{
+  for (const char *c = text;; c++) {
+    const size_t length = strcspn(c, ",");
+
+    if (strspn(c, " \t") >= length) return PETSC_TRUE;
+    c += length;
+    if (!*c) return PETSC_FALSE;
+  }
+}
+
 /* The names in a list such as -<body>_boundary_traction a,b; none if it is not given */
 static PetscErrorCode GetNames(Body body, const char name[], PetscInt *n, char ***names)
 {
   MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
   const char *prefix = ((PetscObject)body)->prefix, *text;
   int         count  = 0;
+  PetscBool   twice  = PETSC_FALSE;
 
   PetscFunctionBegin;
   *n     = 0;
   *names = NULL;
   PetscCall(BodyLoadsGetText(body, name, &text));
   if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!HasEmptyName(text), comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' has an empty name in it; give names of surfaces with commas between them", prefix, name, text);
   PetscCall(PetscStrToArray(text, ',', &count, names));
+  for (int i = 0; i < count && !twice; i++)
+    for (int k = 0; k < i && !twice; k++) PetscCall(PetscStrcasecmp((*names)[i], (*names)[k], &twice));
+  if (twice) PetscCall(PetscStrToArrayDestroy(count, *names));
+  PetscCheck(!twice, comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' names a surface twice (upper and lower case are the same in options)", prefix, name, text);
   *n = count;
-  for (PetscInt i = 0; i < *n; i++) {
-    const PetscBool blank = (PetscBool)((*names)[i][strspn((*names)[i], " \t")] == 0);
-    PetscBool       twice = blank;
-
-    for (PetscInt k = 0; k < i && !twice; k++) PetscCall(PetscStrcasecmp((*names)[i], (*names)[k], &twice));
-    if (!twice) continue;
-    PetscCall(PetscStrToArrayDestroy(count, *names));
-    PetscCheck(!blank, comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' has an empty name in it; give names of surfaces with commas between them", prefix, name, text);
-    SETERRQ(comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' names a surface twice (upper and lower case are the same in options)", prefix, name, text);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,8 +101,11 @@ static PetscErrorCode ReadDisplacements(Body body, PetscInt n, char **names)
   PetscCall(PetscCalloc1(n, &loads->prescribed));
   loads->n_prescribed = n;
   for (PetscInt i = 0; i < n; i++) {
+    char name[LOADS_NAME_LENGTH];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "boundary_displacement_%s", names[i]));
     PetscCall(GetSurfaceComponents(body, "boundary_displacement", names[i], PETSC_TRUE, loads->prescribed[i].component));
-    PetscCall(BodyLoadsRefuseNormal(body, "boundary_displacement", loads->prescribed[i].component));
+    PetscCall(BodyLoadsRefuseNormal(body, name, loads->prescribed[i].component));
   }
   PetscCall(BodyLoadsSetUpHeld(body, n, names));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -197,8 +208,8 @@ PetscErrorCode BodyLoadsSetFromOptions(Body body)
     if (!error) error = ReadForces(body, n_tractions, tractions, body_force);
     if (!error) error = ReadGravity(body, gravity);
   }
-  PetscCall(PetscStrToArrayDestroy((int)n_displacements, displacements));
-  if (tractions) PetscCall(PetscStrToArrayDestroy((int)n_tractions, tractions));
+  if (n_displacements) PetscCall(PetscStrToArrayDestroy((int)n_displacements, displacements));
+  if (n_tractions) PetscCall(PetscStrToArrayDestroy((int)n_tractions, tractions));
   PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
