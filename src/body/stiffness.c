@@ -33,17 +33,25 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error that names the element which the last internal force of this rank found inverted, if any */
-PetscErrorCode BodyCheckInverted(Body body, PetscReal time)
+/* An error that names an element which the last internal force found inverted on any rank, if there is one. Collective: to be called
+   where it is known to all ranks that something is wrong. */
+PetscErrorCode BodyCheckInverted(Body body)
 {
-  const PetscInt e         = body->element->inverted;
+  MPI_Comm       comm = PetscObjectComm((PetscObject)body);
+  const PetscInt e = body->element->inverted, n = body->element->nodes;
   PetscReal      centre[3] = {0};
+  PetscMPIInt    rank, first;
 
   PetscFunctionBegin;
-  if (e < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt n = 0; n < body->element->nodes; n++)
-    for (PetscInt d = 0; d < body->dim; d++) centre[d] += body->coordinates[body->connectivity[e * body->element->nodes + n] * body->dim + d] / body->element->nodes;
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FP, "Body '%s': element %" PetscInt_FMT " of this rank, in the undeformed mesh around (%g, %g, %g) m, is inverted or not a number at time %.9g s (step %" PetscInt_FMT " of the body); is a time step too large, a load too strong, or the mesh too coarse there?", body->hdr.name, e, (double)centre[0], (double)centre[1], (double)centre[2], (double)time, body->step);
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  first = e < 0 ? body->rows.size : rank;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm));
+  if (first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
+  if (rank == first)
+    for (PetscInt a = 0; a < n; a++)
+      for (PetscInt d = 0; d < body->dim; d++) centre[d] += body->coordinates[body->connectivity[e * n + a] * body->dim + d] / n;
+  PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, comm));
+  SETERRQ(comm, PETSC_ERR_FP, "Body '%s': the element around (%g, %g, %g) m of the undeformed mesh is inverted, or not a number, at time %.9g s (step %" PetscInt_FMT " of the body); is a time step too large, a load too strong, or the mesh too coarse there?", body->hdr.name, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->time, body->step);
 }
 
 /* The global numbers of an element's displacements, from the numbers of its nodes on this rank */

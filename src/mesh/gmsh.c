@@ -50,7 +50,7 @@ static PetscErrorCode ReadText(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
 
     SkipSpace(gmsh); /* to the place that messages tell */
     values[i] = strtoll(gmsh->at, &after, 10);
-    GmshCheck(gmsh, after != gmsh->at, "a whole number is expected");
+    GmshCheck(gmsh, after != gmsh->at, gmsh->at == gmsh->end ? "the file ends within its data: it is cut short" : "a whole number is expected");
     gmsh->at = after;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -108,7 +108,7 @@ static PetscErrorCode ReadReals(Gmsh *gmsh, PetscInt n, double values[])
 
       SkipSpace(gmsh);
       values[i] = strtod(gmsh->at, &after);
-      GmshCheck(gmsh, after != gmsh->at, "a number is expected");
+      GmshCheck(gmsh, after != gmsh->at, gmsh->at == gmsh->end ? "the file ends within its data: it is cut short" : "a number is expected");
       gmsh->at = after;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
