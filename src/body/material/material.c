@@ -38,6 +38,8 @@ PetscErrorCode MaterialRegisterAll(void)
   PetscFunctionBegin;
   PetscCall(PetscClassIdRegister("Material", &MATERIAL_CLASSID));
   PetscCall(MaterialRegister(MATERIAL_LINEAR_ELASTIC, MaterialCreate_LinearElastic));
+  PetscCall(MaterialRegister(MATERIAL_SAINT_VENANT_KIRCHHOFF, MaterialCreate_SaintVenantKirchhoff));
+  PetscCall(MaterialRegister(MATERIAL_NEO_HOOKEAN, MaterialCreate_NeoHookean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,6 +102,28 @@ PetscErrorCode MaterialSetOptionsPrefix(Material material, const char prefix[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The names in the registry, in alphabetical order */
+static PetscErrorCode GetKnownTypes(size_t size, char known[])
+{
+  const char **names;
+  PetscInt    *order;
+  int          n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListGet(MaterialList, &names, &n));
+  PetscCall(PetscMalloc1(n, &order));
+  for (int i = 0; i < n; i++) order[i] = i;
+  PetscCall(PetscSortStrWithPermutation(n, names, order));
+  known[0] = '\0';
+  for (int i = 0; i < n; i++) {
+    if (i) PetscCall(PetscStrlcat(known, ", ", size));
+    PetscCall(PetscStrlcat(known, names[order[i]], size));
+  }
+  PetscCall(PetscFree(order));
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   MaterialSetType - chooses the constitutive model
 
@@ -110,7 +134,7 @@ PetscErrorCode MaterialSetOptionsPrefix(Material material, const char prefix[])
 - type     - its name
 
   Options Database Key:
-. -<body>_material_type (linear_elastic) - the constitutive model
+. -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean) - the constitutive model
 
   Level: beginner
 
@@ -126,7 +150,12 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
   PetscCall(PetscObjectTypeCompare((PetscObject)material, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFunctionListFind(MaterialList, type, &create));
-  PetscCheck(create, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%smaterial_type '%s'; known: linear_elastic", ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", type);
+  if (!create) {
+    char known[1024];
+
+    PetscCall(GetKnownTypes(sizeof(known), known));
+    SETERRQ(PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%smaterial_type '%s'; known: %s", ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", type, known);
+  }
   PetscTryTypeMethod(material, destroy);
   PetscCall(PetscMemzero(material->ops, sizeof(*material->ops)));
   material->data   = NULL;
@@ -145,8 +174,10 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
 . material - the `Material`
 
   Options Database Keys:
-+ -<body>_material_type (linear_elastic) - the constitutive model
-- -<body>_density rho                    - mass density [kg/m^3], required
++ -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean) - the constitutive model
+. -<body>_density rho                                                       - mass density [kg/m^3], required
+. -<body>_youngs_modulus E                                                  - of these three models, at zero strain [Pa], required
+- -<body>_poissons_ratio (0)                                                - of these three models, at zero strain; between -1 and 0.5
 
   Level: beginner
 
