@@ -95,8 +95,9 @@ test: $(BUILD)/impakt $(units) ## unit tests on 1 to 3 ranks and regression test
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
 	$(PYTHON) -m pytest -q -n $(cores) -p no:cacheprovider --rootdir=. $(TESTS)
 
-bench: $(BUILD)/impakt $(BUILD)/yardstick ## time and scaling, beside a plain C yardstick
+bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time, memory and scaling, beside plain C yardsticks
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD)
+	$(PYTHON) tests/scaling/solids.py --build $(BUILD)
 
 format: ## clang-format over all C
 	$(bin)clang-format -i $(c_files)
@@ -123,6 +124,10 @@ $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
 $(BUILD)/yardstick: tests/scaling/yardstick.c
 	@mkdir -p $(@D)
 	$(call say,CC) gcc -O2 -std=c11 $(WARNINGS) -o $@ $< -lm
+
+$(BUILD)/yardstick_hex8: tests/scaling/yardstick_hex8.c
+	@mkdir -p $(@D)
+	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
 
 # What the objects and the library were made with: rewritten only when that changes
 $(BUILD)/flags: text = $(CC) $(CPPFLAGS) $(CFLAGS) $(LIBS)

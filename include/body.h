@@ -1,5 +1,6 @@
 /* One subdomain: a second-order TS on a DMPlex, with its material, mass and state. */
 #pragma once
+#include <expression.h>
 #include <material.h>
 #include <petscts.h>
 #include <petscdmplex.h>
@@ -135,6 +136,7 @@ PETSC_EXTERN PetscErrorCode BodyIsRedistributed(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetMeasures(Body, BodyMeasures *);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDouble *);
 
 PETSC_EXTERN PetscErrorCode BodySave(Body);

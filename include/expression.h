@@ -20,7 +20,10 @@ typedef struct {
 
 PETSC_EXTERN PetscErrorCode ExpressionCreate(MPI_Comm, const char[], const char[], Expression *);
 PETSC_EXTERN PetscErrorCode ExpressionEvaluate(Expression, const ExpressionPoint *, PetscReal *);
+PETSC_EXTERN PetscErrorCode ExpressionEvaluateRates(Expression, const ExpressionPoint *, PetscReal, PetscReal, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ExpressionIsConstant(Expression, PetscBool *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ExpressionIsSteady(Expression, PetscBool *);
+PETSC_EXTERN PetscErrorCode ExpressionIsUniform(Expression, PetscBool *);
+PETSC_EXTERN PetscErrorCode ExpressionUsesNormal(Expression, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionDestroy(Expression *);
 PETSC_EXTERN PetscErrorCode ExpressionListCreate(MPI_Comm, const char[], const char[], PetscInt, PetscBool, Expression[]);

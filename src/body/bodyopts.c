@@ -1,5 +1,6 @@
 /* A body from its options, and its initial state. */
 #include "bodyimpl.h"
+#include <mesh.h>
 
 /* Every body named by -bodies must be described somewhere */
 static PetscErrorCode CheckDescribed(Body body)
@@ -16,12 +17,7 @@ static PetscErrorCode CheckDescribed(Body body)
 static PetscErrorCode CreateMesh(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(DMCreate(PetscObjectComm((PetscObject)body), &body->dm));
-  PetscCall(DMSetType(body->dm, DMPLEX));
-  PetscCall(DMSetOptionsPrefix(body->dm, ((PetscObject)body)->prefix));
-  PetscCall(DMSetFromOptions(body->dm));
-  PetscCall(PetscObjectSetName((PetscObject)body->dm, body->hdr.name)); /* error messages about surfaces name the mesh */
-  PetscCall(DMViewFromOptions(body->dm, NULL, "-dm_view"));
+  PetscCall(MeshCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, &body->dm));
   PetscCall(DMGetCoordinateDim(body->dm, &body->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

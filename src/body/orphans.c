@@ -138,7 +138,7 @@ static PetscErrorCode CopyToComponents(Body body, Vec mass)
 PetscErrorCode BodyRedistributeOrphans(Body body)
 {
   Vec       held, inner, all, next, placed;
-  PetscReal total, left;
+  PetscReal total, left = 0;
 
   PetscFunctionBegin;
   PetscCall(BodyCreateVec(body, &held));
@@ -159,7 +159,6 @@ PetscErrorCode BodyRedistributeOrphans(Body body)
       }
       PetscCall(VecNorm(held, NORM_1, &left));
     }
-    PetscCheck(left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s': %g kg of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false", body->hdr.name, (double)left, ((PetscObject)body)->prefix);
     PetscCall(CopyToComponents(body, placed));
     if (body->mass_diagonal) PetscCall(VecAXPY(body->mass_diagonal, 1, placed));
     else PetscCall(MatDiagonalSet(body->mass_matrix, placed, ADD_VALUES));
@@ -169,5 +168,6 @@ PetscErrorCode BodyRedistributeOrphans(Body body)
   PetscCall(VecDestroy(&held));
   PetscCall(VecDestroy(&inner));
   PetscCall(VecDestroy(&all));
+  PetscCheck(left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s': %g kg of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false", body->hdr.name, (double)left, ((PetscObject)body)->prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -199,7 +199,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
 {
   char      type[64] = CONTACT_SCHWARZ, *pairs[64];
   PetscInt  n        = 64;
-  PetscBool set;
+  PetscBool set, none = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
@@ -211,9 +211,10 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations, (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
   PetscOptionsEnd();
+  if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "none", &none));
   if (set) {
     for (PetscInt p = 0; p < n; p++) {
-      PetscCall(ContactAddPair(contact, pairs[p]));
+      if (!none) PetscCall(ContactAddPair(contact, pairs[p]));
       PetscCall(PetscFree(pairs[p]));
     }
   } else if (contact->n_bodies == 2) {
@@ -222,7 +223,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
     PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[0])->name, ((PetscObject)contact->bodies[1])->name));
     PetscCall(ContactAddPair(contact, pair));
   }
-  PetscCheck(contact->n_bodies < 2 || contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c", contact->n_bodies);
+  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or none", contact->n_bodies);
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,5 @@
 #include <surface.h>
+#include <mesh.h>
 
 struct _n_Surface {
   DM          dm;
@@ -12,54 +13,6 @@ typedef struct {
   PetscInt  dofs[4];
   PetscReal positions[4][3], normal[3], area;
 } Face;
-
-/* Which boundary faces a name means: all, those of a label, of a number in "Face Sets", or on a side of the bounding box
-   (xmin, xmax, ymin, ...) */
-typedef struct {
-  DMLabel   label;
-  PetscInt  value; /* < 0: any */
-  PetscInt  axis;  /* < 0: none */
-  PetscBool upper;
-} Selection;
-
-static PetscErrorCode FindSelection(DM dm, const char name[], Selection *selection)
-{
-  const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
-  const char       *body;
-  PetscInt          dim;
-  PetscBool         same, exists = PETSC_FALSE;
-  char             *end;
-  long              number;
-
-  PetscFunctionBegin;
-  selection->label = NULL;
-  selection->value = selection->axis = -1;
-  if (!name || !name[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DMGetCoordinateDim(dm, &dim));
-  for (PetscInt i = 0; i < 2 * dim; i++) {
-    PetscCall(PetscStrcmp(name, sides[i], &same));
-    if (!same) continue;
-    selection->axis  = i / 2;
-    selection->upper = (PetscBool)(i % 2);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(DMGetLabel(dm, name, &selection->label));
-  if (selection->label) PetscFunctionReturn(PETSC_SUCCESS);
-  number = strtol(name, &end, 10);
-  if (end != name && !*end) {
-    PetscCall(DMGetLabel(dm, "Face Sets", &selection->label));
-    selection->value = (PetscInt)number;
-    if (selection->label) PetscCall(DMLabelHasValue(selection->label, selection->value, &exists));
-  }
-  {
-    int any = exists;
-
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
-    PetscCall(PetscObjectGetName((PetscObject)dm, &body));
-    PetscCheck(any, PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT, "Body '%s' has no surface '%s'; give a label of its mesh, a number of its face sets, or a side of its bounding box (xmin, xmax, ...)", body, name);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Component of `out` across the face, as a unit vector: `out` less its projections on the edges that leave the first node */
 static void OutwardNormal(PetscInt dim, PetscInt n, PetscReal positions[][3], PetscReal out[])
@@ -135,48 +88,17 @@ static PetscErrorCode DescribeFace(DM dm, PetscInt face, PetscInt dim, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscBool OnSide(const SurfaceData *data, const Face *face, PetscInt n, const Selection *selection)
+/* The faces of this rank that a name means */
+static PetscErrorCode CollectFaces(Surface surface, const char name[], PetscInt *n_faces, Face **faces)
 {
-  const PetscReal size = data->upper[selection->axis] - data->lower[selection->axis];
-  const PetscReal side = selection->upper ? data->upper[selection->axis] : data->lower[selection->axis];
-
-  for (PetscInt k = 0; k < n; k++)
-    if (PetscAbsReal(face->positions[k][selection->axis] - side) > 1e-8 * size) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
-/* The selected faces of this rank */
-static PetscErrorCode CollectFaces(Surface surface, const Selection *selection, PetscInt *n_faces, Face **faces)
-{
-  DM              dm = surface->dm;
-  DMLabel         boundary;
-  IS              points;
-  const PetscInt *point;
-  PetscInt        n = 0, n_nodes = 0;
+  DM       dm      = surface->dm;
+  PetscInt n_nodes = 0, *points;
 
   PetscFunctionBegin;
-  PetscCall(DMLabelCreate(PETSC_COMM_SELF, "boundary", &boundary));
-  PetscCall(DMPlexMarkBoundaryFaces(dm, 1, boundary));
-  PetscCall(DMLabelGetStratumSize(boundary, 1, &n));
-  PetscCall(PetscMalloc1(n, faces));
-  *n_faces = 0;
-  if (n) {
-    PetscCall(DMLabelGetStratumIS(boundary, 1, &points));
-    PetscCall(ISGetIndices(points, &point));
-    for (PetscInt i = 0; i < n; i++) {
-      PetscInt value = 0;
-
-      if (selection->label) {
-        PetscCall(DMLabelGetValue(selection->label, point[i], &value));
-        if (selection->value >= 0 ? value != selection->value : value < 0) continue;
-      }
-      PetscCall(DescribeFace(dm, point[i], surface->data.dim, &n_nodes, &(*faces)[*n_faces]));
-      if (selection->axis < 0 || OnSide(&surface->data, &(*faces)[*n_faces], n_nodes, selection)) (*n_faces)++;
-    }
-    PetscCall(ISRestoreIndices(points, &point));
-    PetscCall(ISDestroy(&points));
-  }
-  PetscCall(DMLabelDestroy(&boundary));
+  PetscCall(MeshGetSurface(dm, name, n_faces, &points));
+  PetscCall(PetscMalloc1(*n_faces, faces));
+  for (PetscInt i = 0; i < *n_faces; i++) PetscCall(DescribeFace(dm, points[i], surface->data.dim, &n_nodes, &(*faces)[i]));
+  PetscCall(PetscFree(points));
   PetscCallMPI(MPI_Allreduce(&n_nodes, &surface->data.face_nodes, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -252,22 +174,20 @@ static PetscErrorCode SetUpNodes(Surface surface, PetscInt n_faces, const Face f
 
   Input Parameters:
 + dm   - a `DMPLEX` with a local section of one block of displacements at each vertex
-- name - a label of the mesh, a number of its "Face Sets", a side of its bounding box (xmin, xmax, ymin, ...), or `NULL` or
-         empty for the whole boundary
+- name - as `MeshGetSurface()` takes it: a label of the mesh, a number, a side of its bounding box; `NULL` or empty for the
+         whole boundary
 
   Output Parameter:
 . surface - the `Surface`
 
   Level: developer
 
-.seealso: `Surface`, `SurfaceGetData()`
+.seealso: `Surface`, `SurfaceGetData()`, `MeshGetSurface()`
 @*/
 PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
 {
   MPI_Comm     comm = PetscObjectComm((PetscObject)dm);
-  const char  *body;
   PetscSection section;
-  Selection    selection;
   Face        *mine, *all;
   PetscInt     n_mine = 0, n_all = 0;
 
@@ -278,12 +198,9 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
   PetscCall(DMGetCoordinateDim(dm, &(*surface)->data.dim));
   PetscCall(DMGetBoundingBox(dm, (*surface)->data.lower, (*surface)->data.upper));
   PetscCall(DMGetGlobalSection(dm, &section)); /* made by all ranks together, also by those that have no face */
-  PetscCall(FindSelection(dm, name, &selection));
-  PetscCall(CollectFaces(*surface, &selection, &n_mine, &mine));
+  PetscCall(CollectFaces(*surface, name, &n_mine, &mine));
   PetscCall(GatherFaces(comm, n_mine, mine, &n_all, &all));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscObjectGetName((PetscObject)dm, &body));
-  PetscCheck(n_all, comm, PETSC_ERR_USER_INPUT, "Surface '%s' of body '%s' has no faces on its boundary", name ? name : "", body);
   PetscCall(SetUpNodes(*surface, n_all, all));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);

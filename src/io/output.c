@@ -1,6 +1,7 @@
 /* What a run writes and prints, from its options. */
 #include <io.h>
 #include <exact.h>
+#include "deviation.h"
 #include "history.h"
 #include "outputfile.h"
 #include "report.h"
@@ -11,6 +12,7 @@ struct _n_Output {
   Statistics statistics;
   History    history;
   Exact      exact;
+  Deviation  deviation;
   char       summary[PETSC_MAX_PATH_LEN]; /* its path; empty: none */
 };
 
@@ -62,7 +64,8 @@ static PetscErrorCode CreateExact(Output output, const char type[])
   Options Database Keys:
 + -output_history path - HDF5 file with every controller step
 . -output_summary path - JSON file with the figures of the run
-- -exact (none|impact|characteristics) - exact solution to compare with
+. -exact (none|impact|characteristics) - exact solution to compare with
+- -<body>_exact_displacement ux[,uy,uz] - exact displacement of a body to compare with at the end, functions of x, y, z, t [m]
 
   Level: beginner
 
@@ -86,6 +89,7 @@ PetscErrorCode OutputSetFromOptions(Output output)
   if (has_history && has_summary) PetscCall(PetscStrcmp(history, output->summary, &same));
   PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-output_history and -output_summary are the same file, %s; give each its own", history);
   PetscCall(CreateExact(output, exact));
+  PetscCall(DeviationCreate(output->controller, &output->deviation));
   if (has_summary) PetscCall(OutputFileCheck(comm, "-output_summary", output->summary));
   if (has_history) {
     PetscCall(HistoryCreate(output->controller, history, &output->history));
@@ -114,6 +118,7 @@ PetscErrorCode OutputReport(Output output)
 
   PetscFunctionBegin;
   PetscCall(StatisticsGetResults(output->statistics, &results));
+  if (output->deviation) PetscCall(StatisticsSetDeviation(output->statistics, output->deviation));
   if (output->history) PetscCall(HistoryFlush(output->history));
   if (output->summary[0]) PetscCall(SummaryWrite(output->controller, results, output->exact, output->summary));
   PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)output->controller), &viewer));
@@ -146,6 +151,7 @@ PetscErrorCode OutputDestroy(Output *output)
   PetscCall(StatisticsDestroy(&(*output)->statistics));
   PetscCall(HistoryDestroy(&(*output)->history));
   PetscCall(ExactDestroy(&(*output)->exact));
+  PetscCall(DeviationDestroy(&(*output)->deviation));
   PetscCall(PetscFree(*output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -80,6 +80,7 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g J kinetic, %.6g J potential at the end\n", name, (double)body->kinetic, (double)body->potential));
+    if (!PetscIsNanReal(body->displacement_error)) PetscCall(PrintPercent(viewer, "    error of the displacement", body->displacement_error));
     if (body->external_work != 0) PetscCall(PrintValue(viewer, "    work of its loads", body->external_work, "J", NAN));
   }
   PetscCall(PrintPercent(viewer, "system energy error, worst", worst));
@@ -127,8 +128,10 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ControllerGetBodies(controller, &n, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
-  PetscCall(ViewContact(contact, results, exact, viewer));
-  PetscCall(ViewSweeps(contact, results, viewer));
+  if (results->n_pairs) {
+    PetscCall(ViewContact(contact, results, exact, viewer));
+    PetscCall(ViewSweeps(contact, results, viewer));
+  }
   PetscCall(ViewEnergies(bodies, results, viewer));
   if (exact) PetscCall(ViewErrors(exact, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));

@@ -57,6 +57,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy));
+  for (PetscInt i = 0; i < s->results.n_bodies; i++) s->results.bodies[i].displacement_error = NAN;
   ContactStatisticsInitialize(&s->results.contact);
   for (PetscInt i = 0; i < s->results.n_pairs; i++) ContactStatisticsInitialize(&s->results.pairs[i]);
   s->capacity = 1024;
@@ -235,6 +236,27 @@ static void ComputeForces(Statistics s, PetscInt pair)
   contact->force_mean = mean;
   contact->force_std  = PetscSqrtReal(squares / (PetscReal)n);
   contact->force_min  = minimum;
+}
+
+/*
+  StatisticsSetDeviation - takes note of how far bodies are from exact displacements now
+
+  Collective
+
+  Input Parameters:
++ statistics - the `Statistics`
+- deviation  - the `Deviation`
+*/
+PetscErrorCode StatisticsSetDeviation(Statistics statistics, Deviation deviation)
+{
+  PetscReal *errors;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(statistics->results.n_bodies, &errors));
+  PetscCall(DeviationCompute(deviation, errors));
+  for (PetscInt i = 0; i < statistics->results.n_bodies; i++) statistics->results.bodies[i].displacement_error = errors[i];
+  PetscCall(PetscFree(errors));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*

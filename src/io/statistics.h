@@ -1,6 +1,6 @@
 /* What a run was like, gathered step by step. */
 #pragma once
-#include <controller.h>
+#include "deviation.h"
 
 /* How one pair, or all pairs together, touched. Not-a-number where there is nothing to tell: no contact */
 typedef struct {
@@ -16,6 +16,7 @@ typedef struct {
 
 typedef struct {
   PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
+  PetscReal displacement_error;                 /* at the end, relative L2, against an exact displacement; not-a-number without one */
   PetscReal external_work;                      /* at the end, by loads [J] */
   PetscReal energy_error_min, energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;
@@ -40,4 +41,5 @@ typedef struct _n_Statistics *Statistics;
 PETSC_INTERN PetscErrorCode      StatisticsCreate(Controller, Statistics *);
 PETSC_INTERN ControllerMonitorFn StatisticsMonitor;
 PETSC_INTERN PetscErrorCode      StatisticsGetResults(Statistics, const StatisticsResults **);
+PETSC_INTERN PetscErrorCode      StatisticsSetDeviation(Statistics, Deviation);
 PETSC_INTERN PetscErrorCode      StatisticsDestroy(Statistics *);

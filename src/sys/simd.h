@@ -20,3 +20,7 @@
 
 /* One number for each member of a batch */
 typedef PetscReal SimdReal[SIMD_WIDTH] __attribute__((aligned(64)));
+
+/* The same as one value that can be calculated with, GCC's and Clang's vectors: where loops over the members are too long for compilers
+   to vectorise. Not to be passed or returned by value but where inlined: how depends on the processor compiled for. */
+typedef PetscReal SimdVector __attribute__((vector_size(SIMD_WIDTH * sizeof(PetscReal)), may_alias));

@@ -16,6 +16,15 @@ static inline void succeed(PetscErrorCode error, const char file[], int line)
   _fail(file, line);
 }
 
+/* For tests of bodies with few elements, each rank of which must have one */
+static inline void skip_beyond_ranks(PetscMPIInt most)
+{
+  PetscMPIInt size;
+
+  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
+  if (size > most) skip();
+}
+
 /* near(a, b, tolerance): absolute; a NaN is never near */
 #define near(a, b, tolerance) expect_near((double)(a), (double)(b), (double)(tolerance), #a, __FILE__, __LINE__)
 static inline void expect_near(double a, double b, double tolerance, const char what[], const char file[], int line)

@@ -16,13 +16,13 @@
 
 /* Gradients of a batch at a point of integration */
 typedef struct {
-  SimdReal H[9];               /* du_i/dX_j; third row and column zero in two dimensions */
-  SimdReal cofactor[DIM][DIM]; /* of dX_i/dxi_j: its inverse is their transpose over the determinant */
-  SimdReal determinant;
+  SimdVector H[9];               /* du_i/dX_j; third row and column zero in two dimensions */
+  SimdVector cofactor[DIM][DIM]; /* of dX_i/dxi_j: its inverse is their transpose over the determinant */
+  SimdVector determinant;
 } Gradients;
 
 /* Values at the nodes of a batch of elements, as coefficients of monomials; past the last element, it is taken again */
-SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[], SimdReal modes[DIM][MODES])
+SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[], SimdVector modes[DIM][MODES])
 {
   SimdReal nodal[DIM][NODES];
 
@@ -32,108 +32,83 @@ SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscIn
     for (PetscInt a = 0; a < NODES; a++)
       for (PetscInt i = 0; i < DIM; i++) nodal[i][a][p] = values[DIM * nodes[a] + i];
   }
-  for (PetscInt i = 0; i < DIM; i++) {
-#pragma omp simd
-    for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-      PetscReal n[NODES], m[MODES];
-
-#pragma GCC unroll 8
-      for (PetscInt a = 0; a < NODES; a++) n[a] = nodal[i][a][p];
-      ModesOfNodes(n, m);
-#pragma GCC unroll 8
-      for (PetscInt k = 0; k < MODES; k++) modes[i][k][p] = m[k];
-    }
-  }
+  for (PetscInt i = 0; i < DIM; i++) ModesOfNodes((const SimdVector *)nodal[i], modes[i]);
 }
 
-/* Cofactors of a matrix; returns its determinant */
-SIMD_INLINE PetscReal Cofactors(const PetscReal a[3][3], PetscReal c[3][3])
+/* Cofactors of a matrix, and its determinant */
+SIMD_INLINE void Cofactors(SimdVector a[DIM][DIM], SimdVector c[DIM][DIM], SimdVector *determinant)
 {
 #if DIM == 2
-  c[0][0] = a[1][1];
-  c[0][1] = -a[1][0];
-  c[1][0] = -a[0][1];
-  c[1][1] = a[0][0];
-  return a[0][0] * c[0][0] + a[0][1] * c[0][1];
+  c[0][0]      = a[1][1];
+  c[0][1]      = -a[1][0];
+  c[1][0]      = -a[0][1];
+  c[1][1]      = a[0][0];
+  *determinant = a[0][0] * c[0][0] + a[0][1] * c[0][1];
 #else
-  c[0][0] = a[1][1] * a[2][2] - a[1][2] * a[2][1];
-  c[0][1] = a[1][2] * a[2][0] - a[1][0] * a[2][2];
-  c[0][2] = a[1][0] * a[2][1] - a[1][1] * a[2][0];
-  c[1][0] = a[2][1] * a[0][2] - a[2][2] * a[0][1];
-  c[1][1] = a[2][2] * a[0][0] - a[2][0] * a[0][2];
-  c[1][2] = a[2][0] * a[0][1] - a[2][1] * a[0][0];
-  c[2][0] = a[0][1] * a[1][2] - a[0][2] * a[1][1];
-  c[2][1] = a[0][2] * a[1][0] - a[0][0] * a[1][2];
-  c[2][2] = a[0][0] * a[1][1] - a[0][1] * a[1][0];
-  return a[0][0] * c[0][0] + a[0][1] * c[0][1] + a[0][2] * c[0][2];
+  c[0][0]      = a[1][1] * a[2][2] - a[1][2] * a[2][1];
+  c[0][1]      = a[1][2] * a[2][0] - a[1][0] * a[2][2];
+  c[0][2]      = a[1][0] * a[2][1] - a[1][1] * a[2][0];
+  c[1][0]      = a[2][1] * a[0][2] - a[2][2] * a[0][1];
+  c[1][1]      = a[2][2] * a[0][0] - a[2][0] * a[0][2];
+  c[1][2]      = a[2][0] * a[0][1] - a[2][1] * a[0][0];
+  c[2][0]      = a[0][1] * a[1][2] - a[0][2] * a[1][1];
+  c[2][1]      = a[0][2] * a[1][0] - a[0][0] * a[1][2];
+  c[2][2]      = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+  *determinant = a[0][0] * c[0][0] + a[0][1] * c[0][1] + a[0][2] * c[0][2];
 #endif
 }
 
-SIMD_INLINE void GetGradients(const SimdReal X[DIM][MODES], const SimdReal U[DIM][MODES], const PetscReal xi[DIM], Gradients *at)
+SIMD_INLINE void GetGradients(SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], const PetscReal xi[DIM], Gradients *at)
 {
-#pragma omp simd
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-    PetscReal m[MODES], x[3][3], u[3][3], c[3][3], determinant, inverse;
+  SimdVector x[DIM][DIM], u[DIM][DIM], c[DIM][DIM], determinant, inverse;
 
 #pragma GCC unroll 3
-    for (PetscInt i = 0; i < DIM; i++) {
-#pragma GCC unroll 8
-      for (PetscInt k = 0; k < MODES; k++) m[k] = X[i][k][p];
-      GradientOfModes(m, xi, x[i]);
-#pragma GCC unroll 8
-      for (PetscInt k = 0; k < MODES; k++) m[k] = U[i][k][p];
-      GradientOfModes(m, xi, u[i]);
-    }
-    determinant = Cofactors(x, c);
-    inverse     = 1 / determinant;
-#pragma GCC unroll 3
-    for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 3
-      for (PetscInt j = 0; j < DIM; j++) {
-        PetscReal h = u[i][0] * c[j][0];
-
-#pragma GCC unroll 3
-        for (PetscInt k = 1; k < DIM; k++) h += u[i][k] * c[j][k];
-        at->H[3 * i + j][p]   = inverse * h;
-        at->cofactor[i][j][p] = c[i][j];
-      }
-    at->determinant[p] = determinant;
+  for (PetscInt i = 0; i < DIM; i++) {
+    GradientOfModes(X[i], xi, x[i]);
+    GradientOfModes(U[i], xi, u[i]);
   }
+  Cofactors(x, c, &determinant);
+  inverse         = 1 / determinant;
+  at->determinant = determinant;
+#pragma GCC unroll 3
+  for (PetscInt i = 0; i < DIM; i++)
+#pragma GCC unroll 3
+    for (PetscInt j = 0; j < DIM; j++) {
+      SimdVector h = u[i][0] * c[j][0];
+
+#pragma GCC unroll 3
+      for (PetscInt k = 1; k < DIM; k++) h += u[i][k] * c[j][k];
+      at->H[3 * i + j]   = inverse * h;
+      at->cofactor[i][j] = c[i][j];
+    }
 }
 
 /* Adds the force of one point, by monomials: the stress against the axes of the reference element against their gradients */
-SIMD_INLINE void AddPoint(const SimdReal P[9], const Gradients *at, const PetscReal xi[DIM], SimdReal F[DIM][MODES])
+SIMD_INLINE void AddPoint(const SimdVector P[9], const Gradients *at, const PetscReal xi[DIM], SimdVector F[DIM][MODES])
 {
-#pragma omp simd
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
 #pragma GCC unroll 3
-    for (PetscInt i = 0; i < DIM; i++) {
-      PetscReal q[DIM], m[MODES];
+  for (PetscInt i = 0; i < DIM; i++) {
+    SimdVector q[DIM];
 
 #pragma GCC unroll 3
-      for (PetscInt k = 0; k < DIM; k++) {
-        q[k] = P[3 * i][p] * at->cofactor[0][k][p];
+    for (PetscInt k = 0; k < DIM; k++) {
+      q[k] = P[3 * i] * at->cofactor[0][k];
 #pragma GCC unroll 3
-        for (PetscInt j = 1; j < DIM; j++) q[k] += P[3 * i + j][p] * at->cofactor[j][k][p];
-      }
-#pragma GCC unroll 8
-      for (PetscInt k = 0; k < MODES; k++) m[k] = F[i][k][p];
-      ModesOfGradient(q, xi, m);
-#pragma GCC unroll 8
-      for (PetscInt k = 0; k < MODES; k++) F[i][k][p] = m[k];
+      for (PetscInt j = 1; j < DIM; j++) q[k] += P[3 * i + j] * at->cofactor[j][k];
     }
+    ModesOfGradient(q, xi, F[i]);
   }
 }
 
 /* The first member of a batch whose number is not one; -1: none */
-SIMD_INLINE PetscInt FindNaN(const SimdReal values)
+SIMD_INLINE PetscInt FindNaN(const SimdVector *values)
 {
   PetscInt any = 0;
 
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++) any |= values[p] != values[p];
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) any |= (*values)[p] != (*values)[p];
   if (any)
     for (PetscInt p = 0; p < SIMD_WIDTH; p++)
-      if (values[p] != values[p]) return p;
+      if ((*values)[p] != (*values)[p]) return p;
   return -1;
 }
 
@@ -145,35 +120,23 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal       X[DIM][MODES], U[DIM][MODES], F[DIM][MODES], P[9], nodal[DIM][NODES], check = {0};
+    SimdVector     X[DIM][MODES], U[DIM][MODES], F[DIM][MODES] = {{{0}}}, P[9], check = {0};
+    SimdReal       nodal[DIM][NODES];
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
-    for (PetscInt i = 0; i < DIM; i++)
-      for (PetscInt k = 0; k < MODES; k++)
-        for (PetscInt p = 0; p < SIMD_WIDTH; p++) F[i][k][p] = 0;
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.stress)(solid->kernels.data, at.H, P);
+      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, (PetscReal(*)[SIMD_WIDTH])P);
       AddPoint(P, &at, points[g], F);
     }
     for (PetscInt i = 0; i < DIM; i++) {
-#pragma omp simd
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-        PetscReal m[MODES], values[NODES];
-
-#pragma GCC unroll 8
-        for (PetscInt k = 0; k < MODES; k++) m[k] = F[i][k][p];
-        NodesOfModes(m, values);
-        /* every stress goes into these */
-        check[p] += m[0] + m[1];
-        if (DIM == 3) check[p] += m[2];
-#pragma GCC unroll 8
-        for (PetscInt a = 0; a < NODES; a++) nodal[i][a][p] = scale * values[a];
-      }
+      for (PetscInt k = 0; k < DIM; k++) check += F[i][k]; /* every stress goes into these */
+      for (PetscInt k = 0; k < MODES; k++) F[i][k] *= scale;
+      NodesOfModes(F[i], (SimdVector *)nodal[i]);
     }
     if (inverted < 0) {
-      const PetscInt bad = FindNaN(check);
+      const PetscInt bad = FindNaN(&check);
 
       if (bad >= 0) inverted = first + PetscMin(bad, n - 1);
     }
@@ -194,17 +157,17 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal       X[DIM][MODES], U[DIM][MODES], W, sum = {0};
+    SimdVector     X[DIM][MODES], U[DIM][MODES], W, sum = {0};
     PetscInt       bad;
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.energy)(solid->kernels.data, at.H, W);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
+      (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, (PetscReal *)&W);
+      sum += at.determinant * W;
     }
-    bad = FindNaN(sum);
+    bad = FindNaN(&sum);
     if (inverted < 0 && bad >= 0) inverted = first + PetscMin(bad, n - 1);
     for (PetscInt p = 0; p < n; p++) *energy += sum[p];
   }
@@ -212,25 +175,25 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
 }
 
 /* sigma = P F^T / det F; of linear materials P, for which they are the same */
-SIMD_INLINE void Cauchy(const SimdReal H[9], const SimdReal P[9], PetscBool linear, PetscInt p, PetscReal sigma[6])
+SIMD_INLINE void Cauchy(const SimdVector H[9], const SimdVector P[9], PetscBool linear, SimdVector sigma[6])
 {
-  const PetscReal xx = 1 + H[0][p], yy = 1 + H[4][p], zz = 1 + H[8][p], xy = H[1][p], xz = H[2][p], yx = H[3][p], yz = H[5][p], zx = H[6][p], zy = H[7][p];
-  const PetscReal s = 1 / (xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx));
+  const SimdVector xx = 1 + H[0], yy = 1 + H[4], zz = 1 + H[8], xy = H[1], xz = H[2], yx = H[3], yz = H[5], zx = H[6], zy = H[7];
+  const SimdVector s = 1 / (xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx));
 
   if (linear) {
-    sigma[0] = P[0][p];
-    sigma[1] = P[4][p];
-    sigma[2] = P[8][p];
-    sigma[3] = P[1][p];
-    sigma[4] = P[5][p];
-    sigma[5] = P[2][p];
+    sigma[0] = P[0];
+    sigma[1] = P[4];
+    sigma[2] = P[8];
+    sigma[3] = P[1];
+    sigma[4] = P[5];
+    sigma[5] = P[2];
   } else {
-    sigma[0] = s * (P[0][p] * xx + P[1][p] * xy + P[2][p] * xz);
-    sigma[1] = s * (P[3][p] * yx + P[4][p] * yy + P[5][p] * yz);
-    sigma[2] = s * (P[6][p] * zx + P[7][p] * zy + P[8][p] * zz);
-    sigma[3] = s * (P[0][p] * yx + P[1][p] * yy + P[2][p] * yz);
-    sigma[4] = s * (P[3][p] * zx + P[4][p] * zy + P[5][p] * zz);
-    sigma[5] = s * (P[0][p] * zx + P[1][p] * zy + P[2][p] * zz);
+    sigma[0] = s * (P[0] * xx + P[1] * xy + P[2] * xz);
+    sigma[1] = s * (P[3] * yx + P[4] * yy + P[5] * yz);
+    sigma[2] = s * (P[6] * zx + P[7] * zy + P[8] * zz);
+    sigma[3] = s * (P[0] * yx + P[1] * yy + P[2] * yz);
+    sigma[4] = s * (P[3] * zx + P[4] * zy + P[5] * zz);
+    sigma[5] = s * (P[0] * zx + P[1] * zy + P[2] * zz);
   }
 }
 
@@ -240,23 +203,17 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal       X[DIM][MODES], U[DIM][MODES], P[9], sum[6] = {0}, volume = {0};
+    SimdVector     X[DIM][MODES], U[DIM][MODES], P[9], sigma[6], sum[6] = {{0}}, volume = {0};
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.stress)(solid->kernels.data, at.H, P);
-      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, at.H);
-#pragma omp simd
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-        PetscReal sigma[6];
-
-        Cauchy(at.H, P, solid->linear, p, sigma);
-#pragma GCC unroll 6
-        for (PetscInt k = 0; k < 6; k++) sum[k][p] += at.determinant[p] * sigma[k];
-        volume[p] += at.determinant[p];
-      }
+      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, (PetscReal(*)[SIMD_WIDTH])P);
+      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, (PetscReal(*)[SIMD_WIDTH])at.H);
+      Cauchy(at.H, P, solid->linear, sigma);
+      for (PetscInt k = 0; k < 6; k++) sum[k] += at.determinant * sigma[k];
+      volume += at.determinant;
     }
     for (PetscInt p = 0; p < n; p++)
       for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];

@@ -14,14 +14,14 @@ static const PetscReal points[POINTS][DIM] = {{0.25, 0.25, 0.25}};
 static const PetscReal load_points[4][DIM] = {{A, A, A}, {B, A, A}, {A, B, A}, {A, A, B}};
 static const PetscReal corners[NODES][DIM] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-SIMD_INLINE void ModesOfNodes(const PetscReal n[NODES], PetscReal m[MODES])
+SIMD_INLINE void ModesOfNodes(const SimdVector n[NODES], SimdVector m[MODES])
 {
   m[0] = n[1] - n[0];
   m[1] = n[2] - n[0];
   m[2] = n[3] - n[0];
 }
 
-SIMD_INLINE void NodesOfModes(const PetscReal m[MODES], PetscReal n[NODES])
+SIMD_INLINE void NodesOfModes(const SimdVector m[MODES], SimdVector n[NODES])
 {
   n[0] = -(m[0] + m[1] + m[2]);
   n[1] = m[0];
@@ -29,7 +29,7 @@ SIMD_INLINE void NodesOfModes(const PetscReal m[MODES], PetscReal n[NODES])
   n[3] = m[2];
 }
 
-SIMD_INLINE void GradientOfModes(const PetscReal m[MODES], const PetscReal xi[DIM], PetscReal d[DIM])
+SIMD_INLINE void GradientOfModes(const SimdVector m[MODES], const PetscReal xi[DIM], SimdVector d[DIM])
 {
   (void)xi;
   d[0] = m[0];
@@ -37,7 +37,7 @@ SIMD_INLINE void GradientOfModes(const PetscReal m[MODES], const PetscReal xi[DI
   d[2] = m[2];
 }
 
-SIMD_INLINE void ModesOfGradient(const PetscReal d[DIM], const PetscReal xi[DIM], PetscReal m[MODES])
+SIMD_INLINE void ModesOfGradient(const SimdVector d[DIM], const PetscReal xi[DIM], SimdVector m[MODES])
 {
   (void)xi;
   m[0] += d[0];

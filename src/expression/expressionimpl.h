@@ -1,0 +1,21 @@
+#pragma once
+#include <expression.h>
+
+typedef struct _n_Table *Table;
+
+struct _n_Expression {
+  char           *option, *text;
+  PetscBool       uses_position, uses_normal, uses_time;
+  PetscReal       constant; /* the value, where it uses none of these */
+  void           *parser;   /* muParser's, with its variables bound to `point`; NULL: constant, or a table */
+  ExpressionPoint point;
+  Table           table;
+};
+
+PETSC_INTERN PetscErrorCode ExpressionParse(Expression, MPI_Comm);
+PETSC_INTERN PetscErrorCode ExpressionEvaluateFormula(Expression, PetscReal *);
+PETSC_INTERN PetscErrorCode ExpressionDestroyParser(Expression);
+PETSC_INTERN PetscErrorCode TableRead(MPI_Comm, const char[], const char[], Table *);
+PETSC_INTERN PetscReal      TableEvaluate(Table, PetscReal);
+PETSC_INTERN PetscErrorCode TableIsConstant(Table, PetscBool *);
+PETSC_INTERN PetscErrorCode TableDestroy(Table *);

@@ -1,0 +1,85 @@
+/* Several expressions in one text. */
+#include "expressionimpl.h"
+
+/* The length of the text up to the next comma outside parentheses */
+static size_t FindComma(const char text[])
+{
+  int    depth = 0;
+  size_t i;
+
+  for (i = 0; text[i]; i++) {
+    if (text[i] == '(') depth++;
+    else if (text[i] == ')') depth--;
+    else if (text[i] == ',' && depth <= 0) break;
+  }
+  return i;
+}
+
+static PetscInt CountComponents(const char text[])
+{
+  PetscInt n = 0;
+
+  for (const char *c = text;; c++) {
+    c += FindComma(c);
+    n++;
+    if (!*c) return n;
+  }
+}
+
+/* One component, without the blanks around it; NULL for a free one */
+static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const char text[], size_t length, PetscBool allow_free, Expression *expression)
+{
+  char          *component;
+  PetscBool      is_free;
+  PetscErrorCode error = PETSC_SUCCESS;
+
+  PetscFunctionBegin;
+  while (length && strchr(" \t", text[0])) text++, length--;
+  while (length && strchr(" \t", text[length - 1])) length--;
+  PetscCall(PetscMalloc1(length + 1, &component));
+  PetscCall(PetscStrncpy(component, text, length + 1));
+  PetscCall(PetscStrcmp(component, "free", &is_free));
+  *expression = NULL;
+  if (!allow_free || !is_free) error = ExpressionCreate(comm, option, component, expression);
+  PetscCall(PetscFree(component));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ExpressionListCreate - the components of a vector, separated by commas
+
+  Collective
+
+  Input Parameters:
++ comm       - communicator; the text is the same on all its ranks
+. option     - where the text comes from, without the first `-`; for messages only
+. text       - expressions as for `ExpressionCreate()`, with commas between them; commas in parentheses are those of functions
+. n          - how many there must be
+- allow_free - whether a component may be the word `free`
+
+  Output Parameter:
+. list - n expressions, `NULL` for free ones; none of them is left to be freed after an error
+
+  Level: intermediate
+
+.seealso: `Expression`, `ExpressionCreate()`
+@*/
+PetscErrorCode ExpressionListCreate(MPI_Comm comm, const char option[], const char text[], PetscInt n, PetscBool allow_free, Expression list[])
+{
+  const PetscInt found = CountComponents(text);
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++) list[i] = NULL;
+  PetscCheck(found == n, comm, PETSC_ERR_USER_INPUT, "-%s: '%s' has %" PetscInt_FMT " component%s; it needs %" PetscInt_FMT ", separated by commas%s", option, text, found, found == 1 ? "" : "s", n, allow_free ? ", each a formula, table:file or free" : "");
+  for (PetscInt i = 0; i < n; i++) {
+    const size_t         length = FindComma(text);
+    const PetscErrorCode error  = CreateComponent(comm, option, text, length, allow_free, &list[i]);
+
+    if (error)
+      for (PetscInt k = 0; k < i; k++) (void)ExpressionDestroy(&list[k]);
+    PetscCall(error);
+    text += length + 1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,153 @@
+/* Tables of a value over time, read from text files. */
+#include "expressionimpl.h"
+#include <errno.h>
+
+struct _n_Table {
+  PetscInt   n, room;
+  PetscReal *times, *values;
+};
+
+#define TABLE_ROWS_MAX 100000000 /* more than a file that somebody means; two arrays of doubles stay below 2 GB */
+
+static PetscErrorCode AddRow(Table table, PetscReal time, PetscReal value)
+{
+  PetscFunctionBegin;
+  if (table->n == table->room) {
+    table->room = table->room ? 2 * table->room : 64;
+    PetscCall(PetscRealloc(table->room * sizeof(PetscReal), &table->times));
+    PetscCall(PetscRealloc(table->room * sizeof(PetscReal), &table->values));
+  }
+  table->times[table->n]    = time;
+  table->values[table->n++] = value;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One number, what separates it from the next one skipped too; NULL where there is none. Numbers are read as the C locale has
+   them, which no part of the program leaves. */
+static char *ReadNumber(char text[], PetscReal *value)
+{
+  char *end;
+
+  *value = strtod(text, &end);
+  if (end == text || !(PetscAbsReal(*value) <= PETSC_MAX_REAL)) return NULL;
+  if (*end && !strchr(" \t,", *end)) return NULL;
+  end += strspn(end, " \t");
+  if (*end == ',') end += 1 + strspn(end + 1, " \t");
+  return end;
+}
+
+/* Returns with a reason in `problem` where the file is not a table */
+static PetscErrorCode ReadRows(FILE *file, Table table, char problem[], size_t size)
+{
+  char     line[1024];
+  PetscInt number = 0;
+
+  PetscFunctionBegin;
+  errno = 0;
+  while (fgets(line, sizeof(line), file)) {
+    PetscReal time, value;
+    char     *rest = line, *comment;
+
+    number++;
+    if (strlen(line) == sizeof(line) - 1) {
+      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT " is longer than %d characters", number, (int)sizeof(line) - 2));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    comment = strpbrk(line, "#\r\n");
+    if (comment) *comment = 0;
+    rest += strspn(rest, " \t");
+    if (!*rest && (comment || feof(file))) continue;
+    rest = ReadNumber(rest, &time);
+    if (rest) rest = ReadNumber(rest, &value);
+    if (!rest || *rest) {
+      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT " is not a time and a value, two finite numbers separated by blanks or a comma", number));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    if (table->n && time <= table->times[table->n - 1]) {
+      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT ": time %g does not come after %g, that of the line before; times must ascend", number, (double)time, (double)table->times[table->n - 1]));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    if (table->n == TABLE_ROWS_MAX) {
+      PetscCall(PetscSNPrintf(problem, size, "it has more than %d lines", TABLE_ROWS_MAX));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(AddRow(table, time, value));
+  }
+  if (ferror(file)) PetscCall(PetscSNPrintf(problem, size, "it cannot be read: %s", strerror(errno)));
+  else if (!table->n) PetscCall(PetscSNPrintf(problem, size, "there is no line with a time and a value in it"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadFile(const char path[], Table table, char problem[], size_t size)
+{
+  FILE *file;
+
+  PetscFunctionBegin;
+  file = fopen(path, "r");
+  if (!file) {
+    PetscCall(PetscSNPrintf(problem, size, "it cannot be opened: %s", strerror(errno)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ReadRows(file, table, problem, size));
+  (void)fclose(file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first rank reads, and tells the others what it has found, be that a table or why there is none */
+PetscErrorCode TableRead(MPI_Comm comm, const char option[], const char path[], Table *table)
+{
+  char        problem[256] = "";
+  PetscMPIInt rank, n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(table));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) PetscCall(ReadFile(path, *table, problem, sizeof(problem)));
+  PetscCallMPI(MPI_Bcast(problem, (PetscMPIInt)sizeof(problem), MPI_CHAR, 0, comm));
+  PetscCheck(!problem[0], comm, PETSC_ERR_USER_INPUT, "-%s: the table '%s' is of no use: %s", option, path, problem);
+  PetscCallMPI(MPI_Bcast(&(*table)->n, 1, MPIU_INT, 0, comm));
+  PetscCall(PetscMPIIntCast((*table)->n, &n));
+  PetscCall(PetscRealloc(n * sizeof(PetscReal), &(*table)->times));
+  PetscCall(PetscRealloc(n * sizeof(PetscReal), &(*table)->values));
+  PetscCallMPI(MPI_Bcast((*table)->times, n, MPIU_REAL, 0, comm));
+  PetscCallMPI(MPI_Bcast((*table)->values, n, MPIU_REAL, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal TableEvaluate(Table table, PetscReal t)
+{
+  PetscInt low = 0, high = table->n - 1;
+
+  if (t <= table->times[0]) return table->values[0];
+  if (t >= table->times[high]) return table->values[high];
+  while (high - low > 1) {
+    const PetscInt middle = low + (high - low) / 2;
+
+    if (table->times[middle] <= t) low = middle;
+    else high = middle;
+  }
+  {
+    const PetscReal part = (t - table->times[low]) / (table->times[high] - table->times[low]);
+
+    return (1 - part) * table->values[low] + part * table->values[high];
+  }
+}
+
+PetscErrorCode TableIsConstant(Table table, PetscBool *constant)
+{
+  PetscFunctionBegin;
+  *constant = PETSC_TRUE;
+  for (PetscInt i = 1; i < table->n; i++)
+    if (table->values[i] != table->values[0]) *constant = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TableDestroy(Table *table)
+{
+  PetscFunctionBegin;
+  if (!*table) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*table)->times));
+  PetscCall(PetscFree((*table)->values));
+  PetscCall(PetscFree(*table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

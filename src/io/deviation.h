@@ -1,0 +1,9 @@
+/* How far bodies are from displacements that the user gives as formulas. */
+#pragma once
+#include <controller.h>
+
+typedef struct _n_Deviation *Deviation;
+
+PETSC_INTERN PetscErrorCode DeviationCreate(Controller, Deviation *);
+PETSC_INTERN PetscErrorCode DeviationCompute(Deviation, PetscReal[]);
+PETSC_INTERN PetscErrorCode DeviationDestroy(Deviation *);

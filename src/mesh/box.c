@@ -1,0 +1,169 @@
+/* Boxes from options: DMPLEX's own, and boxes of triangles and tetrahedra, for which PETSc alone has no generator. */
+#include "meshimpl.h"
+
+typedef struct {
+  PetscInt  dim, faces[3];
+  PetscReal lower[3], upper[3];
+  PetscBool simplex, is_box;
+} Box;
+
+typedef struct {
+  MeshFile  *file;
+  const Box *box;
+} Division;
+
+/* DMPLEX's options with DMPLEX's defaults, checked */
+static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], Box *box)
+{
+  char      shape[64];
+  PetscInt  n;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  *box = (Box){.dim = 2, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .simplex = PETSC_TRUE, .is_box = PETSC_TRUE};
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", shape, sizeof(shape), &set));
+  if (set) PetscCall(PetscStrcasecmp(shape, "box", &box->is_box));
+  PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &box->dim, NULL));
+  PetscCheck(box->dim >= 1 && box->dim <= 3, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_dim %" PetscInt_FMT ": a body has 1, 2 or 3 dimensions", prefix, box->dim);
+  if (!box->is_box) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt d = 0; d < box->dim; d++) box->faces[d] = box->dim == 1 ? 1 : 4 - box->dim;
+  n = 3;
+  PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-dm_plex_box_faces", box->faces, &n, &set));
+  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_faces has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
+  n = 3;
+  PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_lower", box->lower, &n, &set));
+  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_lower has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
+  n = 3;
+  PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_upper", box->upper, &n, &set));
+  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_upper has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
+  for (PetscInt d = 0; d < box->dim; d++) {
+    PetscCheck(box->faces[d] > 0, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_faces: %" PetscInt_FMT " along axis %" PetscInt_FMT " must be positive", prefix, box->faces[d], d + 1);
+    PetscCheck(box->upper[d] > box->lower[d], comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_lower, -%sdm_plex_box_upper: along axis %" PetscInt_FMT " the box ends at %g, not beyond its start at %g", prefix, prefix, d + 1, (double)box->upper[d], (double)box->lower[d]);
+  }
+  if (box->dim > 1) PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &box->simplex, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddSimplex(MeshFile *file, PetscInt n, const PetscInt corners[])
+{
+  PetscInt *nodes;
+
+  PetscFunctionBegin;
+  PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
+  for (PetscInt k = 0; k < n; k++) nodes[k] = corners[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The simplices that fill one cell of a grid, or a face of it: one for each way to walk from its lowest corner to its highest
+   along the axes (Kuhn 1960). Cells that touch cut their common face along the same diagonal. */
+static PetscErrorCode DivideCell(MeshFile *file, PetscInt n_axes, const PetscInt axes[], PetscInt lowest, const PetscInt stride[])
+{
+  static const PetscInt orders[3][6][3] = {{{0}}, {{0, 1}, {1, 0}}, {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+  const PetscInt        n_orders        = n_axes == 3 ? 6 : n_axes;
+
+  PetscFunctionBegin;
+  for (PetscInt o = 0; o < n_orders; o++) {
+    PetscInt corners[4] = {lowest};
+
+    for (PetscInt k = 0; k < n_axes; k++) corners[k + 1] = corners[k] + stride[axes[orders[n_axes - 1][o][k]]];
+    if (o >= n_orders / 2 && n_axes > 1) { /* odd permutations */
+      const PetscInt corner = corners[n_axes];
+
+      corners[n_axes]     = corners[n_axes - 1];
+      corners[n_axes - 1] = corner;
+    }
+    PetscCall(AddSimplex(file, n_axes + 1, corners));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cells of a grid from begin to end (without) along each axis, cut along the axes named */
+static PetscErrorCode DivideRange(MeshFile *file, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3], const PetscInt end[3], const PetscInt stride[3])
+{
+  PetscFunctionBegin;
+  for (PetscInt k = begin[2]; k < end[2]; k++)
+    for (PetscInt j = begin[1]; j < end[1]; j++)
+      for (PetscInt i = begin[0]; i < end[0]; i++) PetscCall(DivideCell(file, n_axes, axes, i * stride[0] + j * stride[1] + k * stride[2], stride));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A box of triangles or tetrahedra, with its sides numbered as DMPLEX numbers those of its boxes */
+static PetscErrorCode DivideBox(void *ctx)
+{
+  static const PetscInt       numbers[2][6] = {{4, 2, 1, 3}, {6, 5, 3, 4, 1, 2}}; /* xmin, xmax, ymin, ... */
+  static const DMPolytopeType shapes[]      = {DM_POLYTOPE_SEGMENT, DM_POLYTOPE_TRIANGLE, DM_POLYTOPE_TETRAHEDRON};
+  MeshFile                   *file          = ((Division *)ctx)->file;
+  const Box                  *box           = ((Division *)ctx)->box;
+  const PetscInt              dim = box->dim, all[3] = {0, 1, 2}, begin[3] = {0};
+  PetscInt                    end[3] = {1, 1, 1}, nodes[3] = {1, 1, 1}, stride[3];
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < dim; d++) {
+    end[d]   = box->faces[d];
+    nodes[d] = end[d] + 1;
+  }
+  PetscCheck((double)nodes[0] * nodes[1] * nodes[2] * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "a box of simplices of this size is too large");
+  stride[0]     = 1;
+  stride[1]     = nodes[0];
+  stride[2]     = nodes[0] * nodes[1];
+  file->n_nodes = stride[2] * nodes[2];
+  PetscCall(PetscCalloc1(3 * file->n_nodes, &file->coordinates));
+  for (PetscInt node = 0; node < file->n_nodes; node++)
+    for (PetscInt d = 0; d < dim; d++) {
+      const PetscInt place = node / stride[d] % nodes[d];
+
+      file->coordinates[3 * node + d] = box->lower[d] + (box->upper[d] - box->lower[d]) * place / box->faces[d];
+    }
+  PetscCall(MeshFileAddRun(file, shapes[dim - 1], 0, NULL));
+  PetscCall(DivideRange(file, dim, all, begin, end, stride));
+  for (PetscInt side = 0; side < 2 * dim; side++) {
+    PetscInt axes[2], from[3] = {0}, to[3], group, n = 0;
+
+    for (PetscInt d = 0; d < dim; d++)
+      if (d != side / 2) axes[n++] = d;
+    for (PetscInt d = 0; d < 3; d++) to[d] = end[d];
+    from[side / 2] = side % 2 ? box->faces[side / 2] : 0;
+    to[side / 2]   = from[side / 2] + 1;
+    PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, dim - 1, numbers[dim - 2][side], &group));
+    PetscCall(MeshFileAddRun(file, shapes[dim - 2], 1, &group));
+    PetscCall(DivideRange(file, dim - 1, axes, from, to, stride));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const Box *box, const char prefix[], const char name[], DM *dm)
+{
+  MeshFile       file;
+  Division       division = {&file, box};
+  DMLabel        marker;
+  char           where[256];
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(MeshFileInitialize(&file, NULL));
+  PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_box_faces", name, prefix));
+  error = MeshOnFirstRank(comm, DivideBox, &division, where);
+  if (!error) error = MeshBuild(comm, &file, where, dm);
+  PetscCall(MeshFileDestroy(&file));
+  PetscCall(error);
+  PetscCall(DMCreateLabel(*dm, "marker"));
+  PetscCall(DMGetLabel(*dm, "marker", &marker));
+  PetscCall(DMPlexMarkBoundaryFaces(*dm, 1, marker));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A box or another of DMPLEX's shapes from options */
+PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
+{
+  Box box;
+
+  PetscFunctionBegin;
+  PetscCall(ReadBox(comm, prefix, &box));
+  if (box.is_box && box.dim > 1 && box.simplex) {
+    PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
+  } else {
+    PetscCall(DMCreate(comm, dm));
+    PetscCall(DMSetType(*dm, DMPLEX));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,185 @@
+/* From the cells, vertices and groups of a mesh file on the first rank to a DMPlex with labels. */
+#include "meshimpl.h"
+
+typedef struct {
+  MeshFile *file;
+  DM        dm;
+} Labelling;
+
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *ctx)
+{
+  (void)comm;
+  (void)line;
+  (void)function;
+  (void)file;
+  if (type == PETSC_ERROR_INITIAL && message) (void)PetscStrncpy((char *)ctx, message, 1024);
+  return code;
+}
+
+/* Does something on the first rank; an error there becomes one of all ranks, with `where` before its message. Leaves
+   nothing to wait for. */
+PetscErrorCode MeshOnFirstRank(MPI_Comm comm, PetscErrorCode (*work)(void *), void *ctx, const char where[])
+{
+  char        message[1024] = "unknown error";
+  int         code          = 0;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) {
+    PetscCall(PetscPushErrorHandler(KeepMessage, message));
+    code = (int)(*work)(ctx);
+    PetscCall(PetscPopErrorHandler());
+  }
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
+  if (!code) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Bcast(message, sizeof(message), MPI_CHAR, 0, comm));
+  SETERRQ(comm, (PetscErrorCode)code, "%s: %s", where, message);
+}
+
+static PetscErrorCode SelectCells(void *ctx)
+{
+  PetscFunctionBegin;
+  PetscCall(MeshFileSelect((MeshFile *)ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LabelGroups(void *ctx)
+{
+  Labelling *labelling = (Labelling *)ctx;
+
+  PetscFunctionBegin;
+  PetscCall(MeshFileLabel(labelling->file, labelling->dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A DMPlex, all of it on the first rank, from a file that a reader has filled there. Frees the file's arrays. */
+PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *dm)
+{
+  PetscInt    sizes[2];
+  Labelling   labelling;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCall(MeshOnFirstRank(comm, SelectCells, file, where));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  sizes[0] = file->dim;
+  sizes[1] = file->corners;
+  PetscCallMPI(MPI_Bcast(sizes, 2, MPIU_INT, 0, comm));
+  for (PetscInt c = 0; c < file->n_cells; c++) PetscCall(DMPlexInvertCell(file->shape, file->cells + c * file->corners)); /* DMPLEX looks at bases from outside */
+  PetscCall(DMPlexCreateFromCellListPetsc(comm, sizes[0], file->n_cells, file->n_vertices, sizes[1], PETSC_TRUE, file->cells, sizes[0], file->vertices, dm));
+  PetscCall(PetscFree(file->cells));
+  PetscCall(PetscFree(file->vertices));
+  PetscCall(PetscFree(file->coordinates));
+  labelling.file = file;
+  labelling.dm   = *dm;
+  PetscCall(MeshOnFirstRank(comm, LabelGroups, &labelling, where));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The label of a group's name; NULL: it has none */
+static PetscErrorCode NameLabel(DM dm, const MeshGroup *group, DMLabel *label)
+{
+  const char *const reserved[] = {"depth", "celltype", "Cell Sets", "Face Sets", "Vertex Sets"};
+  PetscBool         same;
+
+  PetscFunctionBegin;
+  *label = NULL;
+  if (!group->name[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < 5; i++) {
+    PetscCall(PetscStrcasecmp(group->name, reserved[i], &same));
+    PetscCheck(!same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "group %" PetscInt_FMT " is named '%s', a word that PETSc uses itself: rename it", group->number, group->name);
+  }
+  PetscCall(DMCreateLabel(dm, group->name));
+  PetscCall(DMGetLabel(dm, group->name, label));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The face with these nodes; < 0: not a face of the body */
+static PetscErrorCode FindFace(const MeshFile *file, DM dm, PetscInt vstart, PetscInt n, const PetscInt nodes[], PetscInt *face)
+{
+  PetscInt        vertices[4], n_joins;
+  const PetscInt *join;
+
+  PetscFunctionBegin;
+  *face = -1;
+  for (PetscInt k = 0; k < n; k++) {
+    if (file->vertex_of_node[nodes[k]] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+    vertices[k] = vstart + file->vertex_of_node[nodes[k]];
+  }
+  if (n == 1) {
+    *face = vertices[0];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(DMPlexGetFullJoin(dm, n, vertices, &n_joins, &join));
+  if (n_joins == 1) {
+    PetscInt fstart, fend;
+
+    PetscCall(DMPlexGetHeightStratum(dm, 1, &fstart, &fend));
+    if (join[0] >= fstart && join[0] < fend) *face = join[0];
+  }
+  PetscCall(DMPlexRestoreJoin(dm, n, vertices, &n_joins, &join));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the elements of a run that is in a group; `first_cell` is the run's first cell, where it has cells */
+static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, const MeshGroup *group, PetscInt first_cell, DMLabel numbers, DMLabel name)
+{
+  PetscInt vstart;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, NULL));
+  for (PetscInt e = 0; e < run->n; e++) {
+    const PetscInt *nodes = file->element_nodes + run->first_node + e * run->corners;
+    PetscInt        point;
+
+    switch (group->kind) {
+    case MESH_BLOCK:
+      if (!run->chosen) continue;
+      point = first_cell + e;
+      break;
+    case MESH_SIDE_SET:
+      PetscCall(FindFace(file, dm, vstart, run->corners, nodes, &point));
+      PetscCheck(point >= 0 || file->n_wanted, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt_FMT " (%s) of surface '%s' (%" PetscInt_FMT ") is not a face of an element of dimension %" PetscInt_FMT, file->numbers[run->first + e], DMPolytopeTypes[run->shape], group->name, group->number, file->dim);
+      if (point < 0) continue;
+      break;
+    default:
+      for (PetscInt k = 0; k < run->corners; k++) {
+        if (file->vertex_of_node[nodes[k]] < 0) continue;
+        point = vstart + file->vertex_of_node[nodes[k]];
+        PetscCall(DMLabelSetValue(numbers, point, group->number));
+        if (name) PetscCall(DMLabelSetValue(name, point, 1));
+      }
+      continue;
+    }
+    PetscCall(DMLabelSetValue(numbers, point, group->number));
+    if (name) PetscCall(DMLabelSetValue(name, point, 1));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Labels of all groups: their numbers in "Cell Sets", "Face Sets" and "Vertex Sets", and a label with the value 1 for each
+   name, which may have points of several dimensions where groups of different kinds share it */
+PetscErrorCode MeshFileLabel(const MeshFile *file, DM dm)
+{
+  const char *const sets[] = {"Cell Sets", "Face Sets", "Vertex Sets"};
+  PetscInt          cell   = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt r = 0; r < file->n_runs; r++) {
+    const MeshRun *run = &file->runs[r];
+
+    for (PetscInt g = 0; g < run->n_groups; g++) {
+      const MeshGroup *group = &file->groups[file->run_groups[run->first_group + g]];
+      DMLabel          numbers, name;
+
+      if (group->kind == MESH_BLOCK && !run->chosen) continue;
+      PetscCall(DMCreateLabel(dm, sets[group->kind]));
+      PetscCall(DMGetLabel(dm, sets[group->kind], &numbers));
+      PetscCall(NameLabel(dm, group, &name));
+      PetscCall(LabelRun(file, dm, run, group, cell, numbers, name));
+    }
+    if (run->chosen) cell += run->n;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

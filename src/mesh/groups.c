@@ -1,0 +1,415 @@
+/* Surfaces and node sets of a mesh by their names. */
+#include "meshimpl.h"
+#include <petscsf.h>
+
+static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+
+/* What a name means: points of a label (those of one value, or any), or faces on a side of the bounding box */
+typedef struct {
+  DMLabel   label;
+  PetscBool by_value;
+  PetscInt  value;
+  PetscInt  side;      /* < 0: none; index into sides */
+  PetscReal place;     /* of that side */
+  PetscReal tolerance; /* of the place */
+} Selection;
+
+static PetscBool InLabel(const Selection *selection, PetscInt point)
+{
+  PetscBool in = PETSC_FALSE;
+  PetscInt  value;
+
+  if (selection->by_value) {
+    (void)DMLabelStratumHasPoint(selection->label, selection->value, point, &in);
+    return in;
+  }
+  (void)DMLabelGetValue(selection->label, point, &value);
+  return (PetscBool)(value >= 0);
+}
+
+/* Labels that PETSc keeps for itself */
+static PetscErrorCode IsInternal(const char name[], PetscBool *internal)
+{
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(name, "depth", internal));
+  PetscCall(PetscStrcmp(name, "celltype", &same));
+  *internal = (PetscBool)(*internal || same);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FindSide(DM dm, PetscInt side, Selection *selection)
+{
+  PetscReal lower[3], upper[3];
+
+  PetscFunctionBegin;
+  PetscCall(DMGetBoundingBox(dm, lower, upper));
+  selection->side      = side;
+  selection->place     = side % 2 ? upper[side / 2] : lower[side / 2];
+  selection->tolerance = 1e-8 * (upper[side / 2] - lower[side / 2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A label by name; a number in the label `sets`, where any rank has it */
+static PetscErrorCode FindLabel(DM dm, const char name[], const char sets[], Selection *selection, PetscBool *found)
+{
+  PetscBool internal, exists = PETSC_FALSE;
+  char     *end;
+  long      number;
+  int       any;
+
+  PetscFunctionBegin;
+  PetscCall(IsInternal(name, &internal));
+  *found = PETSC_FALSE;
+  if (!internal) PetscCall(DMGetLabel(dm, name, &selection->label));
+  if (selection->label) {
+    *found = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  number = strtol(name, &end, 10);
+  if (end == name || *end || number < 0 || number >= PETSC_INT_MAX) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DMGetLabel(dm, sets, &selection->label));
+  if (selection->label) PetscCall(DMLabelHasValue(selection->label, (PetscInt)number, &exists));
+  any = exists;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
+  *found = (PetscBool)any;
+  if (!*found) selection->label = NULL;
+  selection->by_value = *found;
+  selection->value    = (PetscInt)number;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether any rank has points of a stratum (0: vertices ...) in a label */
+static PetscErrorCode HasPoints(DM dm, DMLabel label, PetscInt start, PetscInt end, PetscBool *has)
+{
+  IS              values;
+  const PetscInt *value;
+  PetscInt        n, any = 0;
+
+  PetscFunctionBegin;
+  PetscCall(DMLabelGetValueIS(label, &values));
+  PetscCall(ISGetLocalSize(values, &n));
+  PetscCall(ISGetIndices(values, &value));
+  for (PetscInt i = 0; i < n && !any; i++) {
+    IS              points;
+    const PetscInt *point;
+    PetscInt        n_points;
+
+    PetscCall(DMLabelGetStratumIS(label, value[i], &points));
+    if (!points) continue;
+    PetscCall(ISGetLocalSize(points, &n_points));
+    PetscCall(ISGetIndices(points, &point));
+    for (PetscInt p = 0; p < n_points && !any; p++) any = point[p] >= start && point[p] < end;
+    PetscCall(ISRestoreIndices(points, &point));
+    PetscCall(ISDestroy(&points));
+  }
+  PetscCall(ISRestoreIndices(values, &value));
+  PetscCall(ISDestroy(&values));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
+  *has = (PetscBool)any;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers that a label has on any rank, up to 32 of them */
+static PetscErrorCode ListNumbers(DM dm, const char name[], char list[], size_t size)
+{
+  PetscInt last = -1;
+  DMLabel  label;
+  IS       values = NULL;
+  PetscInt n      = 0;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetLabel(dm, name, &label));
+  if (label) {
+    PetscCall(DMLabelGetValueIS(label, &values));
+    PetscCall(ISGetLocalSize(values, &n));
+  }
+  for (PetscInt k = 0; k < 32; k++) {
+    PetscInt        next = PETSC_INT_MAX;
+    const PetscInt *value;
+    char            text[32];
+
+    if (values) {
+      PetscCall(ISGetIndices(values, &value));
+      for (PetscInt i = 0; i < n; i++)
+        if (value[i] > last) next = PetscMin(next, value[i]);
+      PetscCall(ISRestoreIndices(values, &value));
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &next, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)dm)));
+    if (next == PETSC_INT_MAX) break;
+    last = next;
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%" PetscInt_FMT, list[0] ? ", " : "", next));
+    PetscCall(PetscStrlcat(list, text, size));
+  }
+  PetscCall(ISDestroy(&values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names of labels with points of a stratum, then numbers in `sets` */
+static PetscErrorCode ListLabels(DM dm, PetscInt start, PetscInt end, const char sets[], char list[], size_t size)
+{
+  const char *const generic[] = {"Cell Sets", "Face Sets", "Vertex Sets", "marker"};
+  PetscInt          n;
+
+  PetscFunctionBegin;
+  list[0] = 0;
+  PetscCall(DMGetNumLabels(dm, &n));
+  for (PetscInt l = 0; l < n; l++) {
+    const char *name;
+    PetscBool   skip, has;
+    DMLabel     label;
+
+    PetscCall(DMGetLabelName(dm, l, &name));
+    PetscCall(IsInternal(name, &skip));
+    for (PetscInt i = 0; i < 4 && !skip; i++) PetscCall(PetscStrcmp(name, generic[i], &skip));
+    if (skip) continue;
+    PetscCall(DMGetLabel(dm, name, &label));
+    PetscCall(HasPoints(dm, label, start, end, &has));
+    if (!has) continue;
+    if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
+    PetscCall(PetscStrlcat(list, name, size));
+  }
+  PetscCall(ListNumbers(dm, sets, list, size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RefuseSurface(DM dm, const char name[], const char what[])
+{
+  PetscInt    dim, fstart, fend;
+  char        list[1024], box[64] = "";
+  const char *body;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(DMPlexGetHeightStratum(dm, 1, &fstart, &fend));
+  PetscCall(ListLabels(dm, fstart, fend, "Face Sets", list, sizeof(list)));
+  for (PetscInt i = 0; i < 2 * dim; i++) {
+    if (i) PetscCall(PetscStrlcat(box, ", ", sizeof(box)));
+    PetscCall(PetscStrlcat(box, sides[i], sizeof(box)));
+  }
+  PetscCall(PetscObjectGetName((PetscObject)dm, &body));
+  SETERRQ(PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT, "Body '%s' has no surface '%s'%s; its mesh has these, by name or number: %s; sides of its bounding box: %s", body, name ? name : "", what, list[0] ? list : "none", box);
+}
+
+/* Where a face is a point, its closure is itself */
+static PetscErrorCode OnSide(DM dm, const Selection *selection, PetscInt face, PetscInt vstart, PetscInt vend, PetscSection section, const PetscScalar x[], PetscBool *on)
+{
+  PetscInt *closure = NULL, n;
+
+  PetscFunctionBegin;
+  *on = PETSC_TRUE;
+  PetscCall(DMPlexGetTransitiveClosure(dm, face, PETSC_TRUE, &n, &closure));
+  for (PetscInt p = 0; p < n && *on; p++) {
+    PetscInt offset;
+
+    if (closure[2 * p] < vstart || closure[2 * p] >= vend) continue;
+    PetscCall(PetscSectionGetOffset(section, closure[2 * p], &offset));
+    if (PetscAbsReal(PetscRealPart(x[offset + selection->side / 2]) - selection->place) > selection->tolerance) *on = PETSC_FALSE;
+  }
+  PetscCall(DMPlexRestoreTransitiveClosure(dm, face, PETSC_TRUE, &n, &closure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's faces of the boundary that are selected; faces between ranks are none of the boundary */
+static PetscErrorCode CollectFaces(DM dm, const Selection *selection, PetscInt *n_faces, PetscInt *faces[])
+{
+  DMLabel            boundary;
+  IS                 points;
+  const PetscInt    *point;
+  const PetscScalar *x;
+  PetscSection       section;
+  Vec                coordinates;
+  PetscInt           n, vstart, vend;
+
+  PetscFunctionBegin;
+  PetscCall(DMLabelCreate(PETSC_COMM_SELF, "boundary", &boundary));
+  PetscCall(DMPlexMarkBoundaryFaces(dm, 1, boundary));
+  PetscCall(DMLabelGetStratumSize(boundary, 1, &n));
+  PetscCall(DMGetCoordinateSection(dm, &section));
+  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
+  PetscCall(PetscMalloc1(n, faces));
+  *n_faces = 0;
+  if (n) {
+    PetscCall(VecGetArrayRead(coordinates, &x));
+    PetscCall(DMLabelGetStratumIS(boundary, 1, &points));
+    PetscCall(ISGetIndices(points, &point));
+    for (PetscInt i = 0; i < n; i++) {
+      PetscBool on = PETSC_TRUE;
+
+      if (selection->label) on = InLabel(selection, point[i]);
+      else if (selection->by_value) on = PETSC_FALSE; /* the label is on other ranks alone */
+      if (selection->side >= 0) PetscCall(OnSide(dm, selection, point[i], vstart, vend, section, x, &on));
+      if (on) (*faces)[(*n_faces)++] = point[i];
+    }
+    PetscCall(ISRestoreIndices(points, &point));
+    PetscCall(ISDestroy(&points));
+    PetscCall(VecRestoreArrayRead(coordinates, &x));
+  }
+  PetscCall(DMLabelDestroy(&boundary));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Labels xmin, xmax, ... of the faces that are on the sides of the bounding box now; a side without a face gets none */
+PetscErrorCode MeshMarkSides(DM dm)
+{
+  PetscInt dim;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  for (PetscInt side = 0; side < 2 * dim; side++) {
+    Selection selection = {.side = -1};
+    PetscInt  n, total, *faces;
+    DMLabel   label;
+
+    PetscCall(FindSide(dm, side, &selection));
+    PetscCall(CollectFaces(dm, &selection, &n, &faces));
+    PetscCallMPI(MPI_Allreduce(&n, &total, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)dm)));
+    if (total) {
+      PetscCall(DMCreateLabel(dm, sides[side]));
+      PetscCall(DMGetLabel(dm, sides[side], &label));
+      for (PetscInt i = 0; i < n; i++) PetscCall(DMLabelSetValue(label, faces[i], 1));
+    }
+    PetscCall(PetscFree(faces));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MeshGetSurface - faces of a mesh's boundary by the name of a surface
+
+  Collective
+
+  Input Parameters:
++ dm   - a `DMPLEX` with faces, named as the body is
+- name - a label of the mesh (a group of its file), a number in its "Face Sets", a side of its bounding box (xmin, xmax, ymin,
+         ...), looked for in this order; `NULL` or empty for the whole boundary
+
+  Output Parameters:
++ n_faces - number of faces of this rank
+- faces   - points of the mesh, ascending; free with `PetscFree()`
+
+  Level: developer
+
+  Note:
+  Each face is on one rank, unless the mesh was distributed with an overlap. A name that the mesh does not have, and a surface
+  without any face of the boundary, end with an error that lists the surfaces there are.
+
+.seealso: `MeshCreate()`, `MeshGetNodeSet()`
+@*/
+PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, PetscInt *faces[])
+{
+  Selection selection = {.side = -1};
+  PetscInt  dim, total;
+  PetscBool found = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (name && name[0]) {
+    PetscCall(FindLabel(dm, name, "Face Sets", &selection, &found));
+    PetscCall(DMGetCoordinateDim(dm, &dim));
+    for (PetscInt side = 0; side < 2 * dim && !found; side++) {
+      PetscCall(PetscStrcmp(name, sides[side], &found));
+      if (found) PetscCall(FindSide(dm, side, &selection));
+    }
+    if (!found) PetscCall(RefuseSurface(dm, name, ""));
+  }
+  PetscCall(CollectFaces(dm, &selection, n_faces, faces));
+  PetscCallMPI(MPI_Allreduce(n_faces, &total, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)dm)));
+  if (!total) {
+    PetscCall(PetscFree(*faces));
+    PetscCall(RefuseSurface(dm, name, " with faces on its boundary"));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets the mark of a vertex on all ranks that have it where one of them has set it */
+static PetscErrorCode ShareMarks(DM dm, PetscInt marks[])
+{
+  PetscSF     sf;
+  PetscInt    roots, start, end, *shared;
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)dm), &size));
+  PetscCall(DMGetPointSF(dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, &roots, NULL, NULL, NULL));
+  if (size == 1 || roots < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DMPlexGetChart(dm, &start, &end));
+  PetscCall(PetscMalloc1(end - start, &shared));
+  PetscCall(PetscArraycpy(shared, marks, end - start));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_INT, marks, shared, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_INT, marks, shared, MPI_MAX));
+  PetscCall(PetscArraycpy(marks, shared, end - start));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_INT, shared, marks, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_INT, shared, marks, MPI_REPLACE));
+  PetscCall(PetscFree(shared));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MarkVerticesOfFaces(DM dm, PetscInt n, const PetscInt faces[], PetscInt start, PetscInt vstart, PetscInt vend, PetscInt marks[])
+{
+  PetscFunctionBegin;
+  for (PetscInt f = 0; f < n; f++) {
+    PetscInt *closure = NULL, n_points;
+
+    PetscCall(DMPlexGetTransitiveClosure(dm, faces[f], PETSC_TRUE, &n_points, &closure));
+    for (PetscInt p = 0; p < n_points; p++)
+      if (closure[2 * p] >= vstart && closure[2 * p] < vend) marks[closure[2 * p] - start] = 1;
+    PetscCall(DMPlexRestoreTransitiveClosure(dm, faces[f], PETSC_TRUE, &n_points, &closure));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MeshGetNodeSet - vertices of a mesh by the name of a node set, or of a surface
+
+  Collective
+
+  Input Parameters:
++ dm   - a `DMPLEX` with faces, named as the body is
+- name - a label of the mesh that has vertices (a node set of its file), a number in its "Vertex Sets", or what
+         `MeshGetSurface()` takes, looked for in this order
+
+  Output Parameters:
++ n_vertices - number of vertices of this rank
+- vertices   - points of the mesh, ascending, owned ones and ghosts; free with `PetscFree()`
+
+  Level: developer
+
+.seealso: `MeshCreate()`, `MeshGetSurface()`
+@*/
+PetscErrorCode MeshGetNodeSet(DM dm, const char name[], PetscInt *n_vertices, PetscInt *vertices[])
+{
+  Selection selection = {.side = -1};
+  PetscInt  start, end, vstart, vend, *marks;
+  PetscBool found = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
+  if (name && name[0]) PetscCall(FindLabel(dm, name, "Vertex Sets", &selection, &found));
+  if (found && !selection.by_value) PetscCall(HasPoints(dm, selection.label, vstart, vend, &found));
+  PetscCall(DMPlexGetChart(dm, &start, &end));
+  PetscCall(PetscCalloc1(end - start, &marks));
+  if (found) {
+    for (PetscInt v = vstart; v < vend; v++)
+      if (selection.label) marks[v - start] = InLabel(&selection, v);
+  } else {
+    PetscInt       n, *faces;
+    PetscErrorCode error = MeshGetSurface(dm, name, &n, &faces);
+
+    if (error) PetscCall(PetscFree(marks));
+    PetscCall(error);
+    PetscCall(MarkVerticesOfFaces(dm, n, faces, start, vstart, vend, marks));
+    PetscCall(PetscFree(faces));
+  }
+  PetscCall(ShareMarks(dm, marks));
+  *n_vertices = 0;
+  for (PetscInt v = vstart; v < vend; v++) *n_vertices += marks[v - start];
+  PetscCall(PetscMalloc1(*n_vertices, vertices));
+  *n_vertices = 0;
+  for (PetscInt v = vstart; v < vend; v++)
+    if (marks[v - start]) (*vertices)[(*n_vertices)++] = v;
+  PetscCall(PetscFree(marks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

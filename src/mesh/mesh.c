@@ -1,0 +1,155 @@
+/* The mesh of a body from its options. */
+#include "meshimpl.h"
+#include <sys/stat.h>
+
+typedef PetscErrorCode (*Reader)(MeshFile *);
+
+typedef struct {
+  MeshFile *file;
+  Reader    read;
+} Reading;
+
+/* By the end of the file's name; NULL: not known */
+static PetscErrorCode FindReader(const char path[], Reader *reader)
+{
+  const char *const extensions[] = {".msh", ".g", ".e", ".exo", ".ex2"};
+  char             *dot;
+
+  PetscFunctionBegin;
+  *reader = NULL;
+  PetscCall(PetscStrrchr((char *)path, '.', &dot)); /* behind the dot, or the beginning where there is none */
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(extensions); i++) {
+    PetscBool same;
+
+    PetscCall(PetscStrcasecmp(dot, extensions[i] + 1, &same));
+    if (same && dot != path) *reader = i ? MeshReadExodus : MeshReadGmsh;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadFile(void *ctx)
+{
+  const Reading *reading = (Reading *)ctx;
+  struct stat    about;
+
+  PetscFunctionBegin;
+  PetscCheck(!stat(reading->file->path, &about), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "there is no such file");
+  PetscCheck(S_ISREG(about.st_mode), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "it is no file%s", S_ISDIR(about.st_mode) ? ", but a directory" : "");
+  PetscCheck(reading->read, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "its format is not known from its name; known: .msh (Gmsh), .g, .e, .exo, .ex2 (Exodus II)");
+  PetscCall((*reading->read)(reading->file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -mesh_blocks a,b */
+static PetscErrorCode ReadWanted(const char prefix[], MeshFile *file)
+{
+  char    *names[64];
+  PetscInt n = 64;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetStringArray(NULL, prefix, "-mesh_blocks", names, &n, NULL));
+  PetscCall(PetscMalloc1(n, &file->wanted));
+  for (PetscInt i = 0; i < n; i++) file->wanted[i] = names[i];
+  file->n_wanted = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A mesh that a file has, all of it on the first rank */
+PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char name[], const char path[], DM *dm)
+{
+  MeshFile       file;
+  Reading        reading = {.file = &file};
+  PetscInt       asked, dim;
+  PetscBool      set;
+  char           where[PETSC_MAX_PATH_LEN + 256];
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &asked, &set));
+  PetscCall(MeshFileInitialize(&file, path));
+  PetscCall(ReadWanted(prefix, &file));
+  PetscCall(FindReader(path, &reading.read));
+  PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', mesh file '%s'", name, path));
+  error = MeshOnFirstRank(comm, ReadFile, &reading, where);
+  if (!error) error = MeshBuild(comm, &file, where, dm);
+  PetscCall(MeshFileDestroy(&file));
+  PetscCall(error);
+  PetscCall(DMGetDimension(*dm, &dim));
+  PetscCheck(!set || dim == asked, comm, PETSC_ERR_USER_INPUT, "%s: its elements have dimension %" PetscInt_FMT "; -%sdm_plex_dim asks for %" PetscInt_FMT, where, dim, prefix, asked);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A rank without an element has nothing to do, and partitioners need not leave others with any */
+static PetscErrorCode CheckSize(DM dm, const char name[])
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)dm);
+  PetscInt    cstart, cend;
+  PetscInt64  n;
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &cstart, &cend));
+  n = cend - cstart;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT64, MPI_SUM, comm));
+  PetscCheck(n >= size, comm, PETSC_ERR_USER_INPUT, "Body '%s' has %" PetscInt64_FMT " element%s for %d ranks: run it on fewer, or with a finer mesh", name, n, n == 1 ? "" : "s", size);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MeshCreate - the mesh of a body from options, distributed over the ranks
+
+  Collective
+
+  Input Parameters:
++ comm   - the communicator
+. prefix - of its options, such as "left_"
+- name   - of the body, for messages; becomes that of the mesh
+
+  Output Parameter:
+. dm - a `DMPLEX` with faces and edges, on each rank its own part; also where an error comes up, `NULL` or to be destroyed
+
+  Options Database Keys:
++ -<body>_dm_plex_filename f                                    - Gmsh (.msh, version 2.2 or 4.1) or Exodus II (.g, .e, .exo, .ex2)
+. -<body>_mesh_blocks a,b                                       - blocks of the file that make this body, by name or number; default all
+. -<body>_dm_plex_dim d                                         - dimension of a box; of a file: checked
+. -<body>_dm_plex_box_faces n,n,n, _box_lower, _box_upper       - a box [m]
+. -<body>_dm_plex_simplex (true|false)                          - of triangles or tetrahedra, DMPLEX's default, or of quadrilaterals or hexahedra
+. -<body>_scale s                                               - factor for all coordinates, 0.001 for a file in millimetres
+. -<body>_rotate ax,ay,az,degrees, in two dimensions degrees    - turns it about an axis through the origin
+. -<body>_rotate_centre x,y,z                                   - through another point [m], after scaling
+- -<body>_translate x,y,z                                       - shifts it [m], last
+
+  Level: developer
+
+  Notes:
+  Groups of a file (Gmsh's physical groups; Exodus' blocks, side sets and node sets) become labels: their numbers in "Cell
+  Sets", "Face Sets" and "Vertex Sets", their names as labels with the value 1. The sides of a box have labels xmin, xmax, ...
+  which a rotation takes along.
+
+  The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that no element of the
+  body has are left out. The file is read by the first rank.
+
+.seealso: `MeshGetSurface()`, `MeshGetNodeSet()`, `BodySetFromOptions()`
+@*/
+PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
+{
+  char      path[PETSC_MAX_PATH_LEN];
+  PetscBool from_file, blocks;
+
+  PetscFunctionBegin;
+  *dm = NULL;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_filename", path, sizeof(path), &from_file));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_blocks", &blocks));
+  PetscCheck(from_file || !blocks, comm, PETSC_ERR_USER_INPUT, "-%smesh_blocks needs a mesh file: give -%sdm_plex_filename", prefix, prefix);
+  if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm));
+  else PetscCall(MeshCreateBox(comm, prefix, name, dm));
+  PetscCall(DMSetOptionsPrefix(*dm, prefix));
+  PetscCall(DMSetFromOptions(*dm)); /* distributes it */
+  PetscCall(PetscObjectSetName((PetscObject)*dm, name));
+  PetscCall(CheckSize(*dm, name));
+  if (!from_file) PetscCall(MeshMarkSides(*dm));
+  PetscCall(MeshPlace(*dm, prefix, name));
+  PetscCall(DMViewFromOptions(*dm, NULL, "-dm_view"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,82 @@
+/* What the readers of mesh files share with the making of a DMPlex. Private to src/mesh. */
+#pragma once
+#include <mesh.h>
+
+#define MESH_NAME_LENGTH 256
+
+/* What the elements of a group are to the body */
+typedef enum {
+  MESH_BLOCK,     /* its cells */
+  MESH_SIDE_SET,  /* faces of its cells */
+  MESH_NODE_SET,  /* vertices */
+  MESH_UNDECIDED, /* told by the dimension of its elements, once that of the body is known */
+} MeshGroupKind;
+
+typedef struct {
+  MeshGroupKind kind;
+  PetscInt      dim; /* of its elements */
+  PetscInt      number;
+  char          name[MESH_NAME_LENGTH]; /* empty: it has none */
+} MeshGroup;
+
+/* Elements that follow each other in a file, of one shape and in the same groups */
+typedef struct {
+  DMPolytopeType shape;
+  PetscInt       dim, corners;
+  PetscInt       n, first, first_node; /* elements; the first one's place in numbers, and in nodes */
+  PetscInt       n_groups, first_group;
+  PetscBool      chosen; /* cells of this body */
+} MeshRun;
+
+/* A mesh file as it is read, on the first rank alone, whatever its format */
+typedef struct {
+  const char *path;
+  /* options: which blocks make the body; none: all */
+  PetscInt n_wanted;
+  char   **wanted;
+  /* nodes, with three coordinates */
+  PetscInt   n_nodes;
+  PetscReal *coordinates;
+  PetscInt  *node_numbers;                  /* in the file; NULL: 1, 2, 3 ... */
+  PetscInt  *sorted_numbers, *sorted_nodes; /* the same in ascending order, unless they are consecutive */
+  /* groups and elements of all dimensions */
+  PetscInt   n_groups, max_groups;
+  MeshGroup *groups;
+  PetscInt   n_runs, max_runs;
+  MeshRun   *runs;
+  PetscInt   n_run_groups, max_run_groups;
+  PetscInt  *run_groups;
+  PetscInt   n_elements, max_elements;
+  PetscInt  *numbers; /* of elements in the file */
+  PetscInt   n_element_nodes, max_element_nodes;
+  PetscInt  *element_nodes;
+  /* the body: cells in the file's order, vertices that belong to one of them */
+  PetscInt       dim;
+  DMPolytopeType shape;
+  PetscInt       corners, n_cells, n_vertices;
+  PetscInt      *cells, *cell_numbers; /* vertices of each cell; its number in the file */
+  PetscInt      *vertex_of_node;       /* < 0: not the body's */
+  PetscReal     *vertices;
+  /* what a reader holds while it reads, so that it is freed also where reading ends with an error */
+  char *text;
+} MeshFile;
+
+PETSC_INTERN PetscErrorCode MeshFileInitialize(MeshFile *, const char[]);
+PETSC_INTERN PetscErrorCode MeshFileDestroy(MeshFile *);
+PETSC_INTERN PetscErrorCode MeshFileAddGroup(MeshFile *, MeshGroupKind, PetscInt, PetscInt, PetscInt *);
+PETSC_INTERN PetscErrorCode MeshFileAddRun(MeshFile *, DMPolytopeType, PetscInt, const PetscInt[]);
+PETSC_INTERN PetscErrorCode MeshFileAddElement(MeshFile *, PetscInt, PetscInt *[]);
+PETSC_INTERN PetscErrorCode MeshFileNumberNodes(MeshFile *);
+PETSC_INTERN PetscErrorCode MeshFileFindNode(MeshFile *, PetscInt, PetscInt *);
+PETSC_INTERN PetscErrorCode MeshFileWants(const MeshFile *, PetscInt, const char[], PetscBool *);
+PETSC_INTERN PetscErrorCode MeshFileSelect(MeshFile *);
+PETSC_INTERN PetscErrorCode MeshFileLabel(const MeshFile *, DM);
+PETSC_INTERN PetscErrorCode MeshReadGmsh(MeshFile *);
+PETSC_INTERN PetscErrorCode MeshReadExodus(MeshFile *);
+PETSC_INTERN PetscErrorCode MeshCheckNetCDFSize(const char[]);
+PETSC_INTERN PetscErrorCode MeshOnFirstRank(MPI_Comm, PetscErrorCode (*)(void *), void *, const char[]);
+PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *);
+PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], DM *);
+PETSC_INTERN PetscErrorCode MeshBuild(MPI_Comm, MeshFile *, const char[], DM *);
+PETSC_INTERN PetscErrorCode MeshMarkSides(DM);
+PETSC_INTERN PetscErrorCode MeshPlace(DM, const char[], const char[]);

@@ -1,0 +1,99 @@
+/* Where a body's mesh lies: scale, rotation and translation from options. */
+#include "meshimpl.h"
+
+typedef struct {
+  PetscReal scale, rotation[3][3], centre[3], shift[3];
+} Motion;
+
+static PetscErrorCode ReadNumbers(MPI_Comm comm, const char prefix[], const char option[], PetscInt expected, const char meaning[], PetscReal values[], PetscBool *set)
+{
+  PetscInt n = 4;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetRealArray(NULL, prefix, option, values, &n, set));
+  PetscCheck(!*set || n == expected, comm, PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " numbers, where %" PetscInt_FMT " are expected: %s", prefix, option + 1, n, expected, meaning);
+  for (PetscInt i = 0; *set && i < n; i++) PetscCheck(!PetscIsInfOrNanReal(values[i]), comm, PETSC_ERR_USER_INPUT, "-%s%s: %g is no finite number", prefix, option + 1, (double)values[i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rodrigues' formula: R = cos I + sin [a]x + (1 - cos) a a^T, with the unit vector a of the axis */
+static void Rotation(const PetscReal axis[3], PetscReal degrees, PetscReal R[3][3])
+{
+  const PetscReal angle = degrees * PETSC_PI / 180, size = PetscSqrtReal(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+  const PetscReal a[3] = {axis[0] / size, axis[1] / size, axis[2] / size}, c = PetscCosReal(angle), s = PetscSinReal(angle);
+  const PetscReal w[3][3] = {{0, -a[2], a[1]}, {a[2], 0, -a[0]}, {-a[1], a[0], 0}};
+
+  for (PetscInt i = 0; i < 3; i++)
+    for (PetscInt j = 0; j < 3; j++) R[i][j] = (i == j ? c : 0) + s * w[i][j] + (1 - c) * a[i] * a[j];
+}
+
+static PetscErrorCode ReadMotion(MPI_Comm comm, const char prefix[], const char name[], PetscInt dim, Motion *motion, PetscBool *moves)
+{
+  PetscReal values[4], axis[3] = {0, 0, 1};
+  PetscBool scale, rotate, centre, translate;
+
+  PetscFunctionBegin;
+  *motion = (Motion){.scale = 1, .rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  PetscCall(ReadNumbers(comm, prefix, "-scale", 1, "a factor for all coordinates", values, &scale));
+  if (scale) motion->scale = values[0];
+  PetscCheck(motion->scale > 0, comm, PETSC_ERR_USER_INPUT, "-%sscale %g: the factor must be positive", prefix, (double)motion->scale);
+  PetscCall(ReadNumbers(comm, prefix, "-rotate", dim == 3 ? 4 : 1, dim == 3 ? "axis and degrees" : "degrees", values, &rotate));
+  PetscCheck(!rotate || dim > 1, comm, PETSC_ERR_USER_INPUT, "-%srotate: body '%s' is one-dimensional and cannot be rotated", prefix, name);
+  if (rotate) {
+    if (dim == 3)
+      for (PetscInt d = 0; d < 3; d++) axis[d] = values[d];
+    PetscCheck(axis[0] != 0 || axis[1] != 0 || axis[2] != 0, comm, PETSC_ERR_USER_INPUT, "-%srotate: the axis is (0, 0, 0), which has no direction", prefix);
+    Rotation(axis, values[dim == 3 ? 3 : 0], motion->rotation);
+  }
+  PetscCall(ReadNumbers(comm, prefix, "-rotate_centre", dim, "a point [m]", motion->centre, &centre));
+  PetscCheck(!centre || rotate, comm, PETSC_ERR_USER_INPUT, "-%srotate_centre without -%srotate has no effect", prefix, prefix);
+  PetscCall(ReadNumbers(comm, prefix, "-translate", dim, "one for each dimension of the body [m]", motion->shift, &translate));
+  *moves = (PetscBool)(scale || rotate || translate);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Move(const Motion *motion, PetscInt dim, Vec coordinates)
+{
+  PetscScalar *x;
+  PetscInt     n;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(coordinates, &n));
+  PetscCall(VecGetArray(coordinates, &x));
+  for (PetscInt p = 0; p < n; p += dim) {
+    PetscReal arm[3] = {0};
+
+    for (PetscInt d = 0; d < dim; d++) arm[d] = motion->scale * PetscRealPart(x[p + d]) - motion->centre[d];
+    for (PetscInt d = 0; d < dim; d++) {
+      PetscReal sum = motion->centre[d] + motion->shift[d];
+
+      for (PetscInt k = 0; k < dim; k++) sum += motion->rotation[d][k] * arm[k];
+      x[p + d] = sum;
+    }
+  }
+  PetscCall(VecRestoreArray(coordinates, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Scales a mesh about the origin, then rotates it about its centre of rotation, then shifts it */
+PetscErrorCode MeshPlace(DM dm, const char prefix[], const char name[])
+{
+  Motion    motion;
+  PetscInt  dim;
+  PetscBool moves = PETSC_FALSE;
+  Vec       coordinates;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(ReadMotion(PetscObjectComm((PetscObject)dm), prefix, name, dim, &motion, &moves));
+  if (!moves) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
+  PetscCall(Move(&motion, dim, coordinates));
+  PetscCall(DMSetCoordinatesLocal(dm, coordinates)); /* drops the global ones, which have not moved */
+  PetscCall(DMGetCellCoordinatesLocal(dm, &coordinates));
+  if (coordinates) {
+    PetscCall(Move(&motion, dim, coordinates));
+    PetscCall(DMSetCellCoordinatesLocal(dm, coordinates));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,161 @@
+"""Time and memory of bodies in three dimensions: explicit hex8 beside the yardstick, set-up, field output, multigrid.
+
+    python tests/scaling/solids.py --build build [--largest 1000000]
+
+Program and yardstick run in turn, as in bench.py, whose exit code has the same meaning: whether all runs worked.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+
+from bench import ROOT, RunError, execute, print_table, spread
+
+STEPS = 2e7  # elements times steps of a run: some seconds
+SPEED_BOUND = 1.5
+MEMORY_BOUND = 3.0  # kB per element
+SETUP_BOUND = 60.0  # s
+FRAME_BOUND = 20.0  # explicit steps
+MATERIALS = ("linear", "neo_hookean")
+TYPES = {"linear": "linear_elastic", "neo_hookean": "neo_hookean"}
+
+
+def box(per_side, material, steps):
+    """Options of the problem that the yardstick solves: a free cube with a velocity field, in controller steps of 100 substeps at most."""
+    length = per_side * 0.01
+    step = 0.5 * 0.01 / 1160 / 2  # under half the stable step of E = 1e9 Pa, nu = 0.3, rho = 1000 kg/m^3, h = 1 cm
+    inner = min(steps, 100)
+    options = {
+        "bodies": "box",
+        "box_dm_plex_dim": 3,
+        "box_dm_plex_box_faces": f"{per_side},{per_side},{per_side}",
+        "box_dm_plex_box_upper": f"{length},{length},{length}",
+        "box_material_type": TYPES[material],
+        "box_density": 1000,
+        "box_youngs_modulus": 1e9,
+        "box_poissons_ratio": 0.3,
+        "box_initial_velocity": "10*sin(x/0.1),0,0",
+        "box_ts_type": "centraldifference",
+        "box_ts_time_step": step,
+        "time_step": inner * step,
+        "time_end": max(1, round(steps / inner)) * inner * step,
+        "progress": 0,
+    }
+    return [word for name, value in options.items() for word in (f"-{name}", str(value))]
+
+
+def run(build, options, limit):
+    """Summary, wall time [s] and peak memory [kB] of a run."""
+    with tempfile.TemporaryDirectory() as directory:
+        path = Path(directory) / "summary.json"
+        command = [str(build / "impakt"), *options, "-output_summary", str(path)]
+        environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        process = subprocess.Popen(command, cwd=directory, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        output, _ = process.communicate(timeout=limit)
+        if process.returncode:
+            raise RunError(" ".join(command) + "\n" + "\n".join(output.splitlines()[-20:]))
+        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss  # of the largest child so far: cases go from small to large
+        return json.loads(path.read_text(encoding="utf-8")), peak, output
+
+
+def explicit(build, per_side, material, repeats, limit):
+    """Rows of the table of explicit runs: times per element and step of both programs, and what the body cost beside."""
+    elements = per_side**3
+    steps = max(20, int(STEPS / elements))
+    steps = steps if steps < 100 else steps // 100 * 100
+    times, references = [], []
+    for _ in range(repeats):
+        line = execute([build / "yardstick_hex8", "--elements", elements, "--steps", steps, "--material", material], limit)
+        references.append(json.loads(line)["us_per_element_step"])
+        summary, peak, _ = run(build, box(per_side, material, steps), limit)
+        made = summary["bodies"]["box"]["substeps"]
+        times.append(1e6 * summary["timing"]["cpu"] / made / elements)
+    ratio = median(times) / median(references)
+    return {
+        "row": [material, f"{elements}", spread(times), spread(references), f"{ratio:.2f}", "within the bound" if ratio <= SPEED_BOUND else "above the bound"],
+        "peak": peak,
+        "setup": summary["timing"]["wall_setup"],
+        "elements": elements,
+    }
+
+
+def frame_cost(build, per_side, limit):
+    """Seconds of one frame of fields, and of one explicit step, from runs with and without them."""
+    options = box(per_side, "linear", 20)
+    plain, _, _ = run(build, options, limit)
+    with tempfile.TemporaryDirectory() as directory:
+        written, _, _ = run(build, [*options, "-output_fields", f"{directory}/fields.h5"], limit)
+    step = plain["timing"]["wall"] / plain["bodies"]["box"]["substeps"]
+    return (written["timing"]["wall"] - plain["timing"]["wall"]) / 2, step  # two frames: the first state and the last
+
+
+def multigrid(build, per_side, limit):
+    """Unknowns and CG iterations of a static cube, held below and pulled above, with GAMG."""
+    options = {
+        "bodies": "box",
+        "box_dm_plex_dim": 3,
+        "box_dm_plex_box_faces": f"{per_side},{per_side},{per_side}",
+        "box_density": 1000,
+        "box_youngs_modulus": 1e9,
+        "box_poissons_ratio": 0.3,
+        "box_ts_type": "static",
+        "box_boundary_displacement": "zmin",
+        "box_boundary_displacement_zmin": "0,0,0",
+        "box_boundary_traction": "zmax",
+        "box_boundary_traction_zmax": "1e5,0,1e5",
+        "box_ksp_type": "cg",
+        "box_pc_type": "gamg",
+        "box_ksp_converged_reason": None,
+        "time_step": 1,
+        "time_end": 1,
+        "progress": 0,
+    }
+    words = [word for name, value in options.items() for word in ((f"-{name}", str(value)) if value is not None else (f"-{name}",))]
+    summary, _, output = run(build, words, limit)
+    iterations = [int(line.split("iterations")[1]) for line in output.splitlines() if "iterations" in line and "CONVERGED" in line]
+    return summary["bodies"]["box"]["dofs"], max(iterations), summary["timing"]
+
+
+def main():
+    """Run everything and print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help="directory of impakt and yardstick_hex8")
+    parser.add_argument("--repeats", type=int, default=3, help="runs of each case (default: 3)")
+    parser.add_argument("--largest", type=int, default=1000000, help="elements of the largest box (default: 1000000)")
+    parser.add_argument("--time-limit", type=float, default=600.0, help="for one run, in s (default: 600)")
+    arguments = parser.parse_args()
+    build, limit = arguments.build.resolve(), arguments.time_limit
+    sides = [side for side in (10, 22, 46, 100) if side**3 <= arguments.largest]
+    try:
+        print("\nExplicit hex8, full integration: CPU time per element and step [us], median [minimum maximum].\n")
+        results = [explicit(build, side, material, arguments.repeats, limit) for side in sides for material in MATERIALS]
+        print_table([["material", "elements", "program", "yardstick", "ratio", f"bound {SPEED_BOUND}"], *(result["row"] for result in results)])
+        last = results[-1]
+        memory = last["peak"] / last["elements"]
+        print(f"\nmemory at {last['elements']} elements: {memory:.2f} kB per element (bound {MEMORY_BOUND})")
+        print(f"set-up of {last['elements']} elements: {last['setup']:.1f} s (bound {SETUP_BOUND:g} s)")
+        frame, step = frame_cost(build, sides[-1], limit)
+        print(f"a frame of fields of {last['elements']} elements: {frame:.2f} s, {frame / step:.1f} explicit steps (bound {FRAME_BOUND:g})")
+        print("\nCG with GAMG and rigid-body near-null space, a static cube held below, pulled and sheared above:\n")
+        rows = [["unknowns", "iterations", "set-up, s", "time loop, s"]]
+        for side in (14, 21, 31, 45):
+            unknowns, iterations, timing = multigrid(build, side, limit)
+            rows.append([f"{unknowns}", f"{iterations}", f"{timing['wall_setup']:.1f}", f"{timing['wall']:.1f}"])
+        print_table(rows)
+    except RunError as error:
+        print(f"solids.py: a run failed: {error}", file=sys.stderr)
+        return 1
+    except subprocess.TimeoutExpired as error:
+        print(f"solids.py: no result within {limit:g} s: {error.cmd}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
