@@ -56,9 +56,8 @@ static PetscErrorCode CheckElement(Element element, PetscInt e)
    points at once, as one by one they would cost more than several time steps. */
 SIMD_CLONES static PetscBool IsSound(const PetscInt connectivity[], PetscInt first, PetscInt count, PetscInt dim, PetscInt nodes, PetscInt n, const PetscReal dN[][SOLID_MAX_NODES * 3], const PetscReal coordinates[])
 {
-  SimdReal   x[SOLID_MAX_NODES][3], allowed;
-  SimdVector one   = {0};
-  PetscBool  sound = PETSC_TRUE;
+  SimdReal  x[SOLID_MAX_NODES][3], allowed;
+  PetscBool sound = PETSC_TRUE;
 
   for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
     const PetscInt *node   = connectivity + nodes * PetscMin(first + p, count - 1);
@@ -71,18 +70,18 @@ SIMD_CLONES static PetscBool IsSound(const PetscInt connectivity[], PetscInt fir
       }
     allowed[p] = DEGENERATE * 4 * extent * extent * (dim == 3 ? 2 * extent : 1);
   }
-  one += 1;
-  for (PetscInt k = 0; k < n; k++) {
-    SimdVector J[3][3] = {{{0}}}, determinant;
+  for (PetscInt part = 0; part < SIMD_PARTS; part++)
+    for (PetscInt k = 0; k < n; k++) {
+      SimdVector J[3][3] = {{{0}}}, margin;
 
-    if (dim == 2) J[2][2] = one;
-    for (PetscInt a = 0; a < nodes; a++)
-      for (PetscInt i = 0; i < dim; i++)
-        for (PetscInt j = 0; j < dim; j++) J[i][j] += *(const SimdVector *)x[a][i] * dN[k][dim * a + j];
-    determinant = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) + J[0][1] * (J[1][2] * J[2][0] - J[1][0] * J[2][2]) + J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
-    for (PetscInt p = 0; p < SIMD_WIDTH; p++)
-      if (!(determinant[p] > allowed[p])) sound = PETSC_FALSE;
-  }
+      if (dim == 2) J[2][2] += 1;
+      for (PetscInt a = 0; a < nodes; a++)
+        for (PetscInt i = 0; i < dim; i++)
+          for (PetscInt j = 0; j < dim; j++) J[i][j] += SimdGetParts(x[a][i])[part] * dN[k][dim * a + j];
+      margin = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) + J[0][1] * (J[1][2] * J[2][0] - J[1][0] * J[2][2]) + J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]) - SimdGetParts(allowed)[part];
+      for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++)
+        if (!(margin[p] > 0)) sound = PETSC_FALSE;
+    }
   return sound;
 }
 
