@@ -8,7 +8,8 @@
 
    --elements is rounded to a cube; --scalar is the same loop unvectorised. The material is linear elastic, or compressible neo-Hookean with
    W = mu/2 (tr(F^T F) - 3) - mu ln J + lambda/4 (J^2 - 1) - lambda/2 ln J, P = mu F + (lambda/2 (J^2 - 1) - mu) F^-T.
-   The result is one line of JSON on standard output: microseconds per element and step, and by how much the energy has changed, relative to
+   The result is one line of JSON on standard output: microseconds per element and step,
+   as a clock shows them and as the processor spent them on this program, and by how much the energy has changed, relative to
    the initial one. SI units throughout.
 */
 #define _POSIX_C_SOURCE 200809L
@@ -260,13 +261,21 @@ static void SetUpBox(Box *box, int n)
   }
 }
 
+static double GetSeconds(clockid_t clock)
+{
+  struct timespec now;
+
+  clock_gettime(clock, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 int main(int argc, char **argv)
 {
-  int             n_elements = 8000, steps = 100, n;
-  bool            neo_hookean = false, scalar = false;
-  Constants       c;
-  Box             box;
-  struct timespec start, stop;
+  int       n_elements = 8000, steps = 100, n;
+  bool      neo_hookean = false, scalar = false;
+  Constants c;
+  Box       box;
+  double    wall, cpu;
 
   for (int i = 1; i < argc; i++) {
     if (!strcmp(argv[i], "--scalar")) scalar = true;
@@ -284,9 +293,10 @@ int main(int argc, char **argv)
     /* the fastest wave crosses a fifth of an element in a step; u at t, v half a step later */
     const double dt      = 0.2 / n / sqrt((c.lambda + 2 * c.mu) / density);
     const double initial = KineticEnergy(&box, 0);
-    double       energy, seconds;
+    double       energy;
 
-    clock_gettime(CLOCK_MONOTONIC, &start);
+    wall = GetSeconds(CLOCK_MONOTONIC);
+    cpu  = GetSeconds(CLOCK_PROCESS_CPUTIME_ID);
     for (int step = 0; step < steps; step++) {
       const double kick = step ? dt : dt / 2;
 
@@ -297,12 +307,12 @@ int main(int argc, char **argv)
         box.u[k] += dt * box.v[k];
       }
     }
-    clock_gettime(CLOCK_MONOTONIC, &stop);
-    seconds = (double)(stop.tv_sec - start.tv_sec) + 1e-9 * (double)(stop.tv_nsec - start.tv_nsec);
+    wall = GetSeconds(CLOCK_MONOTONIC) - wall;
+    cpu  = GetSeconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     memset(box.f, 0, 3 * (size_t)box.n_nodes * sizeof(double));
     add_forces(&c, &box);
     energy = KineticEnergy(&box, dt / 2) + StoredEnergy(&c, &box, neo_hookean);
-    printf("{\"elements\": %d, \"steps\": %d, \"material\": \"%s\", \"scalar\": %s, \"us_per_element_step\": %.5f, \"energy_error\": %.3e}\n", box.n_elements, steps, neo_hookean ? "neo_hookean" : "linear", scalar ? "true" : "false", 1e6 * seconds / steps / box.n_elements, energy / initial - 1);
+    printf("{\"elements\": %d, \"steps\": %d, \"material\": \"%s\", \"scalar\": %s, \"us_per_element_step\": %.5f, \"cpu_us_per_element_step\": %.5f, \"energy_error\": %.3e}\n", box.n_elements, steps, neo_hookean ? "neo_hookean" : "linear", scalar ? "true" : "false", 1e6 * wall / steps / box.n_elements, 1e6 * cpu / steps / box.n_elements, energy / initial - 1);
   }
   free(box.nodes);
   free(box.x);
