@@ -175,8 +175,8 @@ PetscErrorCode BodyResetTraces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A substep that failed, or NaN or infinity in its solution, told with body, time and step. The sum of squares hands a NaN of any rank
-   on; a maximum over ranks may lose it. */
+/* A substep that failed, or NaN or infinity in its solution, told with body, time and step. Whatever is not a number ends up in the
+   velocity. The sum of squares hands a NaN of any rank on; a maximum over ranks may lose it. */
 static PetscErrorCode CheckSubstep(Body body)
 {
   MPI_Comm            comm = PetscObjectComm((PetscObject)body);
@@ -188,16 +188,17 @@ static PetscErrorCode CheckSubstep(Body body)
 
   PetscFunctionBegin;
   PetscCall(TSGetConvergedReason(body->ts, &reason));
-  PetscCall(VecNorm(body->state.u, NORM_2, &norm));
+  PetscCall(VecNorm(body->state.v, NORM_2, &norm));
   if (!body->is_explicit && !body->linear) {
     PetscCall(TSGetSNES(body->ts, &snes));
     PetscCall(SNESGetConvergedReason(snes, &newton));
     PetscCall(SNESGetIterationNumber(snes, &iterations));
     if (newton < 0) {
-      PetscCall(BodyCheckInverted(body, body->time));
+      PetscCall(BodyCheckInverted(body));
       SETERRQ(comm, PETSC_ERR_NOT_CONVERGED, "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor", body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[newton], iterations, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
     }
   }
+  if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
   PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), comm, PETSC_ERR_FP, "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT "); is a time step too large, or a penalty too stiff for it?", body->hdr.name, (double)body->time, body->step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -37,7 +37,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(VecGetSize(body->positions, &dofs));
   PetscCall(TSGetType(body->ts, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name, dofs, (double)body->total_mass, BodyMassTypes[body->mass_type], body->mass_redistribute ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s", (double)body->time_step));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name, dofs, (double)body->total_mass, BodyMassTypes[body->mass_type], body->mass_redistribute && body->rows.global ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s", (double)body->time_step));
   if (body->dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

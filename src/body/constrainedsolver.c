@@ -71,9 +71,13 @@ static PetscErrorCode ChooseSolver(KSP ksp, Mat A)
     PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (size > 1 || n > max_sequential_size[dim]) {
+    PetscCall(PCSetType(pc, PCCHOLESKY)); /* all matrices here are symmetric */
+    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PCSetType(pc, PCLU));
-  if (size > 1 || n > max_sequential_size[dim]) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  else PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
+  PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

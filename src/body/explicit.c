@@ -19,7 +19,6 @@ static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position
     PetscReal change;
 
     PetscCall(BodyComputeInternalForce(body, u, body->internal_force));
-    PetscCall(BodyCheckInverted(body, time));
     PetscCall(VecCopy(body->internal_force, force));
     PetscCall(VecScale(force, -1));
     PetscCall(BodyAddExternalForce(body, time, 1, force));
@@ -32,7 +31,8 @@ static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position
     if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(VecNorm(body->layer_solution, NORM_2, &change));
     first = PetscMax(first, change);
-    if (change <= BALANCE_TOLERANCE * first) PetscFunctionReturn(PETSC_SUCCESS);
+    /* what is not a number is told when the substep is over */
+    if (change <= BALANCE_TOLERANCE * first || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
   }
   SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED, "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or -%smass_redistribute false", body->hdr.name, MAX_BALANCE_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
 }
@@ -69,7 +69,6 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
   if (body->layer_scatter) PetscCall(BalanceLayer(body, t, position, U));
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
-  PetscCall(BodyCheckInverted(body, t));
   if (body->inverse_mass && !body->n_forced && !body->loads) {
     PetscCall(DivideByMass(body, A));
     if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));

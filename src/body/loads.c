@@ -1,55 +1,243 @@
-/* Initial values, from constants; loads are yet to come. */
-#include "bodyimpl.h"
+/* Loads of a body, from options: what is prescribed on its surfaces, and forces from outside. */
+#include "loadsimpl.h"
+
+/* The value of an option of the body, whose name comes without - and prefix; NULL if it is not given */
+PetscErrorCode BodyLoadsGetText(Body body, const char name[], const char *text[])
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  char        option[LOADS_NAME_LENGTH];
+  PetscBool   set;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", name));
+  PetscCall(PetscOptionsFindPair(NULL, prefix, option, text, &set));
+  if (!set) *text = NULL;
+  /* PETSc takes -a for an option, but -1 for a value */
+  PetscCheck(!set || (*text && (*text)[0]), PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s has no value; one that begins with - and a letter needs parentheses around it, as in (-x),0", prefix, name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* As many components as the body has dimensions */
+PetscErrorCode BodyLoadsGetComponents(Body body, const char name[], const char text[], PetscBool allow_free, Expression list[])
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)body);
+  char     option[LOADS_NAME_LENGTH];
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "%s%s", ((PetscObject)body)->prefix, name));
+  PetscCall(ExpressionListCount(text, &n));
+  PetscCheck(n == body->dim, comm, PETSC_ERR_USER_INPUT, "-%s '%s' has %" PetscInt_FMT " component%s; body '%s' is %" PetscInt_FMT "-dimensional%s", option, text, n, n == 1 ? "" : "s", body->hdr.name, body->dim, allow_free ? " (a component may be the word free)" : "");
+  PetscCall(ExpressionListCreate(comm, option, text, body->dim, allow_free, list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyLoadsRefuseNormal(Body body, const char name[], const Expression list[])
+{
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < body->dim; d++) {
+    PetscBool normal = PETSC_FALSE;
+
+    if (list[d]) PetscCall(ExpressionUsesNormal(list[d], &normal));
+    PetscCheck(!normal, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s: nx, ny and nz are for tractions alone; use x, y, z", ((PetscObject)body)->prefix, name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PetscStrToArray() would skip it */
+static PetscBool HasEmptyName(const char text[])
+{
+  for (const char *c = text;; c++) {
+    const size_t length = strcspn(c, ",");
+
+    if (strspn(c, " \t") >= length) return PETSC_TRUE;
+    c += length;
+    if (!*c) return PETSC_FALSE;
+  }
+}
+
+/* The names in a list such as -<body>_boundary_traction a,b; none if it is not given */
+static PetscErrorCode GetNames(Body body, const char name[], PetscInt *n, char ***names)
+{
+  MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
+  const char *prefix = ((PetscObject)body)->prefix, *text;
+  int         count  = 0;
+  PetscBool   twice  = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  *n     = 0;
+  *names = NULL;
+  PetscCall(BodyLoadsGetText(body, name, &text));
+  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!HasEmptyName(text), comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' has an empty name in it; give names of surfaces with commas between them", prefix, name, text);
+  PetscCall(PetscStrToArray(text, ',', &count, names));
+  for (int i = 0; i < count && !twice; i++)
+    for (int k = 0; k < i && !twice; k++) PetscCall(PetscStrcasecmp((*names)[i], (*names)[k], &twice));
+  if (twice) PetscCall(PetscStrToArrayDestroy(count, *names));
+  PetscCheck(!twice, comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' names a surface twice (upper and lower case are the same in options)", prefix, name, text);
+  *n = count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -<body>_<list>_<surface> */
+static PetscErrorCode GetSurfaceComponents(Body body, const char list[], const char surface[], PetscBool allow_free, Expression components[])
+{
+  const char *prefix = ((PetscObject)body)->prefix, *text;
+  char        name[LOADS_NAME_LENGTH];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s", list, surface));
+  PetscCall(BodyLoadsGetText(body, name, &text));
+  PetscCheck(text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s names '%s', but there is no -%s%s with its components", prefix, list, surface, prefix, name);
+  PetscCall(BodyLoadsGetComponents(body, name, text, allow_free, components));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadDisplacements(Body body, PetscInt n, char **names)
+{
+  struct _BodyLoads *loads = body->loads;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(n, &loads->prescribed));
+  loads->n_prescribed = n;
+  for (PetscInt i = 0; i < n; i++) {
+    char name[LOADS_NAME_LENGTH];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "boundary_displacement_%s", names[i]));
+    PetscCall(GetSurfaceComponents(body, "boundary_displacement", names[i], PETSC_TRUE, loads->prescribed[i].component));
+    PetscCall(BodyLoadsRefuseNormal(body, name, loads->prescribed[i].component));
+  }
+  PetscCall(BodyLoadsSetUpHeld(body, n, names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadForces(Body body, PetscInt n, char **names, const char body_force[])
+{
+  struct _BodyLoads *loads = body->loads;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(n + 1, &loads->loads));
+  for (PetscInt i = 0; i < n; i++) {
+    Load *load = &loads->loads[loads->n_loads++];
+
+    load->on_faces = PETSC_TRUE;
+    PetscCall(GetSurfaceComponents(body, "boundary_traction", names[i], PETSC_FALSE, load->component));
+    PetscCall(BodyFacesCreate(body, names[i], &load->faces));
+  }
+  if (body_force) {
+    Load *load = &loads->loads[loads->n_loads++];
+
+    PetscCheck(body->element->ops.points, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "-%sbody_force: elements of shape '%s' do not support it", ((PetscObject)body)->prefix, DMPolytopeTypes[body->cell_shape]);
+    PetscCall(BodyLoadsGetComponents(body, "body_force", body_force, PETSC_FALSE, load->component));
+    PetscCall(BodyLoadsRefuseNormal(body, "body_force", load->component));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadGravity(Body body, const char text[])
+{
+  struct _BodyLoads *loads    = body->loads;
+  Expression         list[3]  = {NULL};
+  PetscBool          constant = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyLoadsGetComponents(body, "gravity", text, PETSC_FALSE, list));
+  loads->has_gravity = PETSC_TRUE;
+  for (PetscInt d = 0; d < body->dim; d++) {
+    PetscBool is_number;
+
+    PetscCall(ExpressionIsConstant(list[d], &is_number, &loads->gravity[d]));
+    if (!is_number) constant = PETSC_FALSE;
+    PetscCall(ExpressionDestroy(&list[d]));
+  }
+  PetscCheck(constant, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sgravity '%s': components are numbers; -%sbody_force takes formulas", ((PetscObject)body)->prefix, text, ((PetscObject)body)->prefix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyLoadsSetFromOptions - prescribed displacements, tractions, forces in the volume and the initial state from options
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with mesh and elements
+
+  Options Database Keys:
++ -<body>_boundary_displacement a,b                  - surfaces, or node sets, with prescribed displacements
+. -<body>_boundary_displacement_<surface> ux,uy,uz   - those displacements: for each component an expression in x, y, z, t [m], or the word `free`
+. -<body>_boundary_traction a,b                      - surfaces with tractions
+. -<body>_boundary_traction_<surface> tx,ty,tz       - those tractions: expressions in x, y, z, t, nx, ny, nz [Pa] per area of the reference configuration
+. -<body>_gravity gx,gy,gz                           - constant acceleration of all mass [m/s^2]
+. -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the reference configuration
+. -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
+- -<body>_initial_velocity vx,vy,vz                  - expressions in x, y, z [m/s], default 0
+
+  Level: intermediate
+
+  Notes:
+  Expressions are those of `ExpressionCreate()`: formulas or `table:file`; positions are those of the reference configuration, and the
+  normal is its outward unit normal, so that a pressure p is -p*nx,-p*ny,-p*nz. A traction of plane bodies acts on the edge times
+  the thickness, of bars on the cross-section.
+
+  Where several surfaces prescribe the same component of a node, that named last holds. `free` says nothing of a component: what
+  another surface prescribes there, holds.
+
+  Where velocity and acceleration of prescribed displacements are wanted, they are differences in time
+  (`ExpressionEvaluateRates()`); the initial velocity of held dofs is theirs too.
+
+.seealso: `Body`, `BodySetFromOptions()`, `ExpressionCreate()`, `MeshGetSurface()`
+@*/
 PetscErrorCode BodyLoadsSetFromOptions(Body body)
 {
-  (void)body;
-  return PETSC_SUCCESS;
+  PetscInt       n_displacements = 0, n_tractions = 0;
+  char         **displacements = NULL, **tractions = NULL;
+  const char    *gravity, *body_force;
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCheck(!body->loads, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has its loads already", body->hdr.name);
+  PetscCall(BodyLoadsReadInitialState(body));
+  PetscCall(BodyLoadsGetText(body, "gravity", &gravity));
+  PetscCall(BodyLoadsGetText(body, "body_force", &body_force));
+  PetscCall(GetNames(body, "boundary_displacement", &n_displacements, &displacements));
+  error = GetNames(body, "boundary_traction", &n_tractions, &tractions);
+  if (!error && (gravity || body_force || n_displacements || n_tractions)) {
+    error = PetscNew(&body->loads);
+    if (!error) error = ReadDisplacements(body, n_displacements, displacements);
+    if (!error) error = ReadForces(body, n_tractions, tractions, body_force);
+    if (!error) error = ReadGravity(body, gravity);
+  }
+  if (n_displacements) PetscCall(PetscStrToArrayDestroy((int)n_displacements, displacements));
+  if (n_tractions) PetscCall(PetscStrToArrayDestroy((int)n_tractions, tractions));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* The values of an array of owned dofs that are not zero, from the first-th on every stride-th */
+PetscErrorCode BodyLoadsCompress(PetscInt n, const PetscScalar array[], PetscInt first, PetscInt stride, DofValues *compressed)
+{
+  PetscInt count = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = first; i < n; i += stride) count += array[i] != 0;
+  PetscCall(PetscMalloc1(count, &compressed->dofs));
+  PetscCall(PetscMalloc1(count, &compressed->values));
+  compressed->n = 0;
+  for (PetscInt i = first; i < n; i += stride) {
+    if (array[i] == 0) continue;
+    compressed->dofs[compressed->n]     = i;
+    compressed->values[compressed->n++] = PetscRealPart(array[i]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode BodyLoadsDestroy(Body body)
 {
-  (void)body;
-  return PETSC_SUCCESS;
-}
-PetscErrorCode BodyLoadsGetHeld(Body body, PetscInt *n, const PetscInt *d[])
-{
-  (void)body;
-  *n = 0;
-  *d = NULL;
-  return PETSC_SUCCESS;
-}
-PetscErrorCode BodyLoadsAddForce(Body body, PetscReal t, PetscScalar s, Vec f)
-{
-  (void)body;
-  (void)t;
-  (void)s;
-  (void)f;
-  return PETSC_SUCCESS;
-}
-PetscErrorCode BodyLoadsPrescribe(Body body, PetscReal t, Vec u, Vec v, Vec a)
-{
-  (void)body;
-  (void)t;
-  (void)u;
-  (void)v;
-  (void)a;
-  return PETSC_SUCCESS;
-}
-static PetscErrorCode Read(Body body, const char o[], Vec x)
-{
-  PetscReal    v[3] = {0};
-  PetscInt     n    = 3;
-  PetscBool    set;
-  PetscScalar *a;
-  PetscCall(PetscOptionsGetRealArray(NULL, ((PetscObject)body)->prefix, o, v, &n, &set));
-  PetscCheck(!set || n == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " components; body '%s' is %" PetscInt_FMT "-dimensional", ((PetscObject)body)->prefix, o + 1, n, body->hdr.name, body->dim);
-  PetscCall(VecGetArray(x, &a));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) a[i] = v[i % body->dim];
-  PetscCall(VecRestoreArray(x, &a));
-  return PETSC_SUCCESS;
-}
-PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
-{
-  PetscCall(Read(body, "-initial_displacement", u));
-  PetscCall(Read(body, "-initial_velocity", v));
-  return PETSC_SUCCESS;
+  PetscFunctionBegin;
+  if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyLoadsDestroyHeld(body->loads));
+  PetscCall(BodyLoadsDestroyForces(body->loads));
+  PetscCall(PetscFree(body->loads));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -47,7 +47,11 @@ static PetscErrorCode Compile(muParserHandle_t parser, const char text[], char r
   mupSetExpr(parser, text);
   if (!mupError(parser)) (void)mupEvalMulti(parser, &n_values);
   if (mupError(parser)) {
+    size_t length;
+
     PetscCall(PetscStrncpy(reason, mupGetErrorMsg(parser), size));
+    PetscCall(PetscStrlen(reason, &length));
+    while (length && strchr(". ", reason[length - 1])) reason[--length] = 0; /* the sentence goes on */
     *position = (PetscInt)mupGetErrorPos(parser) + 1;
   } else if (n_values != 1) PetscCall(PetscSNPrintf(reason, size, "it has %d values, separated by commas, where one is wanted", n_values));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -15,15 +15,31 @@ static size_t FindComma(const char text[])
   return i;
 }
 
-static PetscInt CountComponents(const char text[])
-{
-  PetscInt n = 0;
+/*@C
+  ExpressionListCount - how many components a text has
 
-  for (const char *c = text;; c++) {
-    c += FindComma(c);
-    n++;
-    if (!*c) return n;
+  Not Collective
+
+  Input Parameter:
+. text - components with commas between them
+
+  Output Parameter:
+. n - their number
+
+  Level: intermediate
+
+.seealso: `Expression`, `ExpressionListCreate()`
+@*/
+PetscErrorCode ExpressionListCount(const char text[], PetscInt *n)
+{
+  const char *c = text + FindComma(text);
+
+  PetscFunctionBegin;
+  for (*n = 1; *c; c += FindComma(c)) {
+    c++;
+    (*n)++;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* One component, without the blanks around it; NULL for a free one */
@@ -67,9 +83,10 @@ static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const 
 @*/
 PetscErrorCode ExpressionListCreate(MPI_Comm comm, const char option[], const char text[], PetscInt n, PetscBool allow_free, Expression list[])
 {
-  const PetscInt found = CountComponents(text);
+  PetscInt found;
 
   PetscFunctionBegin;
+  PetscCall(ExpressionListCount(text, &found));
   for (PetscInt i = 0; i < n; i++) list[i] = NULL;
   PetscCheck(found == n, comm, PETSC_ERR_USER_INPUT, "-%s: '%s' has %" PetscInt_FMT " component%s; it needs %" PetscInt_FMT ", separated by commas%s", option, text, found, found == 1 ? "" : "s", n, allow_free ? ", each a formula, table:file or free" : "");
   for (PetscInt i = 0; i < n; i++) {

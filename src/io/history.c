@@ -1,8 +1,8 @@
 /* Records every controller step: collected in memory, and added to the file now and then. */
 #include "history.h"
+#include "hdf5file.h"
 #include "outputfile.h"
 #include "series.h"
-#include <hdf5.h>
 #include <petsctime.h>
 #include <stdio.h>
 
@@ -146,19 +146,16 @@ PetscErrorCode HistoryFlush(History history)
 {
   PetscErrorCode error;
   PetscLogDouble begin;
-  H5E_auto2_t    print;
-  void          *data;
+  HDF5Silence    silence;
 
   PetscFunctionBegin;
   if (!history->writes || !history->n_records) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
-  /* HDF5's own account of an error would hide ours */
-  H5Eget_auto2(H5E_DEFAULT, &print, &data);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  HDF5SilenceBegin(&silence);
   error = WritePart(history);
-  if (error) remove(history->part); /* HDF5 stays silent: it would complain of the file it could not finish at exit again */
+  if (error) remove(history->part);
   PetscCall(error);
-  H5Eset_auto2(H5E_DEFAULT, print, data);
+  HDF5SilenceEnd(&silence);
   history->written += history->n_records;
   history->n_records = 0;
   PetscCall(PetscTime(&history->flushed));

@@ -12,7 +12,7 @@ typedef struct {
   const Box *box;
 } Division;
 
-/* DMPLEX's options with DMPLEX's defaults, checked */
+/* DMPLEX's options, checked; with DMPLEX's defaults, but that boxes are of quadrilaterals and hexahedra */
 static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], Box *box)
 {
   char      shape[64];
@@ -20,7 +20,7 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], Box *box)
   PetscBool set;
 
   PetscFunctionBegin;
-  *box = (Box){.dim = 2, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .simplex = PETSC_TRUE, .is_box = PETSC_TRUE};
+  *box = (Box){.dim = 2, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .simplex = PETSC_FALSE, .is_box = PETSC_TRUE};
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", shape, sizeof(shape), &set));
   if (set) PetscCall(PetscStrcasecmp(shape, "box", &box->is_box));
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &box->dim, NULL));
@@ -155,10 +155,18 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const Box *box, const char
 /* A box or another of DMPLEX's shapes from options */
 PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
-  Box box;
+  Box       box;
+  char      option[128];
+  PetscBool set;
 
   PetscFunctionBegin;
   PetscCall(ReadBox(comm, prefix, &box));
+  /* DMPLEX has no setter for its own default */
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
+  if (!set && box.is_box && box.dim > 1) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
+    PetscCall(PetscOptionsSetValue(NULL, option, "0"));
+  }
   if (box.is_box && box.dim > 1 && box.simplex) {
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
   } else {

@@ -161,7 +161,7 @@ static PetscErrorCode ReadNodes(Exodus *exodus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What an element type such as HEX8 means; digits at its end are left to the number of nodes */
+/* What an element type such as HEX8 or HEX means; a number at its end must be that of its nodes */
 static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscInt nodes, Block *block)
 {
   const struct {
@@ -185,17 +185,19 @@ static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscIn
   };
   char   stem[64];
   size_t length;
+  long   said;
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(stem, type, sizeof(stem)));
   PetscCall(PetscStrlen(stem, &length));
   while (length && ((stem[length - 1] >= '0' && stem[length - 1] <= '9') || stem[length - 1] == ' ')) stem[--length] = 0;
+  said         = strtol(type + length, NULL, 10);
   block->shape = DM_POLYTOPE_UNKNOWN;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(types); i++) {
     PetscBool same;
 
     PetscCall(PetscStrcasecmp(stem, types[i].name, &same));
-    if (!same) continue;
+    if (!same || (said && said != nodes)) continue;
     block->shape = types[i].shape;
     block->shell = types[i].shell;
   }

@@ -48,8 +48,9 @@ static PetscErrorCode ReadText(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
   for (PetscInt i = 0; i < n; i++) {
     char *after;
 
+    SkipSpace(gmsh); /* to the place that messages tell */
     values[i] = strtoll(gmsh->at, &after, 10);
-    GmshCheck(gmsh, after != gmsh->at, "a whole number is expected");
+    GmshCheck(gmsh, after != gmsh->at, gmsh->at == gmsh->end ? "the file ends within its data: it is cut short" : "a whole number is expected");
     gmsh->at = after;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,8 +106,9 @@ static PetscErrorCode ReadReals(Gmsh *gmsh, PetscInt n, double values[])
     for (PetscInt i = 0; i < n; i++) {
       char *after;
 
+      SkipSpace(gmsh);
       values[i] = strtod(gmsh->at, &after);
-      GmshCheck(gmsh, after != gmsh->at, "a number is expected");
+      GmshCheck(gmsh, after != gmsh->at, gmsh->at == gmsh->end ? "the file ends within its data: it is cut short" : "a number is expected");
       gmsh->at = after;
     }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -114,7 +114,7 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
 . -<body>_mesh_blocks a,b                                       - blocks of the file that make this body, by name or number; default all
 . -<body>_dm_plex_dim d                                         - dimension of a box; of a file: checked
 . -<body>_dm_plex_box_faces n,n,n, _box_lower, _box_upper       - a box [m]
-. -<body>_dm_plex_simplex (true|false)                          - of triangles or tetrahedra, DMPLEX's default, or of quadrilaterals or hexahedra
+. -<body>_dm_plex_simplex (true|false)                          - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
 . -<body>_scale s                                               - factor for all coordinates, 0.001 for a file in millimetres
 . -<body>_rotate ax,ay,az,degrees, in two dimensions degrees    - turns it about an axis through the origin
 . -<body>_rotate_centre x,y,z                                   - through another point [m], after scaling

@@ -140,18 +140,6 @@ static void refuses_bad_input(void **state)
   }
 }
 
-static void refuses_cells_without_element(void **state)
-{
-  PetscOptions options = options_begin("-prefix_push bar_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 2,2 -density 1 -youngs_modulus 1 -prefix_pop");
-  Body         body;
-
-  (void)state;
-  ok(BodyCreate(PETSC_COMM_WORLD, "bar", &body));
-  refused(PETSC_ERR_SUP, "-bar_|quadrilateral|segment", BodySetFromOptions(body));
-  ok(BodyDestroy(&body));
-  options_drop(options);
-}
-
 static PetscErrorCode Nothing(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
 {
   PetscFunctionBegin;
@@ -249,7 +237,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(has_defaults),
       cmocka_unit_test(chooses_its_own_step),
       cmocka_unit_test(refuses_bad_input),
-      cmocka_unit_test(refuses_cells_without_element),
       cmocka_unit_test(is_set_up_in_order),
       cmocka_unit_test(needs_a_controller_step),
       cmocka_unit_test(tells_where_a_number_is_lost),

@@ -70,6 +70,182 @@ static void gives_uniaxial_stress_of_a_batch(void **state)
   options_end(options);
 }
 
+static Material create_with(const char type[], PetscReal E, PetscReal nu)
+{
+  PetscOptions options  = options_begin("-bar_density 1 -bar_youngs_modulus %.17g -bar_poissons_ratio %.17g -bar_material_type %s", (double)E, (double)nu, type);
+  Material     material = create();
+
+  ok(MaterialSetFromOptions(material));
+  options_end(options);
+  return material;
+}
+
+static void nonlinear_models_share_the_constants(void **state)
+{
+  const char *const types[] = {MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
+
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    Material  material = create_with(types[i], 8, 0.25);
+    PetscReal modulus;
+    PetscBool linear, same;
+
+    ok(PetscObjectTypeCompare((PetscObject)material, types[i], &same));
+    assert_true(same);
+    ok(MaterialIsLinear(material, &linear));
+    assert_false(linear);
+    ok(MaterialGetUniaxialModulus(material, &modulus));
+    assert_true(modulus == 8);
+    /* lambda = mu = 3.2; E / (1 - nu^2) = 8 / 0.9375. Round-off of a few operations. */
+    ok(MaterialGetWaveModulus(material, &modulus));
+    near(modulus, 9.6, 1e-14);
+    ok(MaterialSetPlaneStress(material, PETSC_TRUE));
+    ok(MaterialGetWaveModulus(material, &modulus));
+    near(modulus, 8 / 0.9375, 1e-14);
+    ok(MaterialDestroy(&material));
+  }
+}
+
+/* Saint-Venant-Kirchhoff: (1 + e) E (e + e^2/2), 1.5 * 8 * 0.625 = 7.5 whatever Poisson's ratio. Neo-Hookean without lambda: the sides
+   stay, mu (s - 1/s), 4 (1.5 - 1/1.5) = 10/3. With it, s = 2 and nu = 0.25 (lambda = mu = 3.2): the squared stretch x of the sides has
+   2 x^2 + x - 1.5 = 0, x = (sqrt(13) - 1) / 4, and the stress is mu (4 - x) / 2. */
+static void bars_of_nonlinear_models_have_known_stresses(void **state)
+{
+  const PetscReal strain = 0.5, one = 1;
+  PetscReal       stress;
+  Material        material;
+
+  (void)state;
+  material = create_with(MATERIAL_SAINT_VENANT_KIRCHHOFF, 8, 0.25);
+  ok(MaterialComputeUniaxial(material, 1, &strain, &stress));
+  near(stress, 7.5, 1e-14);
+  ok(MaterialDestroy(&material));
+  material = create_with(MATERIAL_NEO_HOOKEAN, 8, 0);
+  ok(MaterialComputeUniaxial(material, 1, &strain, &stress));
+  near(stress, 10. / 3, 1e-14);
+  ok(MaterialDestroy(&material));
+  material = create_with(MATERIAL_NEO_HOOKEAN, 8, 0.25);
+  ok(MaterialComputeUniaxial(material, 1, &one, &stress));
+  near(stress, 1.6 * (4 - (PetscSqrtReal(13) - 1) / 4), 1e-14);
+  ok(MaterialDestroy(&material));
+}
+
+/* Central differences of order 8 with a step of 0.002: truncation and round-off are of order 1e-13 of the modulus as long as nothing
+   is singular near by (s = 0, 0.3 away; the end of the sides' equilibrium with nu = -0.4, 0.1 away). A batch that is no multiple of the vectors' length. */
+static void bars_have_consistent_stress_tangent_and_energy(void **state)
+{
+  const char *const types[]   = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
+  const PetscReal   ratios[]  = {0, 0.3, 0.45, -0.4};
+  const PetscReal   weights[] = {4. / 5, -1. / 5, 4. / 105, -1. / 280}, step = 2e-3, E = 5;
+  PetscReal         e[11] = {-0.7, -0.5, -0.2, -0.1, -1e-3, 0, 1e-3, 0.02, 0.05, 0.08, 0.1};
+
+  (void)state;
+  for (int type = 0; type < 3; type++)
+    for (int nu = 0; nu < 4; nu++) {
+      Material  material = create_with(types[type], E, ratios[nu]);
+      PetscReal stress[11], tangent[11], dstress[11] = {0}, denergy[11] = {0};
+
+      ok(MaterialComputeUniaxial(material, 11, e, stress));
+      ok(MaterialComputeUniaxialTangent(material, 11, e, tangent));
+      for (int k = 0; k < 8; k++) {
+        const PetscReal shift = (k % 2 ? -1 : 1) * (k / 2 + 1), weight = (k % 2 ? -1 : 1) * weights[k / 2] / step;
+        PetscReal       shifted[11], P[11], W[11];
+
+        for (int i = 0; i < 11; i++) shifted[i] = e[i] + shift * step;
+        ok(MaterialComputeUniaxial(material, 11, shifted, P));
+        ok(MaterialComputeUniaxialEnergy(material, 11, shifted, W));
+        for (int i = 0; i < 11; i++) {
+          dstress[i] += weight * P[i];
+          denergy[i] += weight * W[i];
+        }
+      }
+      for (int i = 0; i < 11; i++) {
+        near(stress[i], denergy[i], 1e-11 * E);
+        near(tangent[i], dstress[i], 1e-11 * E);
+      }
+      near(tangent[5], E, 1e-14 * E); /* at zero strain */
+      ok(MaterialDestroy(&material));
+    }
+}
+
+/* Relative to linear elasticity: terms of the order of the strain, and round-off of the small numbers themselves */
+static void bars_keep_the_digits_of_small_strains(void **state)
+{
+  const char *const types[] = {MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
+  const PetscReal   e = 1e-11, E = 5;
+
+  (void)state;
+  for (int type = 0; type < 2; type++) {
+    Material  material = create_with(types[type], E, 0.3);
+    PetscReal stress, energy;
+
+    ok(MaterialComputeUniaxial(material, 1, &e, &stress));
+    ok(MaterialComputeUniaxialEnergy(material, 1, &e, &energy));
+    near(stress, E * e, E * e * (3 * e + 1e-15));
+    near(energy, E * e * e / 2, E * e * e * (3 * e + 2e-15));
+    ok(MaterialDestroy(&material));
+  }
+}
+
+/* Nothing is left of the bar at e = -1, or it is turned round; with nu = 0.45 the sides of one of Saint-Venant-Kirchhoff material have
+   no width left from 0.9 (e + e^2/2) = 1 on, e = 0.795. Strong compression is allowed, and linear elasticity knows no limit. */
+static void bars_are_not_defined_where_they_are_inverted(void **state)
+{
+  const PetscReal strain[] = {-1, -1.5, -3, 0.8, -0.999, 0.79};
+  const struct {
+    const char *type;
+    PetscBool   defined[6];
+  } cases[] = {
+      {MATERIAL_LINEAR_ELASTIC, {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE}},
+      {MATERIAL_SAINT_VENANT_KIRCHHOFF, {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE}},
+      {MATERIAL_NEO_HOOKEAN, {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE}},
+  };
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    Material  material = create_with(cases[k].type, 5, 0.45);
+    PetscReal stress[6], tangent[6], energy[6];
+
+    ok(MaterialComputeUniaxial(material, 6, strain, stress));
+    ok(MaterialComputeUniaxialTangent(material, 6, strain, tangent));
+    ok(MaterialComputeUniaxialEnergy(material, 6, strain, energy));
+    for (int i = 0; i < 6; i++) {
+      assert_true(PetscIsNanReal(stress[i]) != cases[k].defined[i]);
+      assert_true(PetscIsNanReal(tangent[i]) != cases[k].defined[i]);
+      assert_true(PetscIsNanReal(energy[i]) != cases[k].defined[i]);
+    }
+    ok(MaterialDestroy(&material));
+  }
+}
+
+static void is_shown(void **state)
+{
+  const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
+
+  (void)state;
+  for (int i = 0; i < 3; i++)
+    for (int plane = 0; plane < 2; plane++) {
+      char              text[1024] = "";
+      const char *const words[]    = {types[i], "density 1. kg/m^3", "Young's modulus 2.1e+11 Pa", "Poisson's ratio 0.3", "plane stress"};
+      FILE             *file       = tmpfile();
+      Material          material   = create_with(types[i], 2.1e11, 0.3);
+      PetscViewer       viewer;
+      size_t            length;
+
+      ok(MaterialSetPlaneStress(material, plane));
+      ok(PetscViewerASCIIOpenWithFILE(PETSC_COMM_WORLD, file, &viewer));
+      ok(MaterialView(material, viewer));
+      ok(PetscViewerDestroy(&viewer));
+      rewind(file);
+      length = fread(text, 1, sizeof(text) - 1, file);
+      fclose(file);
+      assert_true((length > 0) == (PetscGlobalRank == 0)); /* which writes */
+      for (int k = 0; k < 5 && length; k++)
+        if (!!strstr(text, words[k]) != (k < 4 || plane)) fail_msg("'%s' in: %s", words[k], text);
+      ok(MaterialDestroy(&material));
+    }
+}
+
 /* Another model, by the registry: stress is a cube of the strain */
 static PetscErrorCode CubicStress(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
 {
@@ -90,6 +266,7 @@ static void takes_new_models(void **state)
 {
   const PetscReal strain = 2;
   PetscReal       stress, density;
+  MaterialKernels kernels;
   PetscOptions    options  = options_begin("-bar_density 11 -bar_material_type cubic");
   Material        material = create();
 
@@ -101,6 +278,10 @@ static void takes_new_models(void **state)
   ok(MaterialComputeUniaxial(material, 1, &strain, &stress));
   assert_true(stress == 8);
   refused(PETSC_ERR_SUP, "uniaxialmodulus|cubic", MaterialGetUniaxialModulus(material, &stress)); /* it has none */
+  refused(PETSC_ERR_SUP, "wavemodulus|cubic", MaterialGetWaveModulus(material, &stress));
+  refused(PETSC_ERR_SUP, "kernels|cubic", MaterialGetKernels(material, &kernels));
+  refused(PETSC_ERR_SUP, "uniaxialtangent|cubic", MaterialComputeUniaxialTangent(material, 1, &strain, &stress));
+  refused(PETSC_ERR_SUP, "uniaxialenergy|cubic", MaterialComputeUniaxialEnergy(material, 1, &strain, &stress));
   ok(MaterialDestroy(&material));
   options_end(options);
 }
@@ -109,7 +290,7 @@ static void takes_new_models(void **state)
 static void changes_its_type(void **state)
 {
   Material  material = create();
-  PetscBool same;
+  PetscBool same, linear;
 
   (void)state;
   ok(MaterialRegister("cubic", CreateCubic));
@@ -120,11 +301,15 @@ static void changes_its_type(void **state)
   assert_true(same);
   assert_null(material->ops->uniaxialmodulus);
   assert_null(material->ops->destroy);
+  assert_null(material->data);
+  ok(MaterialIsLinear(material, &linear));
+  assert_false(linear);
   ok(MaterialDestroy(&material));
 }
 
 static void refuses_bad_input(void **state)
 {
+  const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
   const struct {
     const char *options, *words;
   } cases[] = {
@@ -139,14 +324,15 @@ static void refuses_bad_input(void **state)
   };
 
   (void)state;
-  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
-    PetscOptions options  = options_begin("%s", cases[i].options);
-    Material     material = create();
+  for (int type = 0; type < 3; type++)
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+      PetscOptions options  = options_begin("%s -bar_material_type %s", cases[i].options, types[type]);
+      Material     material = create();
 
-    refused(PETSC_ERR_USER_INPUT, cases[i].words, MaterialSetFromOptions(material));
-    ok(MaterialDestroy(&material));
-    options_drop(options);
-  }
+      refused(PETSC_ERR_USER_INPUT, cases[i].words, MaterialSetFromOptions(material));
+      ok(MaterialDestroy(&material));
+      options_drop(options);
+    }
 }
 
 static void names_an_unknown_type(void **state)
@@ -155,7 +341,7 @@ static void names_an_unknown_type(void **state)
   PetscOptions options  = options_begin("-bar_material_type chewing_gum");
 
   (void)state;
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-bar_material_type|chewing_gum|linear_elastic", MaterialSetFromOptions(material));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-bar_material_type|chewing_gum|linear_elastic, neo_hookean, saint_venant_kirchhoff", MaterialSetFromOptions(material));
   refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "jelly", MaterialSetType(material, "jelly"));
   ok(MaterialDestroy(&material));
   options_drop(options);
@@ -167,6 +353,12 @@ int main(int argc, char **argv)
       cmocka_unit_test(is_made_from_options),
       cmocka_unit_test(needs_density_and_modulus_only),
       cmocka_unit_test(gives_uniaxial_stress_of_a_batch),
+      cmocka_unit_test(nonlinear_models_share_the_constants),
+      cmocka_unit_test(bars_of_nonlinear_models_have_known_stresses),
+      cmocka_unit_test(bars_have_consistent_stress_tangent_and_energy),
+      cmocka_unit_test(bars_keep_the_digits_of_small_strains),
+      cmocka_unit_test(bars_are_not_defined_where_they_are_inverted),
+      cmocka_unit_test(is_shown),
       cmocka_unit_test(takes_new_models),
       cmocka_unit_test(changes_its_type),
       cmocka_unit_test(refuses_bad_input),

@@ -1,7 +1,6 @@
 /* Plane stress from the kernels of a solid: the stretch across the plane that leaves it free of stress is found first. */
 #include "materialimpl.h"
-#include <sys/simd.h>
-#include <math.h>
+#include "tensor.h"
 
 #define MAX_ITERATIONS 50
 
@@ -34,28 +33,25 @@ static void FindThickness(const MaterialKernels *solid, PetscReal H[9][8])
     if (!done[p]) H[8][p] = NAN;
 }
 
-/* Displacement gradients with the third row and column that plane stress asks for */
-static void Complete(const PlaneStressData *plane, const PetscReal H[9][8], PetscReal full[9][8])
+/* Displacement gradients with the third row and column that plane stress asks for. With vectors: stores narrower than the loads of the
+   solid's kernels would hold those up. */
+SIMD_CLONES static void Complete(const PlaneStressData *plane, const PetscReal H[9][8], PetscReal full[9][8])
 {
-  const PetscReal zero[8] = {0};
-
-  for (int i = 0; i < 9; i++) {
-    const PetscReal *from = i == 0 || i == 1 || i == 3 || i == 4 ? H[i] : zero;
-
-    for (int p = 0; p < 8; p++) full[i][p] = from[p];
-  }
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) TensorStore((Tensor){H[0][p], H[1][p], 0, H[3][p], H[4][p], 0, 0, 0, 0}, full, p);
   if (plane->thickness) (*plane->thickness)(plane->solid.data, full, full[8]);
   else FindThickness(&plane->solid, full);
 }
 
-static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
+SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
 {
   const PlaneStressData *plane = (const PlaneStressData *)data;
   SimdReal               full[9];
 
   Complete(plane, H, full);
   (*plane->solid.stress)(plane->solid.data, full, P);
-  for (int p = 0; p < 8; p++) P[8][p] *= 0; /* round-off; NaN stays */
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) P[8][p] *= 0; /* round-off; NaN stays */
 }
 
 static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])

@@ -1,0 +1,292 @@
+"""Draws the fields of a run: bodies as deformed, coloured by a field. One frame as PNG, or all as GIF or MP4.
+
+    python plots/render.py fields.xdmf picture.png --frame last --field von_mises
+    python plots/render.py fields.xdmf film.gif --field velocity --fps 15
+
+Colours mean the same in all frames. No display is needed.
+"""
+
+import argparse
+import ctypes.util
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import h5py
+import numpy as np
+from impact import scale as unit_scale
+from PIL import Image
+
+if not os.environ.get("DISPLAY") and ctypes.util.find_library("OSMesa"):
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")  # else vtk looks for an X server first, and complains
+
+import pyvista
+
+NAMES = {"von_mises": "von Mises stress", "rank": "rank", "body": "body"}
+AXES = "xyz"
+VIEWS = {"iso": ((-1, -1.5, 1), (0, 0, 1)), "xy": ((0, 0, 1), (0, 1, 0)), "xz": ((0, -1, 0), (0, 0, 1)), "yz": ((1, 0, 0), (0, 0, 1))}
+MOST_EDGES = 20_000  # cells with their edges drawn; in finer meshes there would be nothing but edges
+
+
+class CannotDraw(Exception):
+    """The message says why."""
+
+
+class Fields:
+    """Frames in the order of time, as the XDMF file lists them; numbers from the HDF5 file beside it."""
+
+    def __init__(self, path):
+        self.path = Path(path)
+        if not self.path.is_file():
+            raise CannotDraw(f"there is no file {path}")
+        if self.path.suffix not in (".xdmf", ".xmf"):
+            raise CannotDraw(f"{path}: give the .xdmf file beside it")
+        try:
+            grids = ElementTree.parse(self.path).getroot().findall("./Domain/Grid/Grid")
+            self.times = [float(grid.find("Time").get("Value")) for grid in grids]
+            self.datasets = [{item.get("Name"): item.find("DataItem").text.split(":")[1] for item in grid.findall("Attribute")} for grid in grids]
+            where = grids[0].find("Geometry/DataItem").text.split(":")
+            self.heavy = h5py.File(self.path.parent / where[0], "r")
+            self.points = self.heavy[where[1]][()]
+            if "displacement" not in self.datasets[0]:
+                raise KeyError("displacement")
+        except (ElementTree.ParseError, AttributeError, IndexError, KeyError, ValueError) as error:
+            raise CannotDraw(f"{path} is not the XDMF file of an Impakt run: {error}") from error
+        except OSError as error:
+            raise CannotDraw(f"the HDF5 file that {path} names cannot be read: {error}") from error
+        self.reader = pyvista.get_reader(self.path)
+
+    def __len__(self):
+        return len(self.times)
+
+    def data(self, name, frame):
+        return self.heavy[self.datasets[frame][name]]
+
+    def colours(self, field, frame):
+        """The numbers of a field by which a frame is coloured."""
+        name, component = field
+        values = self.data(name, frame)[()]
+        if component is not None:
+            return values[:, component]
+        return np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+
+    def field(self, word):
+        """What is meant by von_mises, velocity (its magnitude), velocity_x, stress_xy, ..."""
+        shapes = {name: self.heavy[where].shape for name, where in self.datasets[0].items()}
+        known = {name: (name, None) for name, shape in shapes.items() if shape[1:] != (9,)}
+        known |= {f"{name}_{a}": (name, i) for name, shape in shapes.items() if shape[1:] == (3,) for i, a in enumerate(AXES)}
+        known |= {f"{name}_{a}{b}": (name, 3 * i + j) for name, shape in shapes.items() if shape[1:] == (9,) for i, a in enumerate(AXES) for j, b in enumerate(AXES)}
+        if word not in known:
+            raise CannotDraw(f"there is no field {word}; there are {', '.join(known)}")
+        return known[word]
+
+    def units(self, field):
+        units = self.data(field[0], 0).attrs.get("units", "1")
+        return units.decode() if isinstance(units, bytes) else units
+
+    def limits(self, field):
+        """Smallest and largest number in all frames."""
+        found = [self.colours(field, frame) for frame in (range(len(self)) if field[0] not in ("rank", "body") else [0])]
+        low, high = (float(choose([choose(values) for values in found])) for choose in (min, max))
+        if not np.isfinite([low, high]).all():
+            raise CannotDraw(f"{field[0]} has numbers that are not finite")
+        return low, high
+
+    def bounds(self, factor, frames):
+        """A box around all frames: xmin, xmax, ymin, ymax, zmin, zmax."""
+        ends = [self.points + factor * self.data("displacement", frame)[()] for frame in frames]
+        low, high = np.min([end.min(axis=0) for end in ends], axis=0), np.max([end.max(axis=0) for end in ends], axis=0)
+        return np.column_stack((low, high)).ravel()
+
+    def mesh(self, frame, factor, values):
+        self.reader.set_active_time_value(self.reader.time_values[frame])
+        mesh = self.reader.read()
+        mesh.points = self.points + factor * mesh.point_data["displacement"]
+        mesh.clear_data()
+        (mesh.cell_data if len(values) == mesh.n_cells else mesh.point_data)["colour"] = values
+        return mesh
+
+
+def is_on_cells(fields, field):
+    return fields.data(field[0], 0).shape[0] != len(fields.points)
+
+
+def flatness(bounds):
+    """The number of directions in which there is something."""
+    sizes = bounds[1::2] - bounds[::2]
+    return int((sizes > 1e-6 * sizes.max()).sum())
+
+
+def heading(words, time, span):
+    factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
+    return f"{words + '    ' if words else ''}t = {factor * time:.4g} {unit}"
+
+
+class Camera:
+    """Draws frames, all from the same place."""
+
+    def __init__(self, fields, options):
+        self.fields, self.factor = fields, options.scale
+        self.field = fields.field(options.field)
+        self.frames = range(len(fields))
+        self.bounds = fields.bounds(options.scale, self.frames)
+        low, high = fields.limits(self.field)
+        self.unit_factor, unit = unit_scale(max(abs(low), abs(high)), fields.units(self.field)) if fields.units(self.field) != "1" else (1, "")
+        self.limits = np.array((low, high)) * self.unit_factor
+        if low == high:
+            self.limits = self.limits + np.array((-0.5, 0.5)) * max(1, abs(self.limits[0]))
+        name, component = self.field
+        self.label = NAMES.get(name, name) if component is None else options.field.replace("_", " ")
+        self.label += f" [{unit}]" if unit else ""
+        self.title, self.size = options.title, options.size
+        self.view = options.view or ("iso" if flatness(self.bounds) == 3 else "xy")
+        self.plotter = pyvista.Plotter(off_screen=True, window_size=options.size)
+        self.plotter.set_background("white")
+        self.text = int(max(8, options.size[1] / 45))
+
+    def place(self):
+        direction, up = VIEWS[self.view]
+        self.plotter.camera.parallel_projection = self.view != "iso"
+        centre = (self.bounds[::2] + self.bounds[1::2]) / 2
+        self.plotter.camera_position = [tuple(centre + np.array(direction)), tuple(centre), up]
+        self.plotter.reset_camera(bounds=self.bounds)
+        self.plotter.camera.zoom(1.1 if self.view == "iso" else 0.95)
+
+    def shoot(self, frame):
+        """A picture of a frame: height, width, red-green-blue."""
+        fields, plotter = self.fields, self.plotter
+        values = fields.colours(self.field, frame) * self.unit_factor
+        mesh = fields.mesh(frame, self.factor, values)
+        if not np.isfinite(mesh.points).all():
+            raise CannotDraw(f"displacements of frame {frame} are not finite")
+        lines = flatness(self.bounds) == 1
+        whole = self.field[0] in ("rank", "body")
+        plotter.clear()
+        plotter.enable_lightkit() if flatness(self.bounds) == 3 else None
+        plotter.add_mesh(
+            mesh,
+            scalars="colour",
+            clim=self.limits,
+            cmap="tab10" if whole else "viridis",
+            n_colors=int(self.limits[1] - self.limits[0]) + 1 if whole else 256,
+            show_edges=not lines and mesh.n_cells <= MOST_EDGES,
+            edge_color="#333333",
+            line_width=self.size[1] / 60 if lines else 1,
+            lighting=flatness(self.bounds) == 3,
+            scalar_bar_args={
+                "title": self.label,
+                "color": "black",
+                "title_font_size": self.text + 2,
+                "label_font_size": self.text,
+                "fmt": "%.0f" if whole else "%.3g",
+                "n_labels": min(5, int(self.limits[1] - self.limits[0]) + 1) if whole else 5,
+                "position_x": 0.2,
+                "position_y": 0.03,
+                "width": 0.6,
+                "height": 0.1,
+            },
+        )
+        plotter.add_text(heading(self.title, fields.times[frame], fields.times[-1] - fields.times[0]), position="upper_left", font_size=self.text * 0.75, color="black")
+        plotter.add_axes(color="black") if flatness(self.bounds) == 3 else None
+        self.place()
+        return plotter.screenshot(return_img=True)
+
+
+def chosen(frame, n):
+    """The number of one frame, from 'last', '12', or '-1' as lists have it."""
+    try:
+        number = n - 1 if frame == "last" else int(frame)
+    except ValueError:
+        raise CannotDraw(f"--frame {frame}: give a number or 'last'") from None
+    if not -n <= number < n:
+        raise CannotDraw(f"there is no frame {number}: there are {n}, from 0 to {n - 1}")
+    return number % n
+
+
+def write_gif(path, pictures, fps):
+    images = [Image.fromarray(picture).quantize(128, dither=Image.Dither.NONE) for picture in pictures]
+    images[0].save(path, save_all=True, append_images=images[1:], duration=round(1000 / fps), loop=0)
+
+
+def find_ffmpeg():
+    if shutil.which("ffmpeg"):
+        return "ffmpeg"
+    try:
+        import imageio_ffmpeg
+
+        return imageio_ffmpeg.get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        raise CannotDraw("MP4 needs ffmpeg, which is not here: install it, or give the name of a .gif") from None
+
+
+def write_mp4(path, pictures, fps, size, ffmpeg):
+    command = [ffmpeg, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", str(fps), "-i", "-"]
+    command += ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE) as process:
+        for picture in pictures:
+            process.stdin.write(picture.tobytes())
+        process.stdin.close()
+    if process.returncode:
+        raise CannotDraw(f"ffmpeg could not write {path}")
+
+
+def write(path, fields, options):
+    kind = path.suffix.lower()
+    if kind not in (".png", ".gif", ".mp4"):
+        raise CannotDraw(f"{path}: give the name of a .png, .gif or .mp4")
+    ffmpeg = find_ffmpeg() if kind == ".mp4" else None
+    camera = Camera(fields, options)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if kind == ".png":
+        Image.fromarray(camera.shoot(chosen(options.frame, len(fields)))).save(path)
+        return
+    pictures = (camera.shoot(frame) for frame in camera.frames)
+    if kind == ".gif":
+        write_gif(path, pictures, options.fps)
+    else:
+        write_mp4(path, pictures, options.fps, options.size, ffmpeg)
+
+
+def size(text):
+    width, height = (int(number) for number in text.split("x"))
+    if not (16 <= width <= 10_000 and 16 <= height <= 10_000):
+        raise ValueError
+    return width, height
+
+
+def rate(text):
+    if not 0 < float(text) <= 100:
+        raise ValueError
+    return float(text)
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="plots/render.py", description="Draws the fields of a run, deformed and coloured.")
+    parser.add_argument("fields", metavar="FILE.xdmf", help="what -output_fields has written")
+    parser.add_argument("picture", metavar="OUT", type=Path, help="a .png of one frame; a .gif or .mp4 of all")
+    parser.add_argument("--frame", default="last", help="of a .png: a number from 0, or last (default)")
+    parser.add_argument("--field", default="von_mises", help="von_mises (default), displacement, velocity, displacement_x, stress_xx, ..., body, rank")
+    parser.add_argument("--scale", type=float, default=1, help="factor for displacements, default 1")
+    parser.add_argument("--view", choices=list(VIEWS), help="default iso, xy for bodies in one or two dimensions")
+    parser.add_argument("--fps", type=rate, default=15, help="frames per second, default 15")
+    parser.add_argument("--size", type=size, default=(1000, 700), metavar="WxH", help="in pixels, default 1000x700")
+    parser.add_argument("--title", default="", help="words before the time")
+    return parser.parse_args(arguments)
+
+
+def main(arguments):
+    options = parse(arguments)
+    try:
+        write(options.picture, Fields(options.fields), options)
+    except (CannotDraw, OSError) as error:
+        print(f"plots/render.py: {error}", file=sys.stderr)
+        return 1
+    print(options.picture)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

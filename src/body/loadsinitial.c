@@ -1,0 +1,85 @@
+/* Displacement and velocity at the start, from options. */
+#include "loadsimpl.h"
+
+/* Composed with the body where the option of that name is given */
+static const char *const initial[] = {"initial_displacement", "initial_velocity"};
+
+static PetscErrorCode Evaluate(Body body, const Expression list[], Vec values)
+{
+  PetscScalar *value;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(values, &value));
+  for (PetscInt node = 0; node < body->owned_nodes; node++) {
+    ExpressionPoint point = {{0}, {0}, 0};
+
+    for (PetscInt d = 0; d < body->dim; d++) point.x[d] = body->coordinates[node * body->dim + d];
+    for (PetscInt d = 0; d < body->dim; d++) {
+      PetscReal component;
+
+      PetscCall(ExpressionEvaluate(list[d], &point, &component));
+      value[node * body->dim + d] = component;
+    }
+  }
+  PetscCall(VecRestoreArrayWrite(values, &value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckSteady(Body body, const char name[], const Expression list[])
+{
+  PetscFunctionBegin;
+  PetscCall(BodyLoadsRefuseNormal(body, name, list));
+  for (PetscInt d = 0; d < body->dim; d++) {
+    PetscBool steady;
+
+    PetscCall(ExpressionIsSteady(list[d], &steady));
+    PetscCheck(steady, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s cannot vary in time: it is what there is at the start; use x, y, z", ((PetscObject)body)->prefix, name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadVector(Body body, const char name[])
+{
+  Expression     list[3] = {NULL};
+  const char    *text;
+  Vec            values;
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(BodyLoadsGetText(body, name, &text));
+  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyLoadsGetComponents(body, name, text, PETSC_FALSE, list));
+  PetscCall(BodyCreateVec(body, &values));
+  error = CheckSteady(body, name, list);
+  if (!error) error = Evaluate(body, list, values);
+  if (!error) error = PetscObjectCompose((PetscObject)body, name, (PetscObject)values);
+  PetscCall(VecDestroy(&values));
+  for (PetscInt d = 0; d < body->dim; d++) PetscCall(ExpressionDestroy(&list[d]));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyLoadsReadInitialState(Body body)
+{
+  PetscFunctionBegin;
+  for (int i = 0; i < 2; i++) PetscCall(ReadVector(body, initial[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacement [m] and velocity [m/s] of owned nodes at the start: those of the options, else zero, and those of held dofs as they
+   are prescribed */
+PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
+{
+  const Vec vecs[] = {u, v};
+
+  PetscFunctionBegin;
+  for (int i = 0; i < 2; i++) {
+    Vec values;
+
+    PetscCall(PetscObjectQuery((PetscObject)body, initial[i], (PetscObject *)&values));
+    if (values) PetscCall(VecCopy(values, vecs[i]));
+    else PetscCall(VecZeroEntries(vecs[i]));
+  }
+  PetscCall(BodyLoadsPrescribe(body, body->time_start, u, v, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,395 @@
+/* Writes displacement, velocity and stress of all bodies, every so many controller steps. */
+#define _POSIX_C_SOURCE 200809L
+#include "fields.h"
+#include "hdf5file.h"
+#include "outputfile.h"
+#include "xdmf.h"
+#include <petsctime.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+
+/* Frames in a run that does not say how often */
+#define DEFAULT_FRAMES 100
+
+/* The XDMF file is written anew with every frame, as long as that takes at most 2 % of the run */
+#define XDMF_SHARE 50.0
+
+struct _n_Fields {
+  MPI_Comm        comm;
+  PetscBool       first_rank;
+  char            path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], xdmf[PETSC_MAX_PATH_LEN];
+  FieldsPrecision precision;
+  PetscInt        interval, n_frames; /* in steps; of the whole run */
+  FieldsMesh      mesh;
+  PetscInt        written; /* frames in the file */
+  PetscReal      *times;   /* of them [s] */
+  PetscReal      *stress;  /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
+  void           *buffer;  /* one field of a frame, in the file's precision */
+  hid_t           file;    /* < 0: not begun */
+  PetscInt        listed;  /* frames in the XDMF file */
+  PetscLogDouble  list_ended, list_seconds;
+};
+
+static PetscInt CountFrames(PetscInt steps, PetscInt interval)
+{
+  return 1 + steps / interval + (steps % interval ? 1 : 0);
+}
+
+/* The least interval with at most so many frames */
+static PetscInt LeastInterval(PetscInt steps, PetscInt n_frames)
+{
+  return PetscMax(1, steps / (n_frames - 1) + (steps % (n_frames - 1) ? 1 : 0));
+}
+
+static PetscErrorCode SetInterval(Fields fields, PetscInt steps, PetscInt interval)
+{
+  PetscFunctionBegin;
+  PetscCheck(interval >= 0, fields->comm, PETSC_ERR_USER_INPUT, "-output_fields_interval %" PetscInt_FMT " must be a number of controller steps, 1 or more; or 0 for one that makes at most %d frames", interval, DEFAULT_FRAMES);
+  fields->interval = interval ? interval : LeastInterval(steps, DEFAULT_FRAMES);
+  fields->n_frames = CountFrames(steps, fields->interval);
+  PetscCheck(fields->n_frames <= FIELDS_MAX_FRAMES, fields->comm, PETSC_ERR_USER_INPUT, "-output_fields_interval %" PetscInt_FMT " makes %" PetscInt_FMT " frames in this run of %" PetscInt_FMT " controller steps, and %d is the limit; give %" PetscInt_FMT " or more", fields->interval, fields->n_frames, steps, FIELDS_MAX_FRAMES, LeastInterval(steps, FIELDS_MAX_FRAMES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room where `path` will be, with that of the file that is replaced; huge where the file system does not tell [bytes] */
+static double FreeSpace(const char path[])
+{
+  char           folder[PETSC_MAX_PATH_LEN];
+  char          *slash;
+  struct statvfs system;
+  struct stat    old;
+
+  snprintf(folder, sizeof(folder), "%s", path);
+  slash = strrchr(folder, '/');
+  if (slash) slash[1] = '\0';
+  else snprintf(folder, sizeof(folder), ".");
+  if (statvfs(folder, &system) || !system.f_blocks) return PETSC_MAX_REAL;
+  return (double)system.f_bavail * (double)system.f_frsize + (stat(path, &old) ? 0 : 512. * (double)old.st_blocks);
+}
+
+/* Refuses at once what would fill the disk in the end */
+static PetscErrorCode CheckSpace(Fields fields)
+{
+  const double needed = (double)FieldsFileGetSize(&fields->mesh, fields->n_frames, fields->precision);
+  double       space  = 0;
+
+  PetscFunctionBegin;
+  if (fields->first_rank) space = FreeSpace(fields->path);
+  PetscCallMPI(MPI_Bcast(&space, 1, MPI_DOUBLE, 0, fields->comm));
+  PetscCheck(needed <= space, fields->comm, PETSC_ERR_USER_INPUT, "-output_fields %s will have %" PetscInt_FMT " frames, %.3g GB in all, and there is room for %.3g GB; write fewer of them with -output_fields_interval", fields->path, fields->n_frames, 1e-9 * needed, 1e-9 * space);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateBuffers(Fields fields)
+{
+  const FieldsMesh *mesh   = &fields->mesh;
+  size_t            length = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < FIELDS_PER_FRAME; i++) length = PetscMax(length, (size_t)fields_of_a_frame[i].components * (size_t)(fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).local);
+  PetscCall(PetscMalloc(PetscMax(1, length * (fields->precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float))), &fields->buffer));
+  PetscCall(PetscMalloc1((size_t)mesh->cells.local * 6, &fields->stress));
+  PetscCall(PetscMalloc1(fields->n_frames, &fields->times));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsCreate - fields of a run, in an HDF5 file with an XDMF file beside it
+
+  Collective
+
+  Input Parameters:
++ controller - the `Controller`, set up
+. path       - the HDF5 file to write; an error if that cannot be done, on every rank
+. interval   - a frame every so many controller steps, and at the end; 0: at most 100 frames
+- precision  - of the numbers in the frames
+
+  Output Parameter:
+. fields - the `Fields`, to be told of every step by `FieldsMonitor()`
+*/
+PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, FieldsPrecision precision, Fields *fields)
+{
+  const Body *bodies;
+  PetscInt    steps, n_bodies;
+  PetscMPIInt rank;
+  Fields      f;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&f));
+  *fields = f;
+  f->comm = PetscObjectComm((PetscObject)controller);
+  f->file = -1;
+  PetscCallMPI(MPI_Comm_rank(f->comm, &rank));
+  f->first_rank = rank ? PETSC_FALSE : PETSC_TRUE;
+  f->precision  = precision;
+  PetscCall(XdmfCheckPath(f->comm, path));
+  PetscCall(OutputFileCheck(f->comm, "-output_fields", path));
+  PetscCall(PetscStrncpy(f->path, path, sizeof(f->path)));
+  PetscCall(OutputFileGetPart(path, sizeof(f->part), f->part));
+  PetscCall(XdmfGetPath(path, sizeof(f->xdmf), f->xdmf));
+  PetscCall(OutputFileCheck(f->comm, "-output_fields, beside it,", f->xdmf));
+  PetscCall(ControllerGetTimes(controller, NULL, NULL, &steps));
+  PetscCall(SetInterval(f, steps, interval));
+  PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
+  PetscCall(FieldsMeshCreate(n_bodies, bodies, &f->mesh));
+  PetscCall(CheckSpace(f));
+  PetscCall(CreateBuffers(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An error of the first rank alone becomes one of all; it has been told */
+static PetscErrorCode Share(Fields fields, PetscErrorCode error)
+{
+  PetscMPIInt code = (PetscMPIInt)error;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, fields->comm));
+  if (fields->first_rank) PetscCall(error);
+  PetscCheck(!code, fields->comm, (PetscErrorCode)code, "-output_fields %s: the first rank cannot write", fields->path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The file with its mesh, under the name that it has until it has a frame */
+static PetscErrorCode WriteMesh(Fields fields)
+{
+  const FieldsMesh *mesh  = &fields->mesh;
+  PetscErrorCode    error = PETSC_SUCCESS;
+  PetscMPIInt       rank;
+  PetscReal        *positions;
+  char             *options;
+  int              *numbers;
+
+  PetscFunctionBegin;
+  if (fields->first_rank) {
+    PetscCall(PetscOptionsGetAll(NULL, &options));
+    error = FieldsFileCreate(fields->part, mesh, fields->n_frames, fields->precision, options);
+    PetscCall(PetscFree(options));
+  }
+  PetscCall(Share(fields, error));
+  PetscCall(FieldsFileOpen(fields->comm, fields->part, &fields->file));
+  PetscCall(PetscMalloc1(3 * (size_t)mesh->nodes.local, &positions));
+  PetscCall(FieldsMeshGetNodes(mesh, positions));
+  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/positions", &mesh->nodes, 3, H5T_NATIVE_DOUBLE, positions));
+  PetscCall(PetscFree(positions));
+  PetscCall(PetscMalloc1(PetscMax((size_t)mesh->topology.local * (size_t)mesh->cell_nodes, (size_t)mesh->cells.local), &numbers));
+  PetscCall(FieldsMeshGetTopology(mesh, numbers));
+  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/cells", &mesh->topology, mesh->cell_nodes, H5T_NATIVE_INT, numbers));
+  PetscCallMPI(MPI_Comm_rank(fields->comm, &rank));
+  for (hsize_t i = 0; i < mesh->cells.local; i++) numbers[i] = rank;
+  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/rank", &mesh->cells, 1, H5T_NATIVE_INT, numbers));
+  for (PetscInt b = 0, next = 0; b < mesh->n_bodies; b++)
+    for (hsize_t i = 0; i < mesh->cells.count[b]; i++) numbers[next++] = (int)b;
+  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/body", &mesh->cells, 1, H5T_NATIVE_INT, numbers));
+  PetscCall(PetscFree(numbers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline void Store(Fields fields, size_t i, PetscReal value)
+{
+  if (fields->precision == FIELDS_DOUBLE) ((double *)fields->buffer)[i] = value;
+  else ((float *)fields->buffer)[i] = (float)value;
+}
+
+static PetscErrorCode WriteField(Fields fields, FieldsKind kind)
+{
+  const FieldsField *field = &fields_of_a_frame[kind];
+  char               name[64];
+
+  PetscFunctionBegin;
+  PetscCall(FieldsFileGetDataset(kind, fields->written, sizeof(name), name));
+  PetscCall(FieldsFileWrite(fields->comm, fields->file, name, field->on_cells ? &fields->mesh.cells : &fields->mesh.nodes, field->components, fields->precision == FIELDS_DOUBLE ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, fields->buffer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacement or velocity, with zeros beyond the dimension */
+static PetscErrorCode WriteNodes(Fields fields, FieldsKind kind)
+{
+  const FieldsMesh *mesh = &fields->mesh;
+  size_t            next = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    const PetscScalar *values;
+    PetscInt           dim;
+    Vec                u, v;
+    DM                 dm;
+
+    PetscCall(BodyGetDM(mesh->bodies[b], &dm));
+    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(BodyGetSolution(mesh->bodies[b], &u, &v, NULL));
+    PetscCall(VecGetArrayRead(kind == FIELDS_VELOCITY ? v : u, &values));
+    for (PetscInt i = 0; i < (PetscInt)mesh->nodes.count[b]; i++)
+      for (PetscInt d = 0; d < 3; d++) Store(fields, next++, d < dim ? PetscRealPart(values[i * dim + d]) : 0);
+    PetscCall(VecRestoreArrayRead(kind == FIELDS_VELOCITY ? v : u, &values));
+  }
+  PetscCall(WriteField(fields, kind));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal VonMises(const PetscReal s[])
+{
+  const PetscReal a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+
+  return PetscSqrtReal((a * a + b * b + c * c) / 2 + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+static PetscErrorCode WriteStress(Fields fields)
+{
+  static const int  tensor[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2}; /* row by row */
+  const FieldsMesh *mesh      = &fields->mesh;
+  const size_t      n         = (size_t)mesh->cells.local;
+  size_t            first     = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    PetscCall(BodyComputeStress(mesh->bodies[b], fields->stress + 6 * first));
+    first += (size_t)mesh->cells.count[b];
+  }
+  for (size_t i = 0; i < n; i++)
+    for (size_t c = 0; c < 9; c++) Store(fields, 9 * i + c, fields->stress[6 * i + (size_t)tensor[c]]);
+  PetscCall(WriteField(fields, FIELDS_STRESS));
+  for (size_t i = 0; i < n; i++) Store(fields, i, VonMises(fields->stress + 6 * i));
+  PetscCall(WriteField(fields, FIELDS_VON_MISES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells that the frame is there */
+static PetscErrorCode WriteTime(Fields fields, PetscReal time)
+{
+  hsize_t    begin = (hsize_t)fields->written, count = fields->first_rank ? 1 : 0;
+  FieldsRows rows = {1, (hsize_t)fields->n_frames, &begin, &count, count};
+
+  PetscFunctionBegin;
+  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/time", &rows, 1, H5T_NATIVE_DOUBLE, &time));
+  fields->times[fields->written++] = time;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The file becomes what it is called; an XDMF file of an earlier run does not fit it any more */
+static PetscErrorCode TakePlace(Fields fields)
+{
+  PetscFunctionBegin;
+  if (fields->first_rank) {
+    remove(fields->xdmf);
+    PetscCall(OutputFileReplace(fields->part, fields->path));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists the frames in the XDMF file; `always`, or only if it is time */
+static PetscErrorCode List(Fields fields, PetscBool always)
+{
+  PetscLogDouble begin;
+
+  PetscFunctionBegin;
+  PetscCall(PetscTime(&begin));
+  if (!fields->first_rank || fields->listed == fields->written) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!always && begin - fields->list_ended < XDMF_SHARE * fields->list_seconds) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(XdmfWrite(fields->path, &fields->mesh, fields->precision, fields->written, fields->times));
+  PetscCall(PetscTime(&fields->list_ended));
+  fields->list_seconds = fields->list_ended - begin;
+  fields->listed       = fields->written;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteFrame(Fields fields, PetscReal time)
+{
+  const PetscBool begins = (PetscBool)(fields->file < 0);
+
+  PetscFunctionBegin;
+  if (begins) PetscCall(WriteMesh(fields));
+  PetscCall(WriteNodes(fields, FIELDS_DISPLACEMENT));
+  PetscCall(WriteNodes(fields, FIELDS_VELOCITY));
+  PetscCall(WriteStress(fields));
+  PetscCall(WriteTime(fields, time));
+  if (begins) PetscCall(Share(fields, TakePlace(fields)));
+  PetscCall(Share(fields, List(fields, PETSC_FALSE)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsMonitor - writes a frame, when it is time
+
+  Collective
+
+  Input Parameters:
++ controller - the `Controller`
+. frame      - the state of everything
+- context    - the `Fields`
+*/
+PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame, void *context)
+{
+  Fields         fields = (Fields)context;
+  PetscErrorCode error;
+  HDF5Silence    silence;
+
+  PetscFunctionBegin;
+  (void)controller;
+  if (frame->step % fields->interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
+  HDF5SilenceBegin(&silence);
+  error = WriteFrame(fields, frame->time);
+  if (error && !fields->written && fields->first_rank) remove(fields->part);
+  PetscCall(error);
+  HDF5SilenceEnd(&silence);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsFinish - closes the file after the last frame, with all frames listed in the XDMF file
+
+  Collective
+
+  Input Parameter:
+. fields - the `Fields`, to be told of no more steps
+*/
+PetscErrorCode FieldsFinish(Fields fields)
+{
+  int closed;
+
+  PetscFunctionBegin;
+  PetscCall(Share(fields, List(fields, PETSC_TRUE)));
+  if (fields->file < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  closed       = H5Fclose(fields->file) < 0 ? 0 : 1;
+  fields->file = -1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed, 1, MPI_INT, MPI_MIN, fields->comm));
+  PetscCheck(closed, fields->comm, PETSC_ERR_FILE_WRITE, "HDF5 cannot close %s; is the disk full?", fields->path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FieldsGetPaths - where the files are; either may be NULL */
+PetscErrorCode FieldsGetPaths(Fields fields, const char *path[], const char *xdmf[])
+{
+  PetscFunctionBegin;
+  if (path) *path = fields->path;
+  if (xdmf) *xdmf = fields->xdmf;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsDestroy - frees the fields
+
+  Not Collective
+
+  Input Parameter:
+. fields - the `Fields`, set to `NULL`
+
+  Note:
+  Without FieldsFinish() before, as after an error, which may be one of this rank alone, the file is left as it is; what is in
+  it can be read, and the XDMF file lists it.
+*/
+PetscErrorCode FieldsDestroy(Fields *fields)
+{
+  Fields f = *fields;
+
+  PetscFunctionBegin;
+  if (!f) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(List(f, PETSC_TRUE));
+  PetscCall(FieldsMeshDestroy(&f->mesh));
+  PetscCall(PetscFree(f->times));
+  PetscCall(PetscFree(f->stress));
+  PetscCall(PetscFree(f->buffer));
+  PetscCall(PetscFree(*fields));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,12 @@
+/* The fields of all bodies over time. */
+#pragma once
+#include <controller.h>
+#include "fieldsfile.h"
+
+typedef struct _n_Fields *Fields;
+
+PETSC_INTERN PetscErrorCode      FieldsCreate(Controller, const char[], PetscInt, FieldsPrecision, Fields *);
+PETSC_INTERN ControllerMonitorFn FieldsMonitor;
+PETSC_INTERN PetscErrorCode      FieldsFinish(Fields);
+PETSC_INTERN PetscErrorCode      FieldsGetPaths(Fields, const char *[], const char *[]);
+PETSC_INTERN PetscErrorCode      FieldsDestroy(Fields *);

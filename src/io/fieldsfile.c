@@ -1,0 +1,257 @@
+/*
+  An HDF5 file of fields. Its first rank makes all of it before the first frame: groups, attributes, and a dataset for each
+  field of each frame, with its place in the file but nothing in it (a hole, on most file systems). After that numbers are written
+  and nothing else, so that a run that is killed, in the middle of a frame too, leaves a file that can be read; and no frame waits
+  for a flush.
+*/
+#include "fieldsfile.h"
+#include "hdf5file.h"
+#include <math.h>
+
+const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
+    {"displacement", "m", 3, "Vector", PETSC_FALSE},
+    {"velocity", "m/s", 3, "Vector", PETSC_FALSE},
+    /* all nine: of six, ParaView's readers take the order to be one or the other */
+    {"stress", "Pa", 9, "Tensor", PETSC_TRUE},
+    {"von_mises", "Pa", 1, "Scalar", PETSC_TRUE},
+};
+
+const char *const FieldsPrecisions[] = {"single", "double", "FieldsPrecision", "FIELDS_", NULL};
+
+/*
+  FieldsFileGetSize - bytes of all frames and of the mesh, without HDF5's own few
+
+  Not Collective
+
+  Input Parameters:
++ mesh      - the mesh
+. n_frames  - number of frames
+- precision - of their numbers
+*/
+PetscInt64 FieldsFileGetSize(const FieldsMesh *mesh, PetscInt n_frames, FieldsPrecision precision)
+{
+  hsize_t numbers = 0;
+
+  for (PetscInt i = 0; i < FIELDS_PER_FRAME; i++) numbers += (hsize_t)fields_of_a_frame[i].components * (fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).total;
+  return (PetscInt64)(numbers * (hsize_t)n_frames * (precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float)) + mesh->nodes.total * 3 * sizeof(double) + (mesh->topology.total * (hsize_t)mesh->cell_nodes + 2 * mesh->cells.total) * sizeof(int));
+}
+
+/* FieldsFileGetDataset - the name of a field of a frame in the file */
+PetscErrorCode FieldsFileGetDataset(FieldsKind field, PetscInt frame, size_t size, char name[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, size, "/%s/%04" PetscInt_FMT, fields_of_a_frame[field].name, frame));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An attribute within the dataset's own header: with ten thousands of datasets, strings of variable length take their toll */
+static PetscErrorCode WriteUnits(hid_t dataset, const char units[], const char path[])
+{
+  hid_t  type, space, attribute;
+  size_t length;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrlen(units, &length));
+  type = H5Tcopy(H5T_C_S1);
+  PetscCall(HDF5Check(H5Tset_size(type, length + 1), "make a string type", path));
+  PetscCall(HDF5Check(H5Tset_cset(type, H5T_CSET_UTF8), "make a string type", path));
+  space = H5Screate(H5S_SCALAR);
+  PetscCall(HDF5Check(space, "make a data space", path));
+  attribute = H5Acreate2(dataset, "units", type, space, H5P_DEFAULT, H5P_DEFAULT);
+  PetscCall(HDF5Check(attribute, "create an attribute", path));
+  PetscCall(HDF5Check(H5Awrite(attribute, type, units), "write an attribute", path));
+  PetscCall(HDF5Check(H5Aclose(attribute), "write an attribute", path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  PetscCall(HDF5Check(H5Tclose(type), "close a type", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A dataset with its place in the file; `dataset` may be NULL */
+static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, const char units[], const char path[], hid_t *dataset)
+{
+  const hsize_t size[2] = {rows, (hsize_t)components};
+  hid_t         space, layout, created;
+
+  PetscFunctionBegin;
+  space = H5Screate_simple(components > 1 ? 2 : 1, size, NULL);
+  PetscCall(HDF5Check(space, "make a data space", path));
+  layout = H5Pcreate(H5P_DATASET_CREATE);
+  PetscCall(HDF5Check(H5Pset_alloc_time(layout, H5D_ALLOC_TIME_EARLY), "place a dataset", path));
+  PetscCall(HDF5Check(H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER), "place a dataset", path));
+  PetscCall(HDF5Check(H5Pset_obj_track_times(layout, 0), "place a dataset", path));
+  created = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+  PetscCall(HDF5Check(created, "create a dataset", path));
+  PetscCall(WriteUnits(created, units, path));
+  PetscCall(HDF5Check(H5Pclose(layout), "close a property list", path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  if (dataset) *dataset = created;
+  else PetscCall(HDF5Check(H5Dclose(created), "create a dataset", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateGroup(hid_t file, const char name[], const char path[])
+{
+  hid_t group;
+
+  PetscFunctionBegin;
+  group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  PetscCall(HDF5Check(group, "make a group", path));
+  PetscCall(HDF5Check(H5Gclose(group), "make a group", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Times are no numbers until their frames are in the file */
+static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, const char path[])
+{
+  double *times;
+  hid_t   dataset;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n_frames, &times));
+  for (PetscInt i = 0; i < n_frames; i++) times[i] = NAN;
+  PetscCall(CreateDataset(file, "time", H5T_IEEE_F64LE, (hsize_t)n_frames, 1, "s", path, &dataset));
+  PetscCall(HDF5Check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times), "write times", path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "write times", path));
+  PetscCall(PetscFree(times));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char path[])
+{
+  char        names[4096] = "";
+  const char *name;
+  hid_t       dataset;
+
+  PetscFunctionBegin;
+  PetscCall(CreateGroup(file, "mesh", path));
+  PetscCall(CreateDataset(file, "mesh/positions", H5T_IEEE_F64LE, mesh->nodes.total, 3, "m", path, NULL));
+  PetscCall(CreateDataset(file, "mesh/cells", H5T_STD_I32LE, mesh->topology.total, mesh->cell_nodes, "1", path, NULL));
+  PetscCall(CreateDataset(file, "mesh/rank", H5T_STD_I32LE, mesh->cells.total, 1, "1", path, NULL));
+  PetscCall(CreateDataset(file, "mesh/body", H5T_STD_I32LE, mesh->cells.total, 1, "1", path, &dataset));
+  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    PetscCall(PetscObjectGetName((PetscObject)mesh->bodies[b], &name));
+    if (b) PetscCall(PetscStrlcat(names, ",", sizeof(names)));
+    PetscCall(PetscStrlcat(names, name, sizeof(names)));
+  }
+  PetscCall(HDF5WriteText(dataset, "names", names, path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "create a dataset", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsFileCreate - makes a file with a place for everything
+
+  Not Collective; one rank calls it
+
+  Input Parameters:
++ path      - where, replacing what is there
+. mesh      - the mesh
+. n_frames  - number of frames
+. precision - of their numbers
+- options   - all options of the run, as `PetscOptionsGetAll()` gives them: they become attributes of the root, beside `version`
+*/
+PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, PetscInt n_frames, FieldsPrecision precision, const char options[])
+{
+  const hid_t type = precision == FIELDS_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  char        name[64];
+  hid_t       file;
+
+  PetscFunctionBegin;
+  file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  PetscCall(HDF5Check(file, "create a file", path));
+  PetscCall(HDF5WriteRun(file, options, path));
+  PetscCall(CreateMesh(file, mesh, path));
+  PetscCall(CreateTimes(file, n_frames, path));
+  for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++) {
+    const FieldsField *field = &fields_of_a_frame[i];
+
+    PetscCall(CreateGroup(file, field->name, path));
+    for (PetscInt k = 0; k < n_frames; k++) {
+      PetscCall(FieldsFileGetDataset(i, k, sizeof(name), name));
+      PetscCall(CreateDataset(file, name, type, (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, field->units, path, NULL));
+    }
+  }
+  PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsFileOpen - opens a file for writing by all ranks
+
+  Collective
+
+  Input Parameters:
++ comm - communicator
+- path - the file
+
+  Output Parameter:
+. file - the file; close with H5Fclose()
+*/
+PetscErrorCode FieldsFileOpen(MPI_Comm comm, const char path[], hid_t *file)
+{
+  int   opened;
+  hid_t access;
+
+  PetscFunctionBegin;
+  access = H5Pcreate(H5P_FILE_ACCESS);
+  opened = H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL) >= 0 && H5Pset_all_coll_metadata_ops(access, 1) >= 0 && (*file = H5Fopen(path, H5F_ACC_RDWR, access)) >= 0;
+  if (access >= 0) H5Pclose(access);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &opened, 1, MPI_INT, MPI_MIN, comm));
+  PetscCheck(opened, comm, PETSC_ERR_FILE_OPEN, "HDF5 cannot open %s for all ranks; -output_fields needs a file system that all of them see, and MPI-IO on it", path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The pieces of this rank, as they lie in the file; -1, or what HDF5 returned */
+static herr_t SelectRows(hid_t space, const FieldsRows *rows, PetscInt components)
+{
+  herr_t result = H5Sselect_none(space);
+
+  for (PetscInt i = 0; i < rows->n && result >= 0; i++) {
+    const hsize_t start[2] = {rows->begin[i], 0}, count[2] = {rows->count[i], (hsize_t)components};
+
+    if (rows->count[i]) result = H5Sselect_hyperslab(space, H5S_SELECT_OR, start, NULL, count, NULL);
+  }
+  return result;
+}
+
+static herr_t WriteRows(hid_t file, const char name[], const FieldsRows *rows, PetscInt components, hid_t type, const void *values)
+{
+  const hsize_t length  = rows->local * (hsize_t)components;
+  const hid_t   dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset), memory = H5Screate_simple(1, &length, NULL), transfer = H5Pcreate(H5P_DATASET_XFER);
+  herr_t        result = -1;
+
+  if (dataset >= 0 && space >= 0 && memory >= 0 && transfer >= 0) result = SelectRows(space, rows, components);
+  if (result >= 0 && !length) result = H5Sselect_none(memory);
+  if (result >= 0) result = H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
+  if (result >= 0) result = H5Dwrite(dataset, type, memory, space, transfer, values);
+  if (transfer >= 0) H5Pclose(transfer);
+  if (memory >= 0) H5Sclose(memory);
+  if (space >= 0) H5Sclose(space);
+  if (dataset >= 0 && H5Dclose(dataset) < 0) result = -1;
+  return result;
+}
+
+/*
+  FieldsFileWrite - writes this rank's rows of a dataset
+
+  Collective; an error on any rank is one on all
+
+  Input Parameters:
++ comm       - communicator
+. file       - the file
+. name       - the dataset
+. rows       - which rows
+. components - numbers in a row
+. type       - of the numbers in memory; as in the file, or HDF5 would convert them and write rank by rank
+- values     - the rows of this rank, one after the other
+*/
+PetscErrorCode FieldsFileWrite(MPI_Comm comm, hid_t file, const char name[], const FieldsRows *rows, PetscInt components, hid_t type, const void *values)
+{
+  int result;
+
+  PetscFunctionBegin;
+  result = WriteRows(file, name, rows, components, type, values) < 0 ? -1 : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_INT, MPI_MIN, comm));
+  PetscCheck(!result, comm, PETSC_ERR_FILE_WRITE, "The dataset %s of -output_fields cannot be written; is the disk full? The frames before this one are whole", name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

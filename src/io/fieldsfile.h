@@ -1,0 +1,35 @@
+/* An HDF5 file of fields, written by all ranks. */
+#pragma once
+#include "fieldsmesh.h"
+
+#define FIELDS_MAX_FRAMES 10000
+#define FIELDS_PER_FRAME  4
+
+/* What is written of each frame */
+typedef enum {
+  FIELDS_DISPLACEMENT,
+  FIELDS_VELOCITY,
+  FIELDS_STRESS,
+  FIELDS_VON_MISES
+} FieldsKind;
+
+typedef struct {
+  const char *name, *units;
+  PetscInt    components;
+  const char *attribute_type; /* XDMF's word for the components */
+  PetscBool   on_cells;       /* or on nodes */
+} FieldsField;
+
+PETSC_INTERN const FieldsField fields_of_a_frame[FIELDS_PER_FRAME];
+
+typedef enum {
+  FIELDS_SINGLE,
+  FIELDS_DOUBLE
+} FieldsPrecision;
+PETSC_INTERN const char *const FieldsPrecisions[];
+
+PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, FieldsPrecision);
+PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, PetscInt, FieldsPrecision, const char[]);
+PETSC_INTERN PetscErrorCode FieldsFileOpen(MPI_Comm, const char[], hid_t *);
+PETSC_INTERN PetscErrorCode FieldsFileWrite(MPI_Comm, hid_t, const char[], const FieldsRows *, PetscInt, hid_t, const void *);
+PETSC_INTERN PetscErrorCode FieldsFileGetDataset(FieldsKind, PetscInt, size_t, char[]);

@@ -1,0 +1,98 @@
+/* What HDF5 files of a run have in common. Not collective; the caller is one rank. */
+#include "hdf5file.h"
+#include <impakt.h>
+#include <ctype.h>
+#include <string.h>
+
+/*
+  HDF5Check - an error where HDF5 could not do something
+
+  Not Collective
+
+  Input Parameters:
++ result - what HDF5 returned
+. what   - what it was to do
+- path   - the file
+*/
+PetscErrorCode HDF5Check(hid_t result, const char what[], const char path[])
+{
+  PetscFunctionBegin;
+  PetscCheck(result >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "HDF5 cannot %s in %s; is the disk full, or the file damaged?", what, path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  HDF5WriteText - adds an attribute: a string of variable length, which may be empty
+
+  Not Collective
+
+  Input Parameters:
++ object - the file, group or dataset
+. name   - of the attribute
+. value  - the string
+- path   - the file
+*/
+PetscErrorCode HDF5WriteText(hid_t object, const char name[], const char value[], const char path[])
+{
+  hid_t type, space, attribute;
+
+  PetscFunctionBegin;
+  type = H5Tcopy(H5T_C_S1);
+  PetscCall(HDF5Check(H5Tset_size(type, H5T_VARIABLE), "make a string type", path));
+  PetscCall(HDF5Check(H5Tset_cset(type, H5T_CSET_UTF8), "make a string type", path));
+  space = H5Screate(H5S_SCALAR);
+  PetscCall(HDF5Check(space, "make a data space", path));
+  attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  PetscCall(HDF5Check(attribute, "create an attribute", path));
+  PetscCall(HDF5Check(H5Awrite(attribute, type, &value), "write an attribute", path));
+  PetscCall(HDF5Check(H5Aclose(attribute), "write an attribute", path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  PetscCall(HDF5Check(H5Tclose(type), "close a type", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool BeginsOption(const char text[])
+{
+  return (PetscBool)(text[0] == '-' && isalpha((unsigned char)text[1]));
+}
+
+/*
+  HDF5WriteRun - how a run was made: its options and the version, as attributes
+
+  Not Collective
+
+  Input Parameters:
++ file    - the file
+. options - all options of the run, "-name value -name -name value ", as `PetscOptionsGetAll()` lists them; each becomes an attribute
+- path    - of the file
+*/
+PetscErrorCode HDF5WriteRun(hid_t file, const char options[], const char path[])
+{
+  char *copy, *name, *end, *value, *next;
+
+  PetscFunctionBegin;
+  PetscCall(HDF5WriteText(file, "version", IMPAKT_VERSION, path));
+  PetscCall(PetscStrallocpy(options, &copy));
+  for (name = copy; (end = strchr(name, ' ')); name = next) {
+    value = end + 1;
+    for (next = value; *next && !(next[-1] == ' ' && BeginsOption(next)); next++);
+    *end     = '\0';
+    next[-1] = '\0'; /* the blank after the value, or where there is none, after the name once more */
+    PetscCall(HDF5WriteText(file, name, next == value ? "" : value, path));
+  }
+  PetscCall(PetscFree(copy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* HDF5SilenceBegin - keeps HDF5 from printing its own account of errors, which would hide ours */
+void HDF5SilenceBegin(HDF5Silence *silence)
+{
+  H5Eget_auto2(H5E_DEFAULT, &silence->print, &silence->data);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+/* HDF5SilenceEnd - lets it print again. Not to be called after an error: it would complain at exit of the file that it could not finish */
+void HDF5SilenceEnd(const HDF5Silence *silence)
+{
+  H5Eset_auto2(H5E_DEFAULT, silence->print, silence->data);
+}

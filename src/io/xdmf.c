@@ -1,0 +1,142 @@
+/*
+  XDMF: what lies where in an HDF5 file, for ParaView and its like (www.xdmf.org, XDMF Model and Format, version 3). Only what
+  all of vtk's two readers and meshio understand: a temporal collection of uniform grids, whole datasets, nothing referred to from elsewhere in
+  the XML.
+*/
+#include "xdmf.h"
+#include "outputfile.h"
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *FileName(const char path[])
+{
+  const char *slash = strrchr(path, '/');
+
+  return slash ? slash + 1 : path;
+}
+
+static PetscBool EndsWith(const char text[], const char end[])
+{
+  const size_t n = strlen(text), m = strlen(end);
+
+  return (PetscBool)(n > m && !strcmp(text + n - m, end));
+}
+
+/*
+  XdmfGetPath - where the XDMF file of an HDF5 file is
+
+  Not Collective
+
+  Input Parameters:
++ fields - path of the HDF5 file
+- size   - length of path
+
+  Output Parameter:
+. path - its .h5 or .hdf5 replaced by .xdmf, or .xdmf added
+*/
+PetscErrorCode XdmfGetPath(const char fields[], size_t size, char path[])
+{
+  size_t length = strlen(fields);
+
+  PetscFunctionBegin;
+  if (EndsWith(fields, ".h5")) length -= 3;
+  else if (EndsWith(fields, ".hdf5")) length -= 5;
+  PetscCheck(length + sizeof(".xdmf") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The output path '%s' is too long: %zu characters at most", fields, size - sizeof(".xdmf"));
+  PetscCall(PetscSNPrintf(path, size, "%.*s.xdmf", (int)length, fields));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* XdmfCheckPath - makes sure that XDMF can name the HDF5 file `path` */
+PetscErrorCode XdmfCheckPath(MPI_Comm comm, const char path[])
+{
+  PetscFunctionBegin;
+  PetscCheck(!EndsWith(path, ".xdmf") && !EndsWith(path, ".xmf"), comm, PETSC_ERR_USER_INPUT, "-output_fields %s: give the path of the HDF5 file, as in fields.h5; the XDMF file is written beside it", path);
+  PetscCheck(!strpbrk(FileName(path), ":&<>\"'"), comm, PETSC_ERR_USER_INPUT, "-output_fields %s: the XDMF file beside it cannot name a file with any of : & < > \" ' in its name; choose another", path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void WriteItem(FILE *out, const char type[], size_t bytes, hsize_t rows, PetscInt components, const char file[], const char dataset[])
+{
+  char dimensions[64];
+
+  if (components > 1) snprintf(dimensions, sizeof(dimensions), "%llu %d", (unsigned long long)rows, (int)components);
+  else snprintf(dimensions, sizeof(dimensions), "%llu", (unsigned long long)rows);
+  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"%zu\" Dimensions=\"%s\">%s:%s</DataItem>", type, bytes, dimensions, file, dataset);
+}
+
+static void WriteMesh(FILE *out, const FieldsMesh *mesh, const char file[])
+{
+  fprintf(out, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%llu\"", mesh->topology_type, (unsigned long long)mesh->cells.total);
+  if (!mesh->mixed) fprintf(out, " NodesPerElement=\"%d\"", (int)mesh->cell_nodes);
+  fprintf(out, ">");
+  WriteItem(out, "Int", sizeof(int), mesh->topology.total, mesh->cell_nodes, file, "/mesh/cells");
+  fprintf(out, "</Topology>\n        <Geometry GeometryType=\"XYZ\">");
+  WriteItem(out, "Float", sizeof(double), mesh->nodes.total, 3, file, "/mesh/positions");
+  fprintf(out, "</Geometry>\n");
+}
+
+static void BeginAttribute(FILE *out, const char name[], const char type[], PetscBool on_cells)
+{
+  fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", name, type, on_cells ? "Cell" : "Node");
+}
+
+static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, FieldsPrecision precision, PetscInt frame, PetscReal time, const char file[])
+{
+  static const char *const fixed[] = {"body", "rank"};
+  char                     dataset[64];
+
+  PetscFunctionBegin;
+  fprintf(out, "      <Grid Name=\"bodies\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n", (double)time);
+  WriteMesh(out, mesh, file);
+  for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++) {
+    const FieldsField *field = &fields_of_a_frame[i];
+
+    PetscCall(FieldsFileGetDataset(i, frame, sizeof(dataset), dataset));
+    BeginAttribute(out, field->name, field->attribute_type, field->on_cells);
+    WriteItem(out, "Float", precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float), (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, file, dataset);
+    fprintf(out, "</Attribute>\n");
+  }
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(fixed); i++) {
+    snprintf(dataset, sizeof(dataset), "/mesh/%s", fixed[i]);
+    BeginAttribute(out, fixed[i], "Scalar", PETSC_TRUE);
+    WriteItem(out, "Int", sizeof(int), mesh->cells.total, 1, file, dataset);
+    fprintf(out, "</Attribute>\n");
+  }
+  fprintf(out, "      </Grid>\n");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  XdmfWrite - writes the XDMF file of an HDF5 file of fields, replacing what is there as a whole
+
+  Not Collective; one rank calls it
+
+  Input Parameters:
++ fields    - path of the HDF5 file
+. mesh      - the mesh
+. precision - of the numbers in the frames
+. n_frames  - how many frames to tell of
+- times     - their times [s]
+*/
+PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsPrecision precision, PetscInt n_frames, const PetscReal times[])
+{
+  char  path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  FILE *out;
+  int   failed;
+
+  PetscFunctionBegin;
+  PetscCall(XdmfGetPath(fields, sizeof(path), path));
+  PetscCall(OutputFileGetPart(path, sizeof(part), part));
+  out = fopen(part, "w");
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
+  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  for (PetscInt k = 0; k < n_frames; k++) PetscCall(WriteFrame(out, mesh, precision, k, times[k], FileName(fields)));
+  fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
+  failed = ferror(out);
+  failed = fclose(out) || failed;
+  if (failed) remove(part);
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", path);
+  PetscCall(OutputFileReplace(part, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
