@@ -38,7 +38,8 @@ typedef const char *MaterialType;
    In plane stress (`MaterialSetPlaneStress()`) what is given for H[8], and for H[2], H[5], H[6], H[7], is not read, and the stress
    across the plane is zero.
 
-   Every function returns NaN for a point at which the material is not defined (an inverted one, det(I + H) <= 0).
+   Every function returns NaN for a point at which the material is not defined: for nonlinear models an inverted one, det(I + H) <= 0, and
+   in plane stress one at which no stretch across the plane leaves it free of stress. Linear elasticity is defined everywhere.
 
 .seealso: `MaterialGetKernels()`
 S*/

@@ -29,6 +29,7 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  if (!rows->global) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetStiffness(body, &K));
   for (PetscInt j = 0; j < rows->global; j++) {
     const PetscInt local = j - rows->begin;

@@ -67,12 +67,61 @@ PetscErrorCode BodyGetElementDofs(Body body, PetscInt e, PetscInt dofs[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An empty matrix with room for what elements couple */
+/* Which nodes share an element, as a matrix of nodes by nodes: far smaller than one of displacements, and quick to make */
+static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
+{
+  const PetscInt n = body->element->nodes;
+  PetscScalar    ones[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscInt       nodes[ELEMENT_MAX_DOFS], dofs[ELEMENT_MAX_DOFS];
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n * n; i++) ones[i] = 1;
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), graph));
+  PetscCall(MatSetSizes(*graph, body->owned_nodes, body->owned_nodes, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(*graph, MATAIJ));
+  PetscCall(MatSetUp(*graph));
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    PetscCall(BodyGetElementDofs(body, e, dofs));
+    for (PetscInt a = 0; a < n; a++) nodes[a] = dofs[a * body->dim] / body->dim;
+    PetscCall(MatSetValues(*graph, n, nodes, n, nodes, ones, INSERT_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(*graph, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*graph, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An empty matrix with room for what elements couple. DMPLEX's own count goes through the mesh entity by entity, which takes ten times
+   as long as that of the graph. */
 PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
 {
+  const PetscInt dim = body->dim, n = body->owned_nodes * dim;
+  PetscInt       begin, end, *here, *elsewhere;
+  Mat            graph;
+
   PetscFunctionBegin;
-  PetscCall(DMSetMatType(body->dm, MATAIJ));
-  PetscCall(DMCreateMatrix(body->dm, A));
+  PetscCall(CreateNodeGraph(body, &graph));
+  PetscCall(MatGetOwnershipRange(graph, &begin, &end));
+  PetscCall(PetscCalloc2(n, &here, n, &elsewhere));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt *columns;
+    PetscInt        n_columns, inside = 0;
+
+    PetscCall(MatGetRow(graph, row, &n_columns, &columns, NULL));
+    for (PetscInt k = 0; k < n_columns; k++) inside += columns[k] >= begin && columns[k] < end;
+    for (PetscInt d = 0; d < dim; d++) {
+      here[(row - begin) * dim + d]      = dim * inside;
+      elsewhere[(row - begin) * dim + d] = dim * (n_columns - inside);
+    }
+    PetscCall(MatRestoreRow(graph, row, &n_columns, &columns, NULL));
+  }
+  PetscCall(MatDestroy(&graph));
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), A));
+  PetscCall(MatSetSizes(*A, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(*A, dim));
+  PetscCall(MatSetType(*A, MATAIJ));
+  PetscCall(MatSeqAIJSetPreallocation(*A, 0, here));
+  PetscCall(MatMPIAIJSetPreallocation(*A, 0, here, 0, elsewhere));
+  PetscCall(PetscFree2(here, elsewhere));
   PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatSetOption(*A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
   PetscCall(MatSetOption(*A, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));

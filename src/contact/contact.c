@@ -250,7 +250,12 @@ PetscErrorCode ContactStep(Contact contact)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
   contact->counts_made.sweeps = 0;
-  PetscUseTypeMethod(contact, step);
+  if (contact->n_all_rows) PetscUseTypeMethod(contact, step);
+  else { /* nothing can touch */
+    PetscBool penetrating;
+
+    PetscCall(ContactIntegrateFree(contact, &penetrating));
+  }
   contact->counts_made.total_sweeps += contact->counts_made.sweeps;
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -24,7 +24,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
   PetscCall(ContactSetUpStabilization(contact));
-  PetscTryTypeMethod(contact, setup);
+  if (contact->n_all_rows) PetscTryTypeMethod(contact, setup);
   contact->setup = PETSC_TRUE;
   PetscCall(ContactCheckInitialGap(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -131,8 +131,8 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->energy_error_min   = PetscMin(r->energy_error_min, r->energy_error_final);
   r->energy_error_max   = PetscMax(r->energy_error_max, r->energy_error_final);
   /* loads change the momentum, and there is nothing to compare it with */
-  r->momentum_error_max         = s->loaded ? PETSC_INFINITY : PetscMax(r->momentum_error_max, Relative(Norm(change), s->momentum_scale));
-  r->angular_momentum_error_max = s->loaded ? PETSC_INFINITY : PetscMax(r->angular_momentum_error_max, Relative(Norm(turn), s->angular_scale));
+  r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(change), s->momentum_scale));
+  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(turn), s->angular_scale));
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 

@@ -132,6 +132,10 @@ PetscErrorCode MaterialGetKernels(Material material, MaterialKernels *kernels)
 
   Level: developer
 
+  Note:
+  Nonlinear models are not defined at strains of -1 and below; nor is Saint-Venant-Kirchhoff's where the sides would have no width left,
+  2 nu (e + e^2/2) >= 1, and the neo-Hookean one where they have no equilibrium (large stretches with a negative Poisson's ratio).
+
 .seealso: `Material`, `MaterialComputeUniaxialTangent()`, `MaterialComputeUniaxialEnergy()`
 @*/
 PetscErrorCode MaterialComputeUniaxial(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
