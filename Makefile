@@ -36,7 +36,7 @@ include $(PETSC_ROOT)/lib/petsc/conf/petscvariables
 endif
 
 BUILD    := build
-OPTIMISE := -O3 -fno-math-errno -ffp-contract=fast
+OPTIMISE := -O3 -fno-math-errno
 ifeq ($(DEBUG),1)
 BUILD    := build/debug
 OPTIMISE := -O0 -g3
