@@ -36,7 +36,7 @@ include $(PETSC_ROOT)/lib/petsc/conf/petscvariables
 endif
 
 BUILD    := build
-OPTIMISE := -O3 -fno-math-errno -fopenmp-simd
+OPTIMISE := -O3 -fno-math-errno
 ifeq ($(DEBUG),1)
 BUILD    := build/debug
 OPTIMISE := -O0 -g3
@@ -50,7 +50,7 @@ export UBSAN_OPTIONS := print_stacktrace=1
 endif
 
 WARNINGS := -Wall -Wextra -Werror
-CFLAGS   := -std=c11 $(WARNINGS) $(OPTIMISE)
+CFLAGS   := -std=c11 -fopenmp-simd $(WARNINGS) $(OPTIMISE)
 # Other people's headers are system headers: their warnings are not ours to mend.
 CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(PETSC_CC_INCLUDES) $(shell pkg-config --cflags jansson muparser netcdf-mpi)))
 LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lm

@@ -32,10 +32,13 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscInt  dim;
   Vec       reference, displacement, positions;
   PetscReal lower, upper;
+  PetscBool linear;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &bar->name));
   PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(MaterialIsLinear(material, &linear));
+  PetscCheck(linear, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-exact: the exact solutions are those of linear elastic bars, and body '%s' is nonlinear; leave the option out, or choose -%s_material_type linear_elastic", ((PetscObject)body)->name, ((PetscObject)body)->name);
   PetscCall(MaterialGetDensity(material, &bar->density));
   PetscCall(MaterialGetUniaxialModulus(material, &bar->modulus));
   PetscCall(BodyGetMass(body, &bar->mass));

@@ -50,6 +50,22 @@ def test_exodus(launch, tmp_path, container, extension):
     assert mesh.labels["corner"] == 1  # of one rank alone: it is a vertex of one cube
 
 
+@pytest.mark.parametrize("ranks", [1, 3])
+@pytest.mark.parametrize("shape", ["tetra", "hexahedron", "exodus"])
+def test_flight(launch, tmp_path, shape, ranks):
+    """6 m^3 of 1000 kg/m^3 in free flight at 2 m/s, whatever the mesh and its place: 6000 * 2^2 / 2 = 12000 J, as printed."""
+    path = tmp_path / ("row.g" if shape == "exodus" else "row.msh")
+    if shape == "exodus":
+        write_exodus(path)
+    else:
+        write_gmsh(path, shape)
+    options = "-bodies a -a_density 1000 -a_youngs_modulus 1e9 -a_initial_velocity 2,0,0 -a_rotate 1,2,3,40 -a_translate 5,0,0 -time_step 1e-5 -time_end 1e-4"
+    done = launch([IMPAKT, *options.split(), "-a_dm_plex_filename", path], ranks, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    kinetic = re.search(r"^ *a +(\S+) J kinetic", done.stdout, re.MULTILINE)
+    assert kinetic and float(kinetic[1]) == pytest.approx(12000, rel=5e-6), done.stdout  # six digits are printed
+
+
 def refused(impakt, path, words, ranks):
     """One line by Impakt itself that names body and file, before any output is written."""
     run = impakt(f"{OPTIONS} -a_dm_plex_filename {path}", ranks, expect_failure=True, timeout=60)

@@ -72,7 +72,7 @@ def explicit(build, per_side, material, repeats, limit):
     times, references = [], []
     for _ in range(repeats):
         line = execute([build / "yardstick_hex8", "--elements", elements, "--steps", steps, "--material", material], limit)
-        references.append(json.loads(line)["us_per_element_step"])
+        references.append(json.loads(line)["cpu_us_per_element_step"])
         summary, peak, _ = run(build, box(per_side, material, steps), limit)
         made = summary["bodies"]["box"]["substeps"]
         times.append(1e6 * summary["timing"]["cpu"] / made / elements)

@@ -59,6 +59,18 @@ static void boxes_of_all_shapes(void **state)
     }
 }
 
+/* Twice or six times as many would be simplices */
+static void boxes_by_default(void **state)
+{
+  DM plane = create_mesh("-dm_plex_dim 2 -dm_plex_box_faces 3,3"), space = create_mesh("-dm_plex_dim 3 -dm_plex_box_faces 3,2,2");
+
+  (void)state;
+  assert_int_equal(count_cells(plane), 9);
+  assert_int_equal(count_cells(space), 12);
+  ok(DMDestroy(&plane));
+  ok(DMDestroy(&space));
+}
+
 /* DMPLEX's numbers: 4, 2, 1, 3 in two dimensions, 6, 5, 3, 4, 1, 2 in three for xmin, xmax, ymin ..., also for simplices */
 static void numbers_of_sides(void **state)
 {
@@ -244,6 +256,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(boxes_of_all_shapes),
+      cmocka_unit_test(boxes_by_default),
       cmocka_unit_test(numbers_of_sides),
       cmocka_unit_test(parts_of_ranks),
       cmocka_unit_test(place_in_space),

@@ -16,13 +16,13 @@
 
 /* Gradients of a batch at a point of integration */
 typedef struct {
-  SimdVector H[9];               /* du_i/dX_j; third row and column zero in two dimensions */
-  SimdVector cofactor[DIM][DIM]; /* of dX_i/dxi_j: its inverse is their transpose over the determinant */
-  SimdVector determinant;
+  SimdReal   H[9];                           /* du_i/dX_j; third row and column zero in two dimensions */
+  SimdVector cofactor[SIMD_PARTS][DIM][DIM]; /* of dX_i/dxi_j: its inverse is their transpose over the determinant */
+  SimdReal   determinant;
 } Gradients;
 
 /* Values at the nodes of a batch of elements, as coefficients of monomials; past the last element, it is taken again */
-SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[], SimdVector modes[DIM][MODES])
+SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[], SimdVector modes[SIMD_PARTS][DIM][MODES])
 {
   SimdReal nodal[DIM][NODES];
 
@@ -32,7 +32,14 @@ SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscIn
     for (PetscInt a = 0; a < NODES; a++)
       for (PetscInt i = 0; i < DIM; i++) nodal[i][a][p] = values[DIM * nodes[a] + i];
   }
-  for (PetscInt i = 0; i < DIM; i++) ModesOfNodes((const SimdVector *)nodal[i], modes[i]);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++)
+    for (PetscInt i = 0; i < DIM; i++) {
+      SimdVector n[NODES];
+
+#pragma GCC unroll 8
+      for (PetscInt a = 0; a < NODES; a++) n[a] = SimdGetParts(nodal[i][a])[part];
+      ModesOfNodes(n, modes[part][i]);
+    }
 }
 
 /* Cofactors of a matrix, and its determinant */
@@ -58,7 +65,7 @@ SIMD_INLINE void Cofactors(SimdVector a[DIM][DIM], SimdVector c[DIM][DIM], SimdV
 #endif
 }
 
-SIMD_INLINE void GetGradients(SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], const PetscReal xi[DIM], Gradients *at)
+SIMD_INLINE void GetGradientsOfPart(PetscInt part, SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], const PetscReal xi[DIM], Gradients *at)
 {
   SimdVector x[DIM][DIM], u[DIM][DIM], c[DIM][DIM], determinant, inverse;
 
@@ -68,8 +75,8 @@ SIMD_INLINE void GetGradients(SimdVector X[DIM][MODES], SimdVector U[DIM][MODES]
     GradientOfModes(U[i], xi, u[i]);
   }
   Cofactors(x, c, &determinant);
-  inverse         = 1 / determinant;
-  at->determinant = determinant;
+  inverse                             = 1 / determinant;
+  SimdGetParts(at->determinant)[part] = determinant;
 #pragma GCC unroll 3
   for (PetscInt i = 0; i < DIM; i++)
 #pragma GCC unroll 3
@@ -78,13 +85,18 @@ SIMD_INLINE void GetGradients(SimdVector X[DIM][MODES], SimdVector U[DIM][MODES]
 
 #pragma GCC unroll 3
       for (PetscInt k = 1; k < DIM; k++) h += u[i][k] * c[j][k];
-      at->H[3 * i + j]   = inverse * h;
-      at->cofactor[i][j] = c[i][j];
+      SimdGetParts(at->H[3 * i + j])[part] = inverse * h;
+      at->cofactor[part][i][j]             = c[i][j];
     }
 }
 
+SIMD_INLINE void GetGradients(SimdVector X[SIMD_PARTS][DIM][MODES], SimdVector U[SIMD_PARTS][DIM][MODES], const PetscReal xi[DIM], Gradients *at)
+{
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) GetGradientsOfPart(part, X[part], U[part], xi, at);
+}
+
 /* Adds the force of one point, by monomials: the stress against the axes of the reference element against their gradients */
-SIMD_INLINE void AddPoint(const SimdVector P[9], const Gradients *at, const PetscReal xi[DIM], SimdVector F[DIM][MODES])
+SIMD_INLINE void AddPointOfPart(PetscInt part, SimdReal P[9], SimdVector cofactor[DIM][DIM], const PetscReal xi[DIM], SimdVector F[DIM][MODES])
 {
 #pragma GCC unroll 3
   for (PetscInt i = 0; i < DIM; i++) {
@@ -92,23 +104,23 @@ SIMD_INLINE void AddPoint(const SimdVector P[9], const Gradients *at, const Pets
 
 #pragma GCC unroll 3
     for (PetscInt k = 0; k < DIM; k++) {
-      q[k] = P[3 * i] * at->cofactor[0][k];
+      q[k] = SimdGetParts(P[3 * i])[part] * cofactor[0][k];
 #pragma GCC unroll 3
-      for (PetscInt j = 1; j < DIM; j++) q[k] += P[3 * i + j] * at->cofactor[j][k];
+      for (PetscInt j = 1; j < DIM; j++) q[k] += SimdGetParts(P[3 * i + j])[part] * cofactor[j][k];
     }
     ModesOfGradient(q, xi, F[i]);
   }
 }
 
 /* The first member of a batch whose number is not one; -1: none */
-SIMD_INLINE PetscInt FindNaN(const SimdVector *values)
+SIMD_INLINE PetscInt FindNaN(const SimdReal values)
 {
   PetscInt any = 0;
 
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++) any |= (*values)[p] != (*values)[p];
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) any |= values[p] != values[p];
   if (any)
     for (PetscInt p = 0; p < SIMD_WIDTH; p++)
-      if ((*values)[p] != (*values)[p]) return p;
+      if (values[p] != values[p]) return p;
   return -1;
 }
 
@@ -116,31 +128,38 @@ SIMD_INLINE PetscInt FindNaN(const SimdVector *values)
 SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[], const PetscReal u[], PetscReal f[])
 {
   PetscInt  inverted = -1;
-  Gradients at       = {0};
+  Gradients at[2]    = {0};
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[DIM][MODES], U[DIM][MODES], F[DIM][MODES] = {{{0}}}, P[9], check = {0};
-    SimdReal       nodal[DIM][NODES];
+    const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
+    SimdReal       P[9], nodal[DIM][NODES], check                                                  = {0};
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
+    /* gradients one point ahead: read in whole right after it is written in parts, H would have to go through the cache */
+    GetGradients(X, U, points[0], &at[0]);
     for (PetscInt g = 0; g < POINTS; g++) {
-      GetGradients(X, U, points[g], &at);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, (PetscReal(*)[SIMD_WIDTH])P);
-      AddPoint(P, &at, points[g], F);
+      if (g + 1 < POINTS) GetGradients(X, U, points[g + 1], &at[(g + 1) % 2]);
+      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at[g % 2].H, P);
+      for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at[g % 2].cofactor[part], points[g], F[part]);
     }
-    for (PetscInt i = 0; i < DIM; i++) {
-      for (PetscInt k = 0; k < DIM; k++) check += F[i][k]; /* every stress goes into these */
-      for (PetscInt k = 0; k < MODES; k++) F[i][k] *= scale;
-      NodesOfModes(F[i], (SimdVector *)nodal[i]);
-    }
-    if (inverted < 0) {
-      const PetscInt bad = FindNaN(&check);
+    for (PetscInt part = 0; part < SIMD_PARTS; part++)
+      for (PetscInt i = 0; i < DIM; i++) {
+        SimdVector n[NODES];
 
-      if (bad >= 0) inverted = first + PetscMin(bad, n - 1);
+        for (PetscInt k = 0; k < DIM; k++) SimdGetParts(check)[part] += F[part][i][k]; /* every stress goes into these */
+        for (PetscInt k = 0; k < MODES; k++) F[part][i][k] *= scale;
+        NodesOfModes(F[part][i], n);
+#pragma GCC unroll 8
+        for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
+      }
+    if (inverted < 0) {
+      const PetscInt bad = FindNaN(check);
+
+      if (bad >= 0) inverted = first + PetscMin(bad, in_batch - 1);
     }
-    for (PetscInt p = 0; p < n; p++) {
+    for (PetscInt p = 0; p < in_batch; p++) {
       const PetscInt *nodes = connectivity + NODES * (first + p);
 
       for (PetscInt a = 0; a < NODES; a++)
@@ -157,17 +176,18 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[DIM][MODES], U[DIM][MODES], W, sum = {0};
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
+    SimdReal       W, sum = {0};
     PetscInt       bad;
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, (PetscReal *)&W);
-      sum += at.determinant * W;
+      (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, W);
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
     }
-    bad = FindNaN(&sum);
+    bad = FindNaN(sum);
     if (inverted < 0 && bad >= 0) inverted = first + PetscMin(bad, n - 1);
     for (PetscInt p = 0; p < n; p++) *energy += sum[p];
   }
@@ -175,25 +195,25 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
 }
 
 /* sigma = P F^T / det F; of linear materials P, for which they are the same */
-SIMD_INLINE void Cauchy(const SimdVector H[9], const SimdVector P[9], PetscBool linear, SimdVector sigma[6])
+SIMD_INLINE void Cauchy(SimdReal H[9], SimdReal P[9], PetscBool linear, PetscInt p, PetscReal sigma[6])
 {
-  const SimdVector xx = 1 + H[0], yy = 1 + H[4], zz = 1 + H[8], xy = H[1], xz = H[2], yx = H[3], yz = H[5], zx = H[6], zy = H[7];
-  const SimdVector s = 1 / (xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx));
+  const PetscReal xx = 1 + H[0][p], yy = 1 + H[4][p], zz = 1 + H[8][p], xy = H[1][p], xz = H[2][p], yx = H[3][p], yz = H[5][p], zx = H[6][p], zy = H[7][p];
+  const PetscReal s = 1 / (xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx));
 
   if (linear) {
-    sigma[0] = P[0];
-    sigma[1] = P[4];
-    sigma[2] = P[8];
-    sigma[3] = P[1];
-    sigma[4] = P[5];
-    sigma[5] = P[2];
+    sigma[0] = P[0][p];
+    sigma[1] = P[4][p];
+    sigma[2] = P[8][p];
+    sigma[3] = P[1][p];
+    sigma[4] = P[5][p];
+    sigma[5] = P[2][p];
   } else {
-    sigma[0] = s * (P[0] * xx + P[1] * xy + P[2] * xz);
-    sigma[1] = s * (P[3] * yx + P[4] * yy + P[5] * yz);
-    sigma[2] = s * (P[6] * zx + P[7] * zy + P[8] * zz);
-    sigma[3] = s * (P[0] * yx + P[1] * yy + P[2] * yz);
-    sigma[4] = s * (P[3] * zx + P[4] * zy + P[5] * zz);
-    sigma[5] = s * (P[0] * zx + P[1] * zy + P[2] * zz);
+    sigma[0] = s * (P[0][p] * xx + P[1][p] * xy + P[2][p] * xz);
+    sigma[1] = s * (P[3][p] * yx + P[4][p] * yy + P[5][p] * yz);
+    sigma[2] = s * (P[6][p] * zx + P[7][p] * zy + P[8][p] * zz);
+    sigma[3] = s * (P[0][p] * yx + P[1][p] * yy + P[2][p] * yz);
+    sigma[4] = s * (P[3][p] * zx + P[4][p] * zy + P[5][p] * zz);
+    sigma[5] = s * (P[0][p] * zx + P[1][p] * zy + P[2][p] * zz);
   }
 }
 
@@ -203,17 +223,22 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[DIM][MODES], U[DIM][MODES], P[9], sigma[6], sum[6] = {{0}}, volume = {0};
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
+    SimdReal       P[9], sum[6] = {{0}}, volume = {0};
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, (PetscReal(*)[SIMD_WIDTH])P);
-      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, (PetscReal(*)[SIMD_WIDTH])at.H);
-      Cauchy(at.H, P, solid->linear, sigma);
-      for (PetscInt k = 0; k < 6; k++) sum[k] += at.determinant * sigma[k];
-      volume += at.determinant;
+      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, P);
+      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, at.H);
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+        PetscReal sigma[6];
+
+        Cauchy(at.H, P, solid->linear, p, sigma);
+        for (PetscInt k = 0; k < 6; k++) sum[k][p] += at.determinant[p] * sigma[k];
+        volume[p] += at.determinant[p];
+      }
     }
     for (PetscInt p = 0; p < n; p++)
       for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];

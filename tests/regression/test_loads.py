@@ -1,0 +1,145 @@
+"""Runs under loads: prescribed displacements, tractions, forces in the volume, and the state at the start, against closed forms."""
+
+import pytest
+
+# E = 1 GPa, rho = 1000 kg/m^3: waves of 1000 m/s, an impedance rho c A of 1e4 N s/m; 1 ms is half the way through it
+BAR = (
+    "-bodies bar -bar_dm_plex_dim 1 -bar_dm_plex_box_faces 100 -bar_dm_plex_box_upper 2 -bar_density 1000 -bar_youngs_modulus 1e9 -bar_cross_section 1e-2 "
+    "-time_end 1e-3 -time_step 1e-5"
+)
+BLOCK = "-bodies block -block_dm_plex_dim 3 -block_dm_plex_box_faces 3,2,2 -block_dm_plex_box_upper 2,1,1 -block_density 1000 -block_youngs_modulus 1e9"
+SHAPES = {"hex8": "-block_dm_plex_simplex 0", "tet4": "-block_dm_plex_simplex 1"}
+
+
+def energies(run, name):
+    body = run.summary["bodies"][name]
+    return body["kinetic"], body["potential"], body["external_work"]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("integrator", ["alpha2", "centraldifference"])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_free_fall(shape, integrator, ranks, impakt):
+    """m g^2 t^2 / 2; central differences report the energy that they conserve, m g^2 (t^2 - dt^2 / 4) / 2. Exact for constant
+    acceleration: round-off of 100 steps."""
+    run = impakt(f"{BLOCK} {SHAPES[shape]} -block_ts_type {integrator} -block_gravity 3,4,-12 -time_end 0.1 -time_step 1e-4", ranks=ranks)
+    kinetic, potential, work = energies(run, "block")
+    time = 0.01 - (1e-8 / 4 if integrator == "centraldifference" else 0)
+    assert kinetic == pytest.approx(2000 * 13**2 * time / 2, rel=1e-9)
+    assert work == pytest.approx(2000 * 13**2 * 0.01 / 2, rel=1e-9)
+    assert potential == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("load", ["1e6", "1e6*nx^2", "table:step.txt"])
+def test_wave_from_a_traction(load, impakt, tmp_path):
+    """A pressure s on the end of a bar drives it at s A / (rho c A): half the work goes into motion, half into strain. The end of
+    a mesh of elements of 2 cm is ahead by a part of the first one: 0.05 % of the work."""
+    (tmp_path / "step.txt").write_text("# time pressure\n-1 1e6\n0.5e-3, 1e6\n1 1e6\n")
+    run = impakt(f"{BAR} -bar_boundary_traction xmin -bar_boundary_traction_xmin {load.replace('step.txt', str(tmp_path / 'step.txt'))}")
+    kinetic, potential, work = energies(run, "bar")
+    exact = (1e6 * 1e-2) ** 2 / 1e4 * 1e-3
+    assert work == pytest.approx(exact, rel=1e-3)
+    assert kinetic == pytest.approx(exact / 2, rel=2e-3)
+    assert potential == pytest.approx(exact / 2, rel=2e-3)
+    assert kinetic + potential == pytest.approx(work, rel=1e-9)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("load", ["1e9*t", "1e9*t+0*x", "table:ramp.txt"])
+def test_wave_from_a_growing_traction(load, ranks, impakt, tmp_path):
+    """s = 1e9 Pa/s t: the work is the integral of (s A)^2 / (rho c A), T^3 / 3 times that at 1 s. Smooth: 1e-4 at 100 steps."""
+    (tmp_path / "ramp.txt").write_text("0 0\n2e-4 2e5\n1 1e9\n")
+    run = impakt(f"{BAR} -bar_boundary_traction xmin -bar_boundary_traction_xmin {load.replace('ramp.txt', str(tmp_path / 'ramp.txt'))}", ranks=ranks)
+    kinetic, potential, work = energies(run, "bar")
+    assert work == pytest.approx((1e9 * 1e-2) ** 2 / 1e4 * 1e-9 / 3, rel=1e-3)
+    assert kinetic + potential == pytest.approx(work, rel=1e-6)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("integrator", ["alpha2 -bar_mass_type averaged", "alpha2 -bar_mass_type lumped", "centraldifference -bar_mass_type lumped", "centraldifference -bar_mass_type averaged"])
+def test_wave_from_a_prescribed_displacement(integrator, ranks, impakt):
+    """The end moves by 500 m/s^2 t^2: the work is rho c A times the integral of the squared velocity, (1000 m/s^2)^2 T^3 / 3. Measured:
+    3e-5 less."""
+    run = impakt(f"{BAR} -bar_ts_type {integrator} -bar_boundary_displacement xmin -bar_boundary_displacement_xmin 500*t^2", ranks=ranks)
+    kinetic, potential, work = energies(run, "bar")
+    assert work == pytest.approx(1e4 * 1e6 * 1e-9 / 3, rel=1e-4)
+    assert kinetic + potential == pytest.approx(work, rel=1e-4)
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_patch_under_pressure(shape, ranks, impakt):
+    """Uniaxial stress of 1 MPa whatever Poisson's ratio, as three sides are held along their normals alone: s^2 V / (2 E)."""
+    run = impakt(
+        f"{BLOCK} {SHAPES[shape]} -block_poissons_ratio 0.3 -block_ts_type static -time_end 1 -time_step 0.5 "
+        "-block_boundary_displacement xmin,ymin,zmin -block_boundary_displacement_xmin 0,free,free "
+        "-block_boundary_displacement_ymin free,0,free -block_boundary_displacement_zmin free,free,0 "
+        "-block_boundary_traction xmax -block_boundary_traction_xmax -1e6*t*nx,-1e6*t*ny,-1e6*t*nz",
+        ranks=ranks,
+    )
+    _, potential, work = energies(run, "block")
+    assert potential == pytest.approx(1e12 * 2 / 2e9, rel=1e-9)
+    assert work == pytest.approx(potential, rel=1e-9)  # trapezoidal over two steps: exact for a linear body
+
+
+@pytest.mark.parametrize("load", ["gravity 9.81", "body_force 9810", "body_force 9810*t", "body_force 9810*t+0*x"])
+def test_bar_that_hangs(load, impakt):
+    """(rho g)^2 A L^3 / (6 E); linear elements have the exact displacement of the nodes and the mean strain of each element, which
+    loses 1 / (4 n^2) of the energy."""
+    run = impakt(f"{BAR} -bar_ts_type static -bar_{load} -bar_boundary_displacement xmin -bar_boundary_displacement_xmin 0 -time_end 1 -time_step 1", ranks=2)
+    _, potential, _ = energies(run, "bar")
+    assert potential == pytest.approx(9810**2 * 1e-2 * 8 / 6e9 * (1 - 1 / (4 * 100**2)), rel=1e-9)
+
+
+def test_start_from_formulas(impakt):
+    """v = 3 x: rho A / 2 times the integral of v^2; u = 1e-3 x: E A L strain^2 / 2. Linear elements with a consistent mass have both
+    exactly."""
+    run = impakt(f"{BAR} -bar_mass_type consistent -bar_initial_velocity 3*x -bar_initial_displacement 1e-3*x", ranks=2)
+    assert run.history["body/bar/kinetic"][0] == pytest.approx(1000 * 1e-2 / 2 * 9 * 8 / 3, rel=1e-12)
+    assert run.history["body/bar/potential"][0] == pytest.approx(1e9 * 1e-2 * 2 * 1e-6 / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_same_on_all_ranks(shape, impakt):
+    """Loads that vary in time and place, on faces and nodes that ranks share."""
+    options = (
+        f"{BLOCK} {SHAPES[shape]} -block_dm_plex_box_faces 4,3,3 -block_poissons_ratio 0.3 -time_end 2e-3 -time_step 5e-5 "
+        "-block_boundary_displacement zmin,xmin -block_boundary_displacement_zmin 1e-3*sin(2e3*t)*x,free,0 -block_boundary_displacement_xmin 0,0,0 "
+        "-block_boundary_traction xmax,ymax -block_boundary_traction_xmax 1e6*y*t,0,1e5 -block_boundary_traction_ymax -1e9*t*x*nx,-1e9*t*x*ny,0 "
+        "-block_body_force 0,1e6*z*t,0 -block_gravity 0,0,-9.81"
+    )
+    alone = energies(impakt(options), "block")
+    assert min(alone) > 0.1
+    for ranks in (2, 3):
+        assert energies(impakt(options, ranks=ranks), "block") == pytest.approx(alone, rel=1e-9)
+
+
+BAD = {
+    "formula": ("-bar_boundary_traction xmin -bar_boundary_traction_xmin 1e6*sn(t)", ["-bar_boundary_traction_xmin", "1e6*sn(t)", "character 5", "x, y, z, t"]),
+    "table": ("-bar_boundary_displacement xmin -bar_boundary_displacement_xmin table:none.txt", ["-bar_boundary_displacement_xmin", "none.txt", "No such file"]),
+    "no-values": ("-bar_boundary_traction xmin", ["-bar_boundary_traction", "-bar_boundary_traction_xmin"]),
+    "not-in-list": ("-bar_boundary_traction xmin -bar_boundary_traction_xmin 1 -bar_boundary_traction_xmax 1", ["-bar_boundary_traction_xmax"]),
+    "surface": ("-bar_boundary_traction top -bar_boundary_traction_top 1", ["bar", "top", "xmin", "xmax"]),
+    "components": ("-bar_boundary_displacement xmin -bar_boundary_displacement_xmin 1,free", ["-bar_boundary_displacement_xmin", "2 components", "1-dimensional"]),
+    "gravity": ("-bar_gravity 0,9.81", ["-bar_gravity", "2 components", "1-dimensional"]),
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("case", BAD)
+def test_bad_loads(case, ranks, impakt):
+    options, words = BAD[case]
+    run = impakt(f"{BAR} {options}", ranks=ranks, expect_failure=True, timeout=60)
+    lines = [line for line in run.stderr.splitlines() if line.startswith("impakt: error")]
+    assert len(lines) == 1, run.stderr
+    missing = [word for word in words if word not in lines[0]]
+    assert not missing, lines[0]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("load", ["traction", "displacement"])
+def test_load_that_ends(load, ranks, impakt):
+    """A formula that is not defined from half of the run on: told with place and time, on whichever rank has it; no rank is left waiting."""
+    run = impakt(f"{BAR} -bar_boundary_{load} xmin -bar_boundary_{load}_xmin 1e-3*sqrt(5e-4-t+0*x)", ranks=ranks, expect_failure=True, timeout=60)
+    for word in (f"-bar_boundary_{load}_xmin", "1e-3*sqrt(5e-4-t+0*x)", "x = 0", "t = 0.0005", "finite"):
+        assert word in run.stderr
