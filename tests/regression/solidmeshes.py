@@ -1,0 +1,49 @@
+"""Distorted boxes of triangles, quadrilaterals, tetrahedra or hexahedra, as Gmsh files, for tests of solid bodies."""
+
+import itertools
+
+import meshio
+import numpy as np
+
+SHAPES = {"tri3": "triangle", "quad4": "quad", "tet4": "tetra", "hex8": "hexahedron"}
+# six tetrahedra about the diagonal from corner 0 to corner 6
+SIXTHS = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+HALVES = [(0, 1, 2), (0, 2, 3)]
+
+
+def dim_of(shape):
+    return 3 if shape in ("tet4", "hex8") else 2
+
+
+def box(shape, faces, size, distortion=0.0):
+    """Points and elements. Inner nodes are moved along each axis by up to `distortion` of an element's edge, those on the boundary stay."""
+    dim = dim_of(shape)
+    nodes = np.array(list(itertools.product(*(range(n + 1) for n in faces[::-1]))))[:, ::-1]  # x runs fastest
+    edges = np.array(size[:dim]) / np.array(faces[:dim])
+    inner = ((nodes > 0) & (nodes < np.array(faces))).all(axis=1)
+    points = np.zeros((len(nodes), 3))
+    random = np.random.default_rng(4).uniform(-1, 1, nodes.shape)  # a fixed seed: the same mesh each time
+    points[:, :dim] = (nodes + distortion * inner[:, None] * random) * edges
+
+    def node(*at):
+        return sum(i * stride for i, stride in zip(at, np.cumprod([1, *(n + 1 for n in faces[:-1])])))
+
+    ring = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    corners = [(*r, z) for z in (0, 1) for r in ring] if dim == 3 else ring
+    cells = [[node(*(i + k for i, k in zip(at, corner))) for corner in corners] for at in itertools.product(*(range(n) for n in faces))]
+    parts = {"tet4": SIXTHS, "tri3": HALVES}.get(shape)
+    if parts:
+        cells = [[cell[k] for k in part] for cell in cells for part in parts]
+    return points, np.array(cells)
+
+
+def write_box(path, shape, faces, size, distortion=0.0):
+    """Gmsh 2.2; the surfaces are the sides of the bounding box, xmin to zmax."""
+    points, cells = box(shape, faces, size, distortion)
+    ones = np.ones(len(cells), int)
+    mesh = meshio.Mesh(points, [(SHAPES[shape], cells)], cell_data={"gmsh:physical": [ones], "gmsh:geometrical": [ones]})
+    meshio.write(path, mesh, file_format="gmsh22", binary=False)
+
+
+def sides(shape):
+    return [f"{axis}{end}" for axis in "xyz"[: dim_of(shape)] for end in ("min", "max")]
