@@ -1,0 +1,97 @@
+"""Static bodies: load steps without inertia against closed forms; what nothing holds is refused."""
+
+import numpy as np
+import pytest
+from solidmeshes import dim_of, sides
+
+E, NU = 200.0, 0.3
+LAMBDA, MU = E * NU / (1 + NU) / (1 - 2 * NU), E / 2 / (1 + NU)
+SIZE = (1.0, 0.3, 0.2)
+KINDS = ["tri3 strain", "tri3 stress", "quad4 strain", "quad4 stress", "tet4", "hex8"]
+
+
+def bar(kind):
+    shape = kind.split()[0]
+    dim = dim_of(shape)
+    plane = " -b_plane_stress" if "stress" in kind else ""
+    simplex = str(shape in ("tri3", "tet4")).lower()
+    mesh = f"-b_dm_plex_dim {dim} -b_dm_plex_simplex {simplex} -b_dm_plex_box_faces {','.join('421'[:dim])} -b_dm_plex_box_upper {','.join(map(str, SIZE[:dim]))}"
+    return f"-bodies b {mesh} -b_density 1 -b_youngs_modulus {E} -b_poissons_ratio {NU} -b_ts_type static{plane}"
+
+
+def symmetric(kind):
+    """Planes of symmetry at xmin, ymin and zmin; the other sides are free."""
+    dim = dim_of(kind.split()[0])
+    mins = sides(kind.split()[0])[::2]
+    held = [",".join("0" if i == k else "free" for i in range(dim)) for k in range(dim)]
+    return f"-b_boundary_displacement {','.join(mins)} " + " ".join(f"-b_boundary_displacement_{name} {u}" for name, u in zip(mins, held))
+
+
+def pull(kind, traction):
+    zeros = ",0" * (dim_of(kind.split()[0]) - 1)
+    return f"-b_boundary_traction xmax -b_boundary_traction_xmax {traction}{zeros}"
+
+
+def volume(kind):
+    return np.prod(SIZE[: dim_of(kind.split()[0])])
+
+
+def measures(run):
+    body = run.history["body/b"]
+    return run.summary["bodies"]["b"]["displacement_error"], body["external_work"][:].ravel(), body["potential"][:].ravel()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_linear(impakt, kind):
+    """Uniaxial stress of 20 Pa t; in plane strain with E / (1 - nu^2) and nu / (1 - nu). Force and displacement grow together, so that
+    the trapezoidal rule has the work exactly in every step."""
+    along, across = (20 * (1 - NU**2) / E, -20 * NU * (1 + NU) / E) if kind.endswith("strain") else (20 / E, -20 * NU / E)
+    exact = ",".join(f"({c!r})*{x}*t" for c, x in zip((along, across, across), "xyz"[: dim_of(kind.split()[0])]))
+    run = impakt(f"{bar(kind)} {symmetric(kind)} {pull(kind, '20*t')} -b_exact_displacement {exact} -time_step 0.2 -time_end 1")
+    error, work, potential = measures(run)
+    assert error <= 1e-13
+    steps = np.arange(6) / 5
+    np.testing.assert_allclose(potential, 0.5 * 20 * along * volume(kind) * steps**2, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(work, potential, rtol=1e-12, atol=1e-15)
+    assert run.summary["bodies"]["b"]["kinetic"] == 0
+
+
+def stretched(kind, stretch):
+    """Lateral stretch, nominal stress and energy per volume of a neo-Hookean bar at a given stretch along x. With s the square of the
+    lateral stretch and J = stretch s (plane strain: stretch sqrt s), no lateral stress is mu (s - 1) + lambda/2 (J^2 - 1) = 0."""
+    if kind.endswith("strain"):
+        s = (MU + LAMBDA / 2) / (MU + LAMBDA / 2 * stretch**2)
+        J, trace = stretch * np.sqrt(s), stretch**2 + s + 1
+    else:
+        a, c = LAMBDA / 2 * stretch**2, MU + LAMBDA / 2
+        s = (np.sqrt(MU**2 + 4 * a * c) - MU) / (2 * a)
+        J, trace = stretch * s, stretch**2 + 2 * s
+    stress = MU * (stretch - 1 / stretch) + LAMBDA / 2 * (J**2 - 1) / stretch
+    energy = MU / 2 * (trace - 3) - MU * np.log(J) + LAMBDA / 4 * (J**2 - 1 - 2 * np.log(J))
+    return np.sqrt(s), stress, energy
+
+
+@pytest.mark.parametrize("stretch", [1.4, 0.75])
+@pytest.mark.parametrize("kind", KINDS)
+def test_neo_hookean(impakt, kind, stretch):
+    """To its closed form in 5 load steps, and in 10: the work comes to be the energy with the square of the load step."""
+    across, stress, energy = stretched(kind, stretch)
+    exact = ",".join(f"({c!r})*{x}" for c, x in zip((stretch - 1, float(across) - 1, float(across) - 1), "xyz"[: dim_of(kind.split()[0])]))
+    options = f"{bar(kind)} -b_material_type neo_hookean {symmetric(kind)} {pull(kind, f'{float(stress)!r}*t')} -b_exact_displacement {exact} -time_end 1"
+    gaps = []
+    for step in (0.2, 0.1):
+        error, work, potential = measures(impakt(f"{options} -time_step {step}"))
+        assert error <= 1e-11
+        assert potential[-1] == pytest.approx(energy * volume(kind), rel=1e-11)
+        gaps.append(abs(work[-1] / potential[-1] - 1))
+    assert gaps[0] < 0.01  # 0.003 measured, a quarter of it in half the step
+    assert np.log2(gaps[0] / gaps[1]) > 1.8
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_loose(impakt, ranks):
+    """A body without supports."""
+    run = impakt(f"{bar('hex8')} {pull('hex8', '20*t')} -time_step 0.5 -time_end 1", ranks, expect_failure=True, timeout=60)
+    assert 0 < run.returncode < 128
+    lines = [line for line in run.stderr.splitlines() if line.startswith("impakt: error")]
+    assert lines == ["impakt: error: Body 'b' is static, but nothing holds it; prescribe displacements with -b_boundary_displacement"]
