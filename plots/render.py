@@ -101,17 +101,14 @@ class Fields:
         low, high = np.min([end.min(axis=0) for end in ends], axis=0), np.max([end.max(axis=0) for end in ends], axis=0)
         return np.column_stack((low, high)).ravel()
 
-    def mesh(self, frame, factor, values):
+    def mesh(self, frame, factor, values, on_cells):
+        """A frame's cells, deformed, with one number each or one for each node."""
         self.reader.set_active_time_value(self.reader.time_values[frame])
         mesh = self.reader.read()
         mesh.points = self.points + factor * mesh.point_data["displacement"]
         mesh.clear_data()
-        (mesh.cell_data if len(values) == mesh.n_cells else mesh.point_data)["colour"] = values
+        (mesh.cell_data if on_cells else mesh.point_data)["colour"] = values
         return mesh
-
-
-def is_on_cells(fields, field):
-    return fields.data(field[0], 0).shape[0] != len(fields.points)
 
 
 def flatness(bounds):
@@ -125,6 +122,18 @@ def heading(words, time, span):
     return f"{words + '    ' if words else ''}t = {factor * time:.4g} {unit}"
 
 
+def ribbon(line, width):
+    """Bars along x as bands: wide lines leave gaps between them."""
+    ends = line.cells.reshape(-1, 3)[:, 1:]
+    n = line.n_points
+    points = np.concatenate([line.points + (0, side * width / 2, 0) for side in (-1, 1)])
+    band = pyvista.PolyData.from_regular_faces(points, np.column_stack((ends, ends[:, ::-1] + n)))
+    for old, new, copies in ((line.cell_data, band.cell_data, 1), (line.point_data, band.point_data, 2)):
+        for name in old:
+            new[name] = np.tile(old[name], copies)
+    return band
+
+
 class Camera:
     """Draws frames, all from the same place."""
 
@@ -135,12 +144,16 @@ class Camera:
         self.bounds = fields.bounds(options.scale, self.frames)
         low, high = fields.limits(self.field)
         self.unit_factor, unit = unit_scale(max(abs(low), abs(high)), fields.units(self.field)) if fields.units(self.field) != "1" else (1, "")
+        if abs(low + high) < 1e-3 * (high - low):
+            low = -high  # so that 0 is in the middle
         self.limits = np.array((low, high)) * self.unit_factor
         if low == high:
             self.limits = self.limits + np.array((-0.5, 0.5)) * max(1, abs(self.limits[0]))
         name, component = self.field
         self.label = NAMES.get(name, name) if component is None else options.field.replace("_", " ")
         self.label += f" [{unit}]" if unit else ""
+        if name == "body":
+            self.label += ": " + ", ".join(f"{i} {each}" for i, each in enumerate(fields.data(name, 0).attrs["names"].split(",")))
         self.title, self.size = options.title, options.size
         self.view = options.view or ("iso" if flatness(self.bounds) == 3 else "xy")
         self.plotter = pyvista.Plotter(off_screen=True, window_size=options.size)
@@ -153,19 +166,25 @@ class Camera:
         centre = (self.bounds[::2] + self.bounds[1::2]) / 2
         self.plotter.camera_position = [tuple(centre + np.array(direction)), tuple(centre), up]
         self.plotter.reset_camera(bounds=self.bounds)
-        self.plotter.camera.zoom(1.1 if self.view == "iso" else 0.95)
+        if self.view == "iso":
+            self.plotter.camera.zoom(1.1)
+        else:
+            across, up = (np.ptp(self.bounds[2 * AXES.index(axis) :][:2]) for axis in self.view)
+            self.plotter.camera.parallel_scale = 0.5 * max(up / 0.65, across / 0.9 * self.size[1] / self.size[0])
 
     def shoot(self, frame):
         """A picture of a frame: height, width, red-green-blue."""
         fields, plotter = self.fields, self.plotter
         values = fields.colours(self.field, frame) * self.unit_factor
-        mesh = fields.mesh(frame, self.factor, values)
+        mesh = fields.mesh(frame, self.factor, values, self.field[0] not in ("displacement", "velocity"))
         if not np.isfinite(mesh.points).all():
             raise CannotDraw(f"displacements of frame {frame} are not finite")
+        flat = flatness(self.bounds) < 3
         lines = flatness(self.bounds) == 1
+        if lines:
+            mesh = ribbon(mesh, np.ptp(self.bounds[:2]) / 40)
         whole = self.field[0] in ("rank", "body")
         plotter.clear()
-        plotter.enable_lightkit() if flatness(self.bounds) == 3 else None
         plotter.add_mesh(
             mesh,
             scalars="colour",
@@ -174,10 +193,9 @@ class Camera:
             n_colors=int(self.limits[1] - self.limits[0]) + 1 if whole else 256,
             show_edges=not lines and mesh.n_cells <= MOST_EDGES,
             edge_color="#333333",
-            line_width=self.size[1] / 60 if lines else 1,
-            lighting=flatness(self.bounds) == 3,
+            lighting=not flat,
             scalar_bar_args={
-                "title": self.label,
+                "title": self.label + "\n",  # the empty line keeps it off the numbers
                 "color": "black",
                 "title_font_size": self.text + 2,
                 "label_font_size": self.text,
@@ -186,11 +204,12 @@ class Camera:
                 "position_x": 0.2,
                 "position_y": 0.03,
                 "width": 0.6,
-                "height": 0.1,
+                "height": 0.12,
             },
         )
         plotter.add_text(heading(self.title, fields.times[frame], fields.times[-1] - fields.times[0]), position="upper_left", font_size=self.text * 0.75, color="black")
-        plotter.add_axes(color="black") if flatness(self.bounds) == 3 else None
+        if not flat:
+            plotter.add_axes(color="black")
         self.place()
         return plotter.screenshot(return_img=True)
 

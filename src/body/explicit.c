@@ -78,6 +78,7 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   PetscCall(VecScale(force, -1));
   PetscCall(BodyAddExternalForce(body, t, 1, force));
   PetscCall(BodyAddContactForce(body, position, 1, U, force));
+  PetscCall(BodyAddHeldInertia(body, t, force, A));
   PetscCall(BodySolveMass(body, force, position, prescribed, A));
   PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   PetscFunctionReturn(PETSC_SUCCESS);

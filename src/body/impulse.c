@@ -11,6 +11,7 @@ PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[])
   PetscCall(PetscArraycpy(row, force, body->rows.local));
   PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
   PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
+  PetscCall(BodyZeroHeld(body, body->work[0]));
   PetscCall(BodySolveMass(body, body->work[0], 0, PETSC_FALSE, body->work[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

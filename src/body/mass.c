@@ -173,6 +173,7 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   for (PetscInt i = 0; i < body->n_layer_dofs; i++) PetscCall(MatSetValue(solvable, rstart + body->layer_dofs[i], rstart + body->layer_dofs[i], 1, ADD_VALUES));
   PetscCall(MatAssemblyBegin(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
+  PetscCall(BodyEliminateHeld(body, solvable));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
   PetscCall(ConstrainedSolverCreate(solvable, body->interface, prefix, &body->mass_solver));
   PetscCall(BodySetConstraints(body)); /* rows may be prescribed already */
@@ -186,6 +187,27 @@ PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
   PetscFunctionBegin;
   if (body->mass_diagonal) PetscCall(VecPointwiseMult(y, body->mass_diagonal, x));
   else PetscCall(MatMult(body->mass_matrix, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes what held dofs with their acceleration at time t do to the others, through a mass matrix that is not diagonal, out of the force f;
+   on held dofs it becomes that acceleration, for the solver which has rows of the identity there. `work` is overwritten. */
+PetscErrorCode BodyAddHeldInertia(Body body, PetscReal t, Vec f, Vec work)
+{
+  const PetscScalar *held;
+  PetscScalar       *force;
+
+  PetscFunctionBegin;
+  if (!body->any_held || body->mass_diagonal || body->is_static) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecZeroEntries(body->work[2]));
+  PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, body->work[2]));
+  PetscCall(MatMult(body->mass_matrix, body->work[2], work));
+  PetscCall(VecAXPY(f, -1, work));
+  PetscCall(VecGetArrayRead(body->work[2], &held));
+  PetscCall(VecGetArray(f, &force));
+  for (PetscInt i = 0; i < body->n_held; i++) force[body->held_dofs[i]] = held[body->held_dofs[i]];
+  PetscCall(VecRestoreArray(f, &force));
+  PetscCall(VecRestoreArrayRead(body->work[2], &held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,13 +2,21 @@
    Mass of elements all of whose nodes lie on contact surfaces, as tetrahedra in corners do: there is no inner node in the element to
    take it, so it goes to the inner nodes of the elements around.
 
-   Each contact node holds its share of such elements at first. In a round, a node with inner neighbours hands its mass to them in
-   equal parts (a neighbour counts once for each element shared); one without hands it to the other nodes of its elements, for the next
-   round.
+   Each contact node holds its share of such elements at first, and is so many elements away from the nearest inner node. It hands its
+   mass to those of its neighbours that are one element nearer, in equal parts (a neighbour counts once for each element shared), the
+   furthest nodes first.
 */
 #include "bodyimpl.h"
 
-#define MAX_ROUNDS 8
+/* Mass that would have to go further than this many elements has no place nearby */
+#define MAX_DISTANCE 8
+
+/* All in the first component of a node's block */
+typedef struct {
+  Vec mass;
+  Vec distance; /* elements to the nearest inner node; -1: not known */
+  Vec nearer;   /* neighbours that are nearer by one */
+} Orphans;
 
 static PetscErrorCode AddGhosts(Body body, Vec vec)
 {
@@ -38,87 +46,125 @@ static PetscErrorCode CloseLocal(Body body, Vec vec, Vec *local, PetscScalar **a
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The mass of orphaned elements, in equal parts on their nodes; per node, the number of its neighbours that are inner ones, and of all.
-   All are kept in the first component of a node's block. */
-static PetscErrorCode CountAndCollect(Body body, Vec held, Vec inner, Vec all)
+/* The mass of orphaned elements, in equal parts on their nodes */
+static PetscErrorCode CollectMass(Body body, Vec vec)
 {
   const PetscInt n = body->element->nodes, dim = body->dim;
-  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *mass, *n_inner, *n_all;
-  Vec            local[3];
+  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *mass;
+  Vec            local;
 
   PetscFunctionBegin;
-  PetscCall(OpenLocal(body, held, &local[0], &mass));
-  PetscCall(OpenLocal(body, inner, &local[1], &n_inner));
-  PetscCall(OpenLocal(body, all, &local[2], &n_all));
+  PetscCall(OpenLocal(body, vec, &local, &mass));
   PetscCall(PetscArrayzero(mass, body->local_nodes * dim));
-  PetscCall(PetscArrayzero(n_inner, body->local_nodes * dim));
-  PetscCall(PetscArrayzero(n_all, body->local_nodes * dim));
   for (PetscInt e = 0; e < body->element->count; e++) {
     const PetscInt *nodes = body->connectivity + e * n;
-    PetscInt        count = 0;
+    PetscInt        inner = 0;
     PetscScalar     sum   = 0;
 
-    for (PetscInt a = 0; a < n; a++) count += !body->in_layer[nodes[a]];
-    for (PetscInt a = 0; a < n; a++) {
-      n_inner[nodes[a] * dim] += count;
-      n_all[nodes[a] * dim] += n - 1;
-    }
-    if (count) continue;
+    for (PetscInt a = 0; a < n; a++) inner += !body->in_layer[nodes[a]];
+    if (inner) continue;
     PetscCall((*body->element->ops.mass)(body->element, e, M));
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt b = 0; b < n; b++) sum += M[a * dim * n * dim + b * dim];
     for (PetscInt a = 0; a < n; a++) mass[nodes[a] * dim] += sum / n;
   }
-  PetscCall(CloseLocal(body, all, &local[2], &n_all));
-  PetscCall(CloseLocal(body, inner, &local[1], &n_inner));
-  PetscCall(CloseLocal(body, held, &local[0], &mass));
-  PetscCall(AddGhosts(body, held));
-  PetscCall(AddGhosts(body, inner));
-  PetscCall(AddGhosts(body, all));
+  PetscCall(CloseLocal(body, vec, &local, &mass));
+  PetscCall(AddGhosts(body, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One round: from `held` to `placed` (inner nodes), or to `next` (contact nodes) */
-static PetscErrorCode HandOn(Body body, Vec held, Vec inner, Vec all, Vec placed, Vec next)
+/* The nodes that are `at` elements away, once those that are nearer are known */
+static PetscErrorCode FindNodes(Body body, PetscInt at, Orphans *orphans, Vec counts)
 {
   const PetscInt n = body->element->nodes, dim = body->dim;
-  PetscScalar   *mass, *n_inner, *n_all, *to_inner, *to_next;
-  Vec            local[5];
+  PetscScalar   *distance, *nearer, *count;
+  Vec            local[3];
 
   PetscFunctionBegin;
-  PetscCall(OpenLocal(body, held, &local[0], &mass));
-  PetscCall(OpenLocal(body, inner, &local[1], &n_inner));
-  PetscCall(OpenLocal(body, all, &local[2], &n_all));
-  PetscCall(OpenLocal(body, placed, &local[3], &to_inner));
-  PetscCall(OpenLocal(body, next, &local[4], &to_next));
-  /* what has been placed is with the owners */
-  PetscCall(PetscArrayzero(to_inner + body->owned_nodes * dim, (body->local_nodes - body->owned_nodes) * dim));
-  PetscCall(PetscArrayzero(to_next, body->local_nodes * dim));
+  PetscCall(OpenLocal(body, orphans->distance, &local[0], &distance));
+  PetscCall(OpenLocal(body, counts, &local[1], &count));
+  PetscCall(PetscArrayzero(count, body->local_nodes * dim));
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    const PetscInt *nodes = body->connectivity + e * n;
+    PetscInt        near  = 0;
+
+    for (PetscInt a = 0; a < n; a++) near += distance[nodes[a] * dim] == at - 1;
+    for (PetscInt a = 0; a < n; a++)
+      if (distance[nodes[a] * dim] < 0) count[nodes[a] * dim] += near;
+  }
+  PetscCall(CloseLocal(body, counts, &local[1], &count));
+  PetscCall(AddGhosts(body, counts));
+  PetscCall(OpenLocal(body, counts, &local[1], &count));
+  PetscCall(OpenLocal(body, orphans->nearer, &local[2], &nearer));
+  for (PetscInt i = 0; i < body->local_nodes * dim; i += dim) {
+    if (count[i] == 0) continue;
+    distance[i] = at;
+    nearer[i]   = count[i];
+  }
+  PetscCall(CloseLocal(body, orphans->nearer, &local[2], &nearer));
+  PetscCall(CloseLocal(body, counts, &local[1], &count));
+  PetscCall(CloseLocal(body, orphans->distance, &local[0], &distance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Distances up to that of the furthest node with mass; `left` is the mass on nodes of which none was found [kg] */
+static PetscErrorCode FindDistances(Body body, Orphans *orphans, Vec counts, PetscInt *furthest, PetscReal *left)
+{
+  const PetscInt dim = body->dim;
+  PetscScalar   *distance, *mass;
+  Vec            local;
+
+  PetscFunctionBegin;
+  PetscCall(OpenLocal(body, orphans->distance, &local, &distance));
+  for (PetscInt i = 0; i < body->local_nodes * dim; i++) distance[i] = body->in_layer[i / dim] ? -1 : 0;
+  PetscCall(CloseLocal(body, orphans->distance, &local, &distance));
+  *left = 1;
+  for (*furthest = 0; *furthest < MAX_DISTANCE && *left > 0;) {
+    PetscCall(FindNodes(body, ++*furthest, orphans, counts));
+    *left = 0;
+    PetscCall(VecGetArray(orphans->distance, &distance));
+    PetscCall(VecGetArray(orphans->mass, &mass));
+    for (PetscInt i = 0; i < body->owned_nodes * dim; i += dim)
+      if (distance[i] < 0) *left += mass[i];
+    PetscCall(VecRestoreArray(orphans->mass, &mass));
+    PetscCall(VecRestoreArray(orphans->distance, &distance));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, left, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From nodes that are `from` elements away to their nearer neighbours */
+static PetscErrorCode HandOn(Body body, PetscInt from, Orphans *orphans, Vec handed)
+{
+  const PetscInt n = body->element->nodes, dim = body->dim;
+  PetscScalar   *mass, *distance, *nearer, *given;
+  Vec            local[4];
+
+  PetscFunctionBegin;
+  PetscCall(OpenLocal(body, orphans->mass, &local[0], &mass));
+  PetscCall(OpenLocal(body, orphans->distance, &local[1], &distance));
+  PetscCall(OpenLocal(body, orphans->nearer, &local[2], &nearer));
+  PetscCall(OpenLocal(body, handed, &local[3], &given));
+  PetscCall(PetscArrayzero(given, body->local_nodes * dim));
   for (PetscInt e = 0; e < body->element->count; e++) {
     const PetscInt *nodes = body->connectivity + e * n;
 
     for (PetscInt a = 0; a < n; a++) {
-      const PetscInt from = nodes[a] * dim;
+      const PetscInt node = nodes[a] * dim;
 
-      if (mass[from] == 0) continue;
-      for (PetscInt b = 0; b < n; b++) {
-        const PetscInt to = nodes[b] * dim;
-
-        if (n_inner[from] > 0 && !body->in_layer[nodes[b]]) to_inner[to] += mass[from] / n_inner[from];
-        if (n_inner[from] == 0 && a != b) to_next[to] += mass[from] / n_all[from];
-      }
+      if (distance[node] != from || mass[node] == 0) continue;
+      for (PetscInt b = 0; b < n; b++)
+        if (distance[nodes[b] * dim] == from - 1) given[nodes[b] * dim] += mass[node] / nearer[node];
     }
   }
-  PetscCall(CloseLocal(body, next, &local[4], &to_next));
-  PetscCall(CloseLocal(body, placed, &local[3], &to_inner));
-  PetscCall(CloseLocal(body, all, &local[2], &n_all));
-  PetscCall(CloseLocal(body, inner, &local[1], &n_inner));
-  PetscCall(CloseLocal(body, held, &local[0], &mass));
-  if (body->rows.size > 1) {
-    PetscCall(VecGhostUpdateBegin(placed, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateEnd(placed, ADD_VALUES, SCATTER_REVERSE));
-  }
-  PetscCall(AddGhosts(body, next));
+  PetscCall(CloseLocal(body, handed, &local[3], &given));
+  PetscCall(AddGhosts(body, handed));
+  PetscCall(OpenLocal(body, handed, &local[3], &given));
+  for (PetscInt i = 0; i < body->local_nodes * dim; i += dim) mass[i] = distance[i] == from ? 0 : mass[i] + given[i];
+  PetscCall(CloseLocal(body, handed, &local[3], &given));
+  PetscCall(CloseLocal(body, orphans->nearer, &local[2], &nearer));
+  PetscCall(CloseLocal(body, orphans->distance, &local[1], &distance));
+  PetscCall(CloseLocal(body, orphans->mass, &local[0], &mass));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,37 +183,31 @@ static PetscErrorCode CopyToComponents(Body body, Vec mass)
 /* Adds the mass of elements without inner nodes to the mass matrix */
 PetscErrorCode BodyRedistributeOrphans(Body body)
 {
-  Vec       held, inner, all, next, placed;
-  PetscReal total, left = 0;
+  Orphans   orphans;
+  Vec       work;
+  PetscReal total, left;
+  PetscInt  furthest;
 
   PetscFunctionBegin;
-  PetscCall(BodyCreateVec(body, &held));
-  PetscCall(BodyCreateVec(body, &inner));
-  PetscCall(BodyCreateVec(body, &all));
-  PetscCall(CountAndCollect(body, held, inner, all));
-  PetscCall(VecNorm(held, NORM_1, &total));
-  if (total > 0) {
-    PetscCall(BodyCreateVec(body, &placed));
-    PetscCall(BodyCreateVec(body, &next));
-    left = total;
-    for (PetscInt round = 0; round < MAX_ROUNDS && left > 0; round++) {
-      PetscCall(HandOn(body, held, inner, all, placed, next));
-      PetscCall(VecSwap(held, next));
-      if (body->rows.size > 1) {
-        PetscCall(VecGhostUpdateBegin(held, INSERT_VALUES, SCATTER_FORWARD));
-        PetscCall(VecGhostUpdateEnd(held, INSERT_VALUES, SCATTER_FORWARD));
-      }
-      PetscCall(VecNorm(held, NORM_1, &left));
-    }
-    PetscCall(CopyToComponents(body, placed));
-    if (body->mass_diagonal) PetscCall(VecAXPY(body->mass_diagonal, 1, placed));
-    else PetscCall(MatDiagonalSet(body->mass_matrix, placed, ADD_VALUES));
-    PetscCall(VecDestroy(&next));
-    body->orphan_mass = placed;
+  PetscCall(BodyCreateVec(body, &orphans.mass));
+  PetscCall(CollectMass(body, orphans.mass));
+  PetscCall(VecNorm(orphans.mass, NORM_1, &total));
+  if (total == 0) {
+    PetscCall(VecDestroy(&orphans.mass));
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(VecDestroy(&held));
-  PetscCall(VecDestroy(&inner));
-  PetscCall(VecDestroy(&all));
+  body->orphan_mass = orphans.mass;
+  PetscCall(BodyCreateVec(body, &orphans.distance));
+  PetscCall(BodyCreateVec(body, &orphans.nearer));
+  PetscCall(BodyCreateVec(body, &work));
+  PetscCall(FindDistances(body, &orphans, work, &furthest, &left));
+  for (PetscInt from = furthest; from > 0; from--) PetscCall(HandOn(body, from, &orphans, work));
+  PetscCall(VecDestroy(&orphans.distance));
+  PetscCall(VecDestroy(&orphans.nearer));
+  PetscCall(VecDestroy(&work));
   PetscCheck(left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s': %g kg of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false", body->hdr.name, (double)left, ((PetscObject)body)->prefix);
+  PetscCall(CopyToComponents(body, orphans.mass));
+  if (body->mass_diagonal) PetscCall(VecAXPY(body->mass_diagonal, 1, orphans.mass));
+  else PetscCall(MatDiagonalSet(body->mass_matrix, orphans.mass, ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

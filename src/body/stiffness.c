@@ -40,6 +40,7 @@ PetscErrorCode BodyCheckInverted(Body body)
   MPI_Comm       comm = PetscObjectComm((PetscObject)body);
   const PetscInt e = body->element->inverted, n = body->element->nodes;
   PetscReal      centre[3] = {0};
+  PetscInt       number, offset;
   PetscMPIInt    rank, first;
 
   PetscFunctionBegin;
@@ -47,11 +48,14 @@ PetscErrorCode BodyCheckInverted(Body body)
   first = e < 0 ? body->rows.size : rank;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm));
   if (first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Scan(&body->element->count, &offset, 1, MPIU_INT, MPI_SUM, comm));
+  number = offset - body->element->count + e;
+  PetscCallMPI(MPI_Bcast(&number, 1, MPIU_INT, first, comm));
   if (rank == first)
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt d = 0; d < body->dim; d++) centre[d] += body->coordinates[body->connectivity[e * n + a] * body->dim + d] / n;
   PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, comm));
-  SETERRQ(comm, PETSC_ERR_FP, "Body '%s': the element around (%g, %g, %g) m of the undeformed mesh is inverted, or not a number, at time %.9g s (step %" PetscInt_FMT " of the body); is a time step too large, a load too strong, or the mesh too coarse there?", body->hdr.name, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->time, body->step);
+  SETERRQ(comm, PETSC_ERR_FP, "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or not a number, at time %.9g s (step %" PetscInt_FMT " of the body); is a time step too large, a load too strong, or the mesh too coarse there?", body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->time, body->step);
 }
 
 /* The global numbers of an element's displacements, from the numbers of its nodes on this rank */

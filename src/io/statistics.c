@@ -13,7 +13,9 @@ struct _n_Statistics {
   ContactMemory     any, *pair;
   PetscReal         time; /* of the last frame [s] */
   PetscInt          total_sweeps, contact_sweeps;
-  PetscReal        *initial_energy;            /* of each body [J] */
+  PetscReal        *initial_energy; /* of each body [J] */
+  PetscReal        *body_change;    /* of its energy since: least, largest [J] */
+  PetscReal         system_change[2];
   PetscReal         system_energy;             /* at the start [J] */
   PetscReal         largest_energy;            /* energies and work of all bodies, so far [J] */
   PetscBool         loaded;                    /* forces from outside, or held displacements, act on some body */
@@ -56,7 +58,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
-  PetscCall(PetscCalloc2(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy));
+  PetscCall(PetscCalloc3(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change));
   for (PetscInt i = 0; i < s->results.n_bodies; i++) s->results.bodies[i].displacement_error = NAN;
   ContactStatisticsInitialize(&s->results.contact);
   for (PetscInt i = 0; i < s->results.n_pairs; i++) ContactStatisticsInitialize(&s->results.pairs[i]);
@@ -98,41 +100,53 @@ static PetscReal Relative(PetscReal value, PetscReal scale)
   return scale != 0 ? value / PetscAbsReal(scale) : value;
 }
 
+/* What an energy that was `start` at first is compared with: that, or, of what starts at rest, the larger `other` */
+static PetscReal Scale(PetscReal start, PetscReal other)
+{
+  return start > 1e-9 * other ? start : other;
+}
+
+static void NoteChange(PetscReal change[2], PetscReal energy)
+{
+  change[0] = PetscMin(change[0], energy);
+  change[1] = PetscMax(change[1], energy);
+}
+
 static void AddEnergies(Statistics s, const ControllerFrame *frame)
 {
   StatisticsResults *r             = &s->results;
-  PetscReal          change[3]     = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
-  PetscReal          turn[3]       = {-s->angular[0], -s->angular[1], -s->angular[2]};
+  PetscReal          momentum[3]   = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
+  PetscReal          angular[3]    = {-s->angular[0], -s->angular[1], -s->angular[2]};
   PetscReal          system_energy = 0, size = 0, scale;
 
-  /* bodies that start at rest have no initial energy: then, the largest energy or work so far */
   for (PetscInt i = 0; i < frame->n_bodies; i++) size += frame->bodies[i].kinetic + frame->bodies[i].potential + PetscAbsReal(frame->bodies[i].external_work);
   s->largest_energy = PetscMax(s->largest_energy, size);
-  scale             = s->system_energy != 0 ? s->system_energy : s->largest_energy;
+  scale             = Scale(s->system_energy, s->largest_energy);
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     const BodyMeasures *measures = &frame->bodies[i];
     BodyStatistics     *body     = &r->bodies[i];
     const PetscReal     energy = BodyEnergy(measures), start = s->initial_energy[i];
-    const PetscReal     error = Relative(energy - start, start != 0 ? start : scale);
 
-    body->kinetic          = measures->kinetic;
-    body->potential        = measures->potential;
-    body->external_work    = measures->external_work;
-    body->peak_potential   = PetscMax(body->peak_potential, measures->potential);
-    body->energy_error_min = PetscMin(body->energy_error_min, error);
-    body->energy_error_max = PetscMax(body->energy_error_max, error);
+    body->kinetic        = measures->kinetic;
+    body->potential      = measures->potential;
+    body->external_work  = measures->external_work;
+    body->peak_potential = PetscMax(body->peak_potential, measures->potential);
+    NoteChange(s->body_change + 2 * i, energy - start);
+    body->energy_error_min = Relative(s->body_change[2 * i], Scale(start, scale));
+    body->energy_error_max = Relative(s->body_change[2 * i + 1], Scale(start, scale));
     system_energy += energy;
     for (PetscInt d = 0; d < 3; d++) {
-      change[d] += measures->momentum[d];
-      turn[d] += measures->angular_momentum[d];
+      momentum[d] += measures->momentum[d];
+      angular[d] += measures->angular_momentum[d];
     }
   }
+  NoteChange(s->system_change, system_energy - s->system_energy);
   r->energy_error_final = Relative(system_energy - s->system_energy, scale);
-  r->energy_error_min   = PetscMin(r->energy_error_min, r->energy_error_final);
-  r->energy_error_max   = PetscMax(r->energy_error_max, r->energy_error_final);
-  /* loads change the momentum, and there is nothing to compare it with */
-  r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(change), s->momentum_scale));
-  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(turn), s->angular_scale));
+  r->energy_error_min   = Relative(s->system_change[0], scale);
+  r->energy_error_max   = Relative(s->system_change[1], scale);
+  /* loads change momenta, and there is nothing to compare them with */
+  r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(momentum), s->momentum_scale));
+  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(angular), s->angular_scale));
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
@@ -294,7 +308,7 @@ PetscErrorCode StatisticsDestroy(Statistics *statistics)
   PetscFunctionBegin;
   if (!*statistics) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree2((*statistics)->results.pairs, (*statistics)->results.bodies));
-  PetscCall(PetscFree2((*statistics)->pair, (*statistics)->initial_energy));
+  PetscCall(PetscFree3((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change));
   PetscCall(PetscFree((*statistics)->series));
   PetscCall(PetscFree(*statistics));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,7 +1,7 @@
 /* Exodus II files (.g, .e, .exo, .ex2) by the NetCDF library: blocks, side sets, node sets. Names of variables, element types
    and the numbers of sides are those of Schoof and Yarberry, "EXODUS II: A Finite Element Data Model", SAND92-2137. */
 #include "meshimpl.h"
-#include "netcdfheader.h"
+#include <netcdf.h>
 
 #define NetCDFCall(call, ...)                                                                \
   do {                                                                                       \

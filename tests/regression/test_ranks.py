@@ -46,6 +46,8 @@ def tolerance(name, value, force):
         return 1e-11  # m; what the outer iteration leaves, which stops at 1e-12 m
     if name.endswith(("force_std", "tension_max")):
         return 1e-10 * force  # N
+    if name.startswith("errors."):
+        return max(1e-10, 1e-8 * abs(value))  # relative differences from the exact solution; measured with OpenBLAS: 1.4e-11
     return 1e-8 * abs(value)
 
 

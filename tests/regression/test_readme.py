@@ -84,6 +84,10 @@ def test_command(command, shared_run, launch, tmp_path):
         (tmp_path / "out").mkdir()
         for word in re.findall(r"\bout/\S+\.h5\b", command):
             (tmp_path / word).symlink_to(shared_run(DEFAULTS).folder / "history.h5")
+        for name in re.findall(r"\bout/(\S+)-fields\.xdmf\b", command):
+            fields = shared_run(f"-options_file options/{name}.opts").folder / "out"  # beside the history, which the run puts elsewhere
+            for file in fields.glob(f"{name}-fields.*"):
+                (tmp_path / "out" / file.name).symlink_to(file)
     run = launch(["bash", "-euc", command], cwd=tmp_path, env={**os.environ, "PATH": path, "MPLBACKEND": "Agg"}, timeout=120)
     assert run.returncode == 0, run.stderr
     for word in re.findall(r"\bout/\S+\.png\b", command):

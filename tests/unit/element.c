@@ -31,7 +31,7 @@ static void destroy_bars(Element *element, Material *material, PetscOptions opti
 static void has_stiffness_and_mass_found_by_hand(void **state)
 {
   const PetscReal stiffness[] = {24, 48}, mass[] = {10, 5};
-  const PetscReal zero[2] = {0, 0};
+  const PetscReal zero[3] = {0, 0, 0}; /* of all nodes */
   PetscReal       K[4], M[4];
   PetscOptions    options;
   Material        material;

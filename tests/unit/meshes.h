@@ -2,7 +2,7 @@
 #pragma once
 #include "support.h"
 #include <mesh.h>
-#include <mesh/netcdfheader.h>
+#include <netcdf.h>
 
 static inline PetscMPIInt rank_of_world(void)
 {
