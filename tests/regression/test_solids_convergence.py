@@ -98,6 +98,7 @@ INTEGRATORS = [
     ("midpoint", "neo_hookean"),
     ("dissipative", "neo_hookean"),
     ("centraldifference", "linear_elastic"),
+    ("explicit-consistent", "linear_elastic"),
     ("centraldifference", "neo_hookean"),
 ]
 
@@ -115,7 +116,7 @@ def test_time(impakt, shape, ts, material):
         options += f" {box(shape, 4)} -b_ts_type {ts} -b_mass_type lumped -b_boundary_displacement {','.join(names)} "
         options += " ".join(f"-b_boundary_displacement_{name} {exact}" for name in names)
     else:
-        alpha = {"alpha2": "", "midpoint": "-b_ts_alpha_alpha_m 0.5 -b_ts_alpha_alpha_f 0.5", "dissipative": "-b_ts_alpha_radius 0.8"}[ts]
+        alpha = {"alpha2": "", "midpoint": "-b_ts_alpha_alpha_m 0.5 -b_ts_alpha_alpha_f 0.5", "dissipative": "-b_ts_alpha_radius 0.8", "explicit-consistent": "-b_ts_type centraldifference"}[ts]
         options += f" {box(shape, 2)} {alpha} -b_mass_type consistent -b_boundary_displacement xmin -b_boundary_displacement_xmin {','.join('0' * dim)} "
         options += f"-b_boundary_traction {','.join(names[1:])} " + " ".join(f"-b_boundary_traction_{name} {traction}" for name in names[1:])
     errors = [error(impakt, f"{options} -time_step {step}") for step in STEPS]
