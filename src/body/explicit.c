@@ -122,7 +122,6 @@ static PetscErrorCode AssembleLayer(Body body, Mat *K)
   PetscFunctionBegin;
   PetscCall(MatCreate(PetscObjectComm((PetscObject)body), K));
   PetscCall(MatSetSizes(*K, body->n_layer_dofs, body->n_layer_dofs, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetBlockSize(*K, body->dim));
   PetscCall(MatSetType(*K, MATAIJ));
   PetscCall(MatSetUp(*K));
   PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
@@ -166,7 +165,7 @@ static PetscErrorCode SetUpLayerBalance(Body body)
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
   PetscCall(MatCreateSubMatrix(body->interface, rows, body->layer_is, MAT_INITIAL_MATRIX, &B));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(K, B, prefix, &body->solver));
+  PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, &body->solver));
   PetscCall(MatCreateVecs(K, &body->layer_solution, &body->layer_rhs));
   PetscCall(VecScatterCreate(body->state.u, body->layer_is, body->layer_rhs, NULL, &body->layer_scatter));
   PetscCall(ISDestroy(&rows));
