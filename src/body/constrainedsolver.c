@@ -32,8 +32,7 @@ struct _n_ConstrainedSolver {
 
 /* Bodies up to this size are factored whole on every rank; larger ones by MUMPS */
 #define MAX_REDUNDANT_SIZE 5000
-/* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension
-   of the blocks. In more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
+/* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension. In more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
 static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
 /* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
 #define MAX_DIRECT_SIZE_3D 150000
@@ -41,17 +40,15 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
 #define ITERATIVE_TOLERANCE 1e-12
 
 /* How A is factored, unless options say otherwise */
-static PetscErrorCode ChooseSolver(KSP ksp, Mat A)
+static PetscErrorCode ChooseSolver(KSP ksp, Mat A, PetscInt dim)
 {
   PetscMPIInt size;
-  PetscInt    n, dim;
+  PetscInt    n;
   PC          pc;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
   PetscCall(MatGetSize(A, &n, NULL));
-  PetscCall(MatGetBlockSize(A, &dim));
-  dim = PetscMin(dim, 3);
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(KSPSetTolerances(ksp, ITERATIVE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
   if (dim == 3 && n > MAX_DIRECT_SIZE_3D) {
@@ -81,7 +78,8 @@ static PetscErrorCode ChooseSolver(KSP ksp, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], ConstrainedSolver *solver)
+/* A is the matrix of a body in `dim` dimensions */
+PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], ConstrainedSolver *solver)
 {
   ConstrainedSolver s;
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
@@ -96,7 +94,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, const char prefix[], Constr
   PetscCallMPI(MPI_Comm_size(comm, &size));
   s->size = size;
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
-  PetscCall(ChooseSolver(s->ksp, A));
+  PetscCall(ChooseSolver(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(KSPSetUp(s->ksp));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));

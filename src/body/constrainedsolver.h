@@ -4,7 +4,7 @@
 
 typedef struct _n_ConstrainedSolver *ConstrainedSolver;
 
-PETSC_INTERN PetscErrorCode ConstrainedSolverCreate(Mat, Mat, const char[], ConstrainedSolver *);
+PETSC_INTERN PetscErrorCode ConstrainedSolverCreate(Mat, Mat, PetscInt, const char[], ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);

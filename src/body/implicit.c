@@ -196,7 +196,7 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(BodyCreateMatrix(body, &body->shifted));
   PetscCall(AssembleShifted(body, NULL));
   PetscCall(SetNearNullSpace(body));
-  PetscCall(ConstrainedSolverCreate(body->shifted, body->interface, prefix, &body->solver));
+  PetscCall(ConstrainedSolverCreate(body->shifted, body->interface, body->dim, prefix, &body->solver));
 
   PetscCall(BodyCreateVec(body, &residual));
   PetscCall(TSSetI2Function(body->ts, residual, ComputeResidual, body));
