@@ -27,18 +27,6 @@ static PetscBool InLabel(const Selection *selection, PetscInt point)
   return (PetscBool)(value >= 0);
 }
 
-/* Labels that PETSc keeps for itself */
-static PetscErrorCode IsInternal(const char name[], PetscBool *internal)
-{
-  PetscBool same;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrcmp(name, "depth", internal));
-  PetscCall(PetscStrcmp(name, "celltype", &same));
-  *internal = (PetscBool)(*internal || same);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode FindSide(DM dm, PetscInt side, Selection *selection)
 {
   PetscReal lower[3], upper[3];
@@ -60,7 +48,7 @@ static PetscErrorCode FindLabel(DM dm, const char name[], const char sets[], Sel
   int       any;
 
   PetscFunctionBegin;
-  PetscCall(IsInternal(name, &internal));
+  PetscCall(MeshLabelIsInternal(name, &internal));
   *found = PETSC_FALSE;
   if (!internal) PetscCall(DMGetLabel(dm, name, &selection->label));
   if (selection->label) {
@@ -80,100 +68,6 @@ static PetscErrorCode FindLabel(DM dm, const char name[], const char sets[], Sel
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether any rank has points of a stratum (0: vertices ...) in a label */
-static PetscErrorCode HasPoints(DM dm, DMLabel label, PetscInt start, PetscInt end, PetscBool *has)
-{
-  IS              values;
-  const PetscInt *value;
-  PetscInt        n, any = 0;
-
-  PetscFunctionBegin;
-  PetscCall(DMLabelGetValueIS(label, &values));
-  PetscCall(ISGetLocalSize(values, &n));
-  PetscCall(ISGetIndices(values, &value));
-  for (PetscInt i = 0; i < n && !any; i++) {
-    IS              points;
-    const PetscInt *point;
-    PetscInt        n_points;
-
-    PetscCall(DMLabelGetStratumIS(label, value[i], &points));
-    if (!points) continue;
-    PetscCall(ISGetLocalSize(points, &n_points));
-    PetscCall(ISGetIndices(points, &point));
-    for (PetscInt p = 0; p < n_points && !any; p++) any = point[p] >= start && point[p] < end;
-    PetscCall(ISRestoreIndices(points, &point));
-    PetscCall(ISDestroy(&points));
-  }
-  PetscCall(ISRestoreIndices(values, &value));
-  PetscCall(ISDestroy(&values));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
-  *has = (PetscBool)any;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Numbers that a label has on any rank, up to 32 of them */
-static PetscErrorCode ListNumbers(DM dm, const char name[], char list[], size_t size)
-{
-  PetscInt last = -1;
-  DMLabel  label;
-  IS       values = NULL;
-  PetscInt n      = 0;
-
-  PetscFunctionBegin;
-  PetscCall(DMGetLabel(dm, name, &label));
-  if (label) {
-    PetscCall(DMLabelGetValueIS(label, &values));
-    PetscCall(ISGetLocalSize(values, &n));
-  }
-  for (PetscInt k = 0; k < 32; k++) {
-    PetscInt        next = PETSC_INT_MAX;
-    const PetscInt *value;
-    char            text[32];
-
-    if (values) {
-      PetscCall(ISGetIndices(values, &value));
-      for (PetscInt i = 0; i < n; i++)
-        if (value[i] > last) next = PetscMin(next, value[i]);
-      PetscCall(ISRestoreIndices(values, &value));
-    }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &next, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)dm)));
-    if (next == PETSC_INT_MAX) break;
-    last = next;
-    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%" PetscInt_FMT, list[0] ? ", " : "", next));
-    PetscCall(PetscStrlcat(list, text, size));
-  }
-  PetscCall(ISDestroy(&values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Names of labels with points of a stratum, then numbers in `sets` */
-static PetscErrorCode ListLabels(DM dm, PetscInt start, PetscInt end, const char sets[], char list[], size_t size)
-{
-  const char *const generic[] = {"Cell Sets", "Face Sets", "Vertex Sets", "marker"};
-  PetscInt          n;
-
-  PetscFunctionBegin;
-  list[0] = 0;
-  PetscCall(DMGetNumLabels(dm, &n));
-  for (PetscInt l = 0; l < n; l++) {
-    const char *name;
-    PetscBool   skip, has;
-    DMLabel     label;
-
-    PetscCall(DMGetLabelName(dm, l, &name));
-    PetscCall(IsInternal(name, &skip));
-    for (PetscInt i = 0; i < 4 && !skip; i++) PetscCall(PetscStrcmp(name, generic[i], &skip));
-    if (skip) continue;
-    PetscCall(DMGetLabel(dm, name, &label));
-    PetscCall(HasPoints(dm, label, start, end, &has));
-    if (!has) continue;
-    if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
-    PetscCall(PetscStrlcat(list, name, size));
-  }
-  PetscCall(ListNumbers(dm, sets, list, size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode RefuseSurface(DM dm, const char name[], const char what[])
 {
   PetscInt    dim, fstart, fend;
@@ -183,7 +77,7 @@ static PetscErrorCode RefuseSurface(DM dm, const char name[], const char what[])
   PetscFunctionBegin;
   PetscCall(DMGetCoordinateDim(dm, &dim));
   PetscCall(DMPlexGetHeightStratum(dm, 1, &fstart, &fend));
-  PetscCall(ListLabels(dm, fstart, fend, "Face Sets", list, sizeof(list)));
+  PetscCall(MeshListLabels(dm, fstart, fend, "Face Sets", list, sizeof(list)));
   for (PetscInt i = 0; i < 2 * dim; i++) {
     if (i) PetscCall(PetscStrlcat(box, ", ", sizeof(box)));
     PetscCall(PetscStrlcat(box, sides[i], sizeof(box)));
@@ -388,7 +282,7 @@ PetscErrorCode MeshGetNodeSet(DM dm, const char name[], PetscInt *n_vertices, Pe
   PetscFunctionBegin;
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
   if (name && name[0]) PetscCall(FindLabel(dm, name, "Vertex Sets", &selection, &found));
-  if (found && !selection.by_value) PetscCall(HasPoints(dm, selection.label, vstart, vend, &found));
+  if (found && !selection.by_value) PetscCall(MeshLabelHasPoints(dm, selection.label, vstart, vend, &found));
   PetscCall(DMPlexGetChart(dm, &start, &end));
   PetscCall(PetscCalloc1(end - start, &marks));
   if (found) {

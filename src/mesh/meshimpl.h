@@ -80,3 +80,6 @@ PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], 
 PETSC_INTERN PetscErrorCode MeshBuild(MPI_Comm, MeshFile *, const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshMarkSides(DM);
 PETSC_INTERN PetscErrorCode MeshPlace(DM, const char[], const char[]);
+PETSC_INTERN PetscErrorCode MeshLabelHasPoints(DM, DMLabel, PetscInt, PetscInt, PetscBool *);
+PETSC_INTERN PetscErrorCode MeshListLabels(DM, PetscInt, PetscInt, const char[], char[], size_t);
+PETSC_INTERN PetscErrorCode MeshLabelIsInternal(const char[], PetscBool *);

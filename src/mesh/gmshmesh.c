@@ -1,0 +1,195 @@
+/* Nodes and elements of Gmsh's files. */
+#include "gmshimpl.h"
+
+static PetscErrorCode AllocateNodes(Gmsh *gmsh, PetscInt n)
+{
+  PetscFunctionBegin;
+  GmshCheck(gmsh, !gmsh->file->coordinates, "the section is there twice");
+  PetscCall(PetscMalloc1(3 * n, &gmsh->file->coordinates));
+  PetscCall(PetscMalloc1(n, &gmsh->file->node_numbers));
+  gmsh->file->n_nodes = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GmshReadNodes22(Gmsh *gmsh)
+{
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(GmshReadCount(gmsh, "nodes", gmsh->binary ? 28 : 8, &n));
+  PetscCall(AllocateNodes(gmsh, n));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscInt64 number;
+
+    PetscCall(GmshReadInts(gmsh, 1, &number));
+    PetscCall(GmshCheckNumber(gmsh, number, &gmsh->file->node_numbers[i]));
+    PetscCall(GmshReadReals(gmsh, 3, gmsh->file->coordinates + 3 * i));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In blocks: first their numbers, then their coordinates, with those on the entity where there are such */
+PetscErrorCode GmshReadNodes41(Gmsh *gmsh)
+{
+  PetscInt64 header[4], entity[3], count;
+  PetscInt   n_blocks, n, done = 0;
+
+  PetscFunctionBegin;
+  PetscCall(GmshReadWords(gmsh, 4, header));
+  PetscCall(GmshCheckCount(gmsh, "blocks of nodes", header[0], 8, &n_blocks));
+  PetscCall(GmshCheckCount(gmsh, "nodes", header[1], gmsh->binary ? 28 : 8, &n));
+  PetscCall(AllocateNodes(gmsh, n));
+  for (PetscInt b = 0; b < n_blocks; b++) {
+    PetscInt in_block;
+
+    PetscCall(GmshReadInts(gmsh, 3, entity));
+    PetscCall(GmshReadWords(gmsh, 1, &count));
+    GmshCheck(gmsh, entity[0] >= 0 && entity[0] <= 3, "nodes of an entity of dimension %" PetscInt64_FMT, entity[0]);
+    GmshCheck(gmsh, count >= 0 && count <= n - done, "a block has %" PetscInt64_FMT " nodes, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced", count, n - done, n);
+    in_block = (PetscInt)count;
+    for (PetscInt i = 0; i < in_block; i++) {
+      PetscInt64 number;
+
+      PetscCall(GmshReadWords(gmsh, 1, &number));
+      PetscCall(GmshCheckNumber(gmsh, number, &gmsh->file->node_numbers[done + i]));
+    }
+    for (PetscInt i = 0; i < in_block; i++) {
+      double parameters[3];
+
+      PetscCall(GmshReadReals(gmsh, 3, gmsh->file->coordinates + 3 * (done + i)));
+      if (entity[2]) PetscCall(GmshReadReals(gmsh, (PetscInt)entity[0], parameters));
+    }
+    done += in_block;
+  }
+  GmshCheck(gmsh, done == n, "%" PetscInt_FMT " nodes were announced, %" PetscInt_FMT " are there", n, done);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FindShape(Gmsh *gmsh, PetscInt64 type, PetscInt64 element, DMPolytopeType *shape)
+{
+  PetscFunctionBegin;
+  switch (type) {
+  case 1:
+    *shape = DM_POLYTOPE_SEGMENT;
+    break;
+  case 2:
+    *shape = DM_POLYTOPE_TRIANGLE;
+    break;
+  case 3:
+    *shape = DM_POLYTOPE_QUADRILATERAL;
+    break;
+  case 4:
+    *shape = DM_POLYTOPE_TETRAHEDRON;
+    break;
+  case 5:
+    *shape = DM_POLYTOPE_HEXAHEDRON;
+    break;
+  case 15:
+    *shape = DM_POLYTOPE_POINT;
+    break;
+  case 6:
+  case 7:
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt64_FMT " is a %s (Gmsh's type %" PetscInt64_FMT "), which is not supported; supported: lines, triangles, quadrilaterals, tetrahedra, hexahedra, one shape in a body", element, type == 6 ? "prism" : "pyramid", type);
+  default:
+    GmshCheck(gmsh, type > 0 && type <= 140, "element %" PetscInt64_FMT " has type %" PetscInt64_FMT ", which Gmsh does not have", element, type);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt64_FMT " has Gmsh's type %" PetscInt64_FMT ", which is not supported; supported are first-order elements: lines, triangles, quadrilaterals, tetrahedra, hexahedra (gmsh -order 1)", element, type);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes an element with the numbers of its nodes in the file */
+static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt corners, const PetscInt64 numbers[])
+{
+  PetscInt element, *nodes;
+
+  PetscFunctionBegin;
+  PetscCall(GmshCheckNumber(gmsh, number, &element));
+  PetscCall(MeshFileAddElement(gmsh->file, element, &nodes));
+  for (PetscInt k = 0; k < corners; k++) {
+    nodes[k] = -1;
+    if (numbers[k] >= 0 && numbers[k] < PETSC_INT_MAX) PetscCall(MeshFileFindNode(gmsh->file, (PetscInt)numbers[k], &nodes[k]));
+    GmshCheck(gmsh, nodes[k] >= 0, "element %" PetscInt_FMT " names node %" PetscInt64_FMT ", which is not in the file", element, numbers[k]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One after the other in ASCII files, in blocks with a common type and number of tags in binary ones. The first tag is the
+   physical group; 0: none */
+PetscErrorCode GmshReadElements22(Gmsh *gmsh)
+{
+  PetscInt n, done = 0;
+
+  PetscFunctionBegin;
+  PetscCall(GmshReadCount(gmsh, "elements", gmsh->binary ? 8 : 6, &n));
+  while (done < n) {
+    PetscInt64     header[3], count = 1, number = 0, values[8], tag = 0;
+    DMPolytopeType shape;
+
+    if (gmsh->binary) {
+      PetscCall(GmshReadInts(gmsh, 3, header));
+      count = header[1];
+    } else {
+      PetscCall(GmshReadInts(gmsh, 1, &number));
+      PetscCall(GmshReadInts(gmsh, 1, header));
+      PetscCall(GmshReadInts(gmsh, 1, header + 2));
+    }
+    PetscCall(FindShape(gmsh, header[0], gmsh->binary ? done + 1 : number, &shape));
+    GmshCheck(gmsh, count > 0 && count <= n - done, "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced", count, n - done, n);
+    GmshCheck(gmsh, header[2] >= 0 && header[2] < 1000, "an element has %" PetscInt64_FMT " tags", header[2]);
+    for (PetscInt i = 0; i < count; i++) {
+      const PetscInt corners = DMPolytopeTypeGetNumVertices(shape);
+      PetscInt       group   = 0;
+
+      if (gmsh->binary) PetscCall(GmshReadInts(gmsh, 1, &number));
+      for (PetscInt t = 0; t < header[2]; t++) {
+        PetscInt64 value;
+
+        PetscCall(GmshReadInts(gmsh, 1, &value));
+        if (!t) tag = value < 0 ? -value : value;
+      }
+      PetscCall(GmshReadInts(gmsh, corners, values));
+      if (tag) {
+        PetscCall(GmshCheckNumber(gmsh, tag, &group));
+        PetscCall(MeshFileAddGroup(gmsh->file, MESH_UNDECIDED, DMPolytopeTypeGetDim(shape), group, &group));
+      }
+      PetscCall(MeshFileAddRun(gmsh->file, shape, tag ? 1 : 0, &group));
+      PetscCall(AddElement(gmsh, number, corners, values));
+    }
+    done += (PetscInt)count;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In blocks of the elements of one entity */
+PetscErrorCode GmshReadElements41(Gmsh *gmsh)
+{
+  PetscInt64 header[4], entity[3], count, values[9];
+  PetscInt   n_blocks, n, done = 0;
+
+  PetscFunctionBegin;
+  PetscCall(GmshReadWords(gmsh, 4, header));
+  PetscCall(GmshCheckCount(gmsh, "blocks of elements", header[0], 8, &n_blocks));
+  PetscCall(GmshCheckCount(gmsh, "elements", header[1], gmsh->binary ? 8 : 4, &n));
+  for (PetscInt b = 0; b < n_blocks; b++) {
+    DMPolytopeType shape;
+    PetscInt       corners, e = 0;
+
+    PetscCall(GmshReadInts(gmsh, 3, entity));
+    PetscCall(GmshReadWords(gmsh, 1, &count));
+    GmshCheck(gmsh, count >= 0 && count <= n - done, "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced", count, n - done, n);
+    PetscCall(FindShape(gmsh, entity[2], done + 1, &shape));
+    corners = DMPolytopeTypeGetNumVertices(shape);
+    GmshCheck(gmsh, entity[0] == DMPolytopeTypeGetDim(shape), "elements of type %" PetscInt64_FMT " on an entity of dimension %" PetscInt64_FMT, entity[2], entity[0]);
+    while (e < gmsh->n_entities && (gmsh->entities[e][0] != entity[0] || gmsh->entities[e][1] != entity[1])) e++;
+    GmshCheck(gmsh, e < gmsh->n_entities || !gmsh->entities, "elements of an entity %" PetscInt64_FMT " of dimension %" PetscInt64_FMT ", which is not in $Entities", entity[1], entity[0]);
+    if (gmsh->entities) PetscCall(MeshFileAddRun(gmsh->file, shape, gmsh->entities[e][3], gmsh->groups + gmsh->entities[e][2]));
+    else PetscCall(MeshFileAddRun(gmsh->file, shape, 0, NULL));
+    for (PetscInt i = 0; i < count; i++) {
+      PetscCall(GmshReadWords(gmsh, corners + 1, values));
+      PetscCall(AddElement(gmsh, values[0], corners, values + 1));
+    }
+    done += (PetscInt)count;
+  }
+  GmshCheck(gmsh, done == n, "%" PetscInt_FMT " elements were announced, %" PetscInt_FMT " are there", n, done);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

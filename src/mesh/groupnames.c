@@ -1,0 +1,108 @@
+/* What surfaces and node sets a mesh has, for messages. */
+#include "meshimpl.h"
+
+/* Labels that PETSc keeps for itself */
+PetscErrorCode MeshLabelIsInternal(const char name[], PetscBool *internal)
+{
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(name, "depth", internal));
+  PetscCall(PetscStrcmp(name, "celltype", &same));
+  *internal = (PetscBool)(*internal || same);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether any rank has points of a stratum (0: vertices ...) in a label */
+PetscErrorCode MeshLabelHasPoints(DM dm, DMLabel label, PetscInt start, PetscInt end, PetscBool *has)
+{
+  IS              values;
+  const PetscInt *value;
+  PetscInt        n, any = 0;
+
+  PetscFunctionBegin;
+  PetscCall(DMLabelGetValueIS(label, &values));
+  PetscCall(ISGetLocalSize(values, &n));
+  PetscCall(ISGetIndices(values, &value));
+  for (PetscInt i = 0; i < n && !any; i++) {
+    IS              points;
+    const PetscInt *point;
+    PetscInt        n_points;
+
+    PetscCall(DMLabelGetStratumIS(label, value[i], &points));
+    if (!points) continue;
+    PetscCall(ISGetLocalSize(points, &n_points));
+    PetscCall(ISGetIndices(points, &point));
+    for (PetscInt p = 0; p < n_points && !any; p++) any = point[p] >= start && point[p] < end;
+    PetscCall(ISRestoreIndices(points, &point));
+    PetscCall(ISDestroy(&points));
+  }
+  PetscCall(ISRestoreIndices(values, &value));
+  PetscCall(ISDestroy(&values));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
+  *has = (PetscBool)any;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers that a label has on any rank, up to 32 of them */
+static PetscErrorCode ListNumbers(DM dm, const char name[], char list[], size_t size)
+{
+  PetscInt last = -1;
+  DMLabel  label;
+  IS       values = NULL;
+  PetscInt n      = 0;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetLabel(dm, name, &label));
+  if (label) {
+    PetscCall(DMLabelGetValueIS(label, &values));
+    PetscCall(ISGetLocalSize(values, &n));
+  }
+  for (PetscInt k = 0; k < 32; k++) {
+    PetscInt        next = PETSC_INT_MAX;
+    const PetscInt *value;
+    char            text[32];
+
+    if (values) {
+      PetscCall(ISGetIndices(values, &value));
+      for (PetscInt i = 0; i < n; i++)
+        if (value[i] > last) next = PetscMin(next, value[i]);
+      PetscCall(ISRestoreIndices(values, &value));
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &next, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)dm)));
+    if (next == PETSC_INT_MAX) break;
+    last = next;
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%" PetscInt_FMT, list[0] ? ", " : "", next));
+    PetscCall(PetscStrlcat(list, text, size));
+  }
+  PetscCall(ISDestroy(&values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names of labels with points of a stratum, then numbers in `sets` */
+PetscErrorCode MeshListLabels(DM dm, PetscInt start, PetscInt end, const char sets[], char list[], size_t size)
+{
+  const char *const generic[] = {"Cell Sets", "Face Sets", "Vertex Sets", "marker"};
+  PetscInt          n;
+
+  PetscFunctionBegin;
+  list[0] = 0;
+  PetscCall(DMGetNumLabels(dm, &n));
+  for (PetscInt l = 0; l < n; l++) {
+    const char *name;
+    PetscBool   skip, has;
+    DMLabel     label;
+
+    PetscCall(DMGetLabelName(dm, l, &name));
+    PetscCall(MeshLabelIsInternal(name, &skip));
+    for (PetscInt i = 0; i < 4 && !skip; i++) PetscCall(PetscStrcmp(name, generic[i], &skip));
+    if (skip) continue;
+    PetscCall(DMGetLabel(dm, name, &label));
+    PetscCall(MeshLabelHasPoints(dm, label, start, end, &has));
+    if (!has) continue;
+    if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
+    PetscCall(PetscStrlcat(list, name, size));
+  }
+  PetscCall(ListNumbers(dm, sets, list, size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
