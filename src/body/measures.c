@@ -32,50 +32,61 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Momentum of each owned node, and the sums that make kinetic energy, momentum and angular momentum of it */
-static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal momentum[3], PetscReal angular[3])
+/* Kinetic energy [J], staggered for central differences */
+static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic)
 {
   const PetscReal    quarter = body->is_explicit ? 0.25 * PetscSqr(body->time_step) : 0;
-  const PetscInt     dim = body->dim, n = body->owned_nodes * dim;
-  const PetscScalar *x, *u, *v, *a, *p, *mass;
-  PetscReal          twice = 0;
-  Vec                nodal = body->work[0];
+  const PetscInt     n       = body->owned_nodes * body->dim;
+  const PetscScalar *v, *a, *p, *inertia;
+  PetscReal          sum = 0;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(body->state.v, &v));
-  PetscCall(VecGetArrayRead(body->state.a, &a));
-  PetscCall(BodyMultiplyMass(body, body->state.v, nodal));
-  PetscCall(VecGetArrayRead(nodal, &p));
-  for (PetscInt i = 0; i < n; i++) twice += v[i] * p[i];
-  PetscCall(VecRestoreArrayRead(nodal, &p));
-  if (quarter > 0 && body->mass_diagonal) {
-    PetscCall(VecGetArrayRead(body->mass_diagonal, &mass));
-    for (PetscInt i = 0; i < n; i++) twice -= quarter * mass[i] * a[i] * a[i];
-    PetscCall(VecRestoreArrayRead(body->mass_diagonal, &mass));
-  } else if (quarter > 0) {
-    PetscCall(BodyMultiplyMass(body, body->state.a, body->work[1]));
-    PetscCall(VecGetArrayRead(body->work[1], &mass));
-    for (PetscInt i = 0; i < n; i++) twice -= quarter * a[i] * mass[i];
-    PetscCall(VecRestoreArrayRead(body->work[1], &mass));
-  }
-  *kinetic = 0.5 * twice;
-  PetscCall(VecRestoreArrayRead(body->state.a, &a));
+  PetscCall(VecGetArrayRead(momentum, &p));
+  for (PetscInt i = 0; i < n; i++) sum += v[i] * p[i];
+  PetscCall(VecRestoreArrayRead(momentum, &p));
   PetscCall(VecRestoreArrayRead(body->state.v, &v));
-  PetscCall(VecGetArrayRead(nodal, &p));
-  PetscCall(VecGetArrayRead(body->positions, &x));
-  PetscCall(VecGetArrayRead(body->state.u, &u));
-  for (PetscInt i = 0; i < n; i += dim) {
-    PetscReal r[3] = {0}, q[3] = {0};
-
-    for (PetscInt d = 0; d < dim; d++) {
-      r[d] = x[i + d] + u[i + d];
-      q[d] = p[i + d];
-      momentum[d] += q[d];
-    }
-    for (PetscInt d = 0; d < 3; d++) angular[d] += r[(d + 1) % 3] * q[(d + 2) % 3] - r[(d + 2) % 3] * q[(d + 1) % 3];
+  if (quarter > 0) {
+    PetscCall(BodyMultiplyMass(body, body->state.a, body->work[1]));
+    PetscCall(VecGetArrayRead(body->state.a, &a));
+    PetscCall(VecGetArrayRead(body->work[1], &inertia));
+    for (PetscInt i = 0; i < n; i++) sum -= quarter * a[i] * inertia[i];
+    PetscCall(VecRestoreArrayRead(body->work[1], &inertia));
+    PetscCall(VecRestoreArrayRead(body->state.a, &a));
   }
-  PetscCall(VecRestoreArrayRead(body->state.u, &u));
-  PetscCall(VecRestoreArrayRead(body->positions, &x));
+  *kinetic = 0.5 * sum;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The sums over this rank's nodes that make kinetic energy, momentum and angular momentum */
+static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal momentum[3], PetscReal angular[3])
+{
+  const PetscInt     dim = body->dim, n = body->owned_nodes * dim;
+  const PetscScalar *x, *u, *p;
+  Vec                nodal = body->work[0];
+
+  PetscFunctionBegin;
+  PetscCall(BodyMultiplyMass(body, body->state.v, nodal));
+  PetscCall(ComputeKinetic(body, nodal, kinetic));
+  PetscCall(VecGetArrayRead(nodal, &p));
+  if (dim == 1) {
+    for (PetscInt i = 0; i < n; i++) momentum[0] += p[i];
+  } else {
+    PetscCall(VecGetArrayRead(body->positions, &x));
+    PetscCall(VecGetArrayRead(body->state.u, &u));
+    for (PetscInt i = 0; i < n; i += dim) {
+      PetscReal r[3] = {0}, q[3] = {0};
+
+      for (PetscInt d = 0; d < dim; d++) {
+        r[d] = x[i + d] + u[i + d];
+        q[d] = p[i + d];
+        momentum[d] += q[d];
+      }
+      for (PetscInt d = 0; d < 3; d++) angular[d] += r[(d + 1) % 3] * q[(d + 2) % 3] - r[(d + 2) % 3] * q[(d + 1) % 3];
+    }
+    PetscCall(VecRestoreArrayRead(body->state.u, &u));
+    PetscCall(VecRestoreArrayRead(body->positions, &x));
+  }
   PetscCall(VecRestoreArrayRead(nodal, &p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
