@@ -211,7 +211,7 @@ PetscErrorCode BodySetUp(Body body)
   if (body->rows.global) {
     for (size_t i = 0; i < sizeof(sweeps) / sizeof(sweeps[0]); i++) PetscCall(BodyCreateVec(body, sweeps[i]));
   }
-  PetscCheck(!body->is_static || body->any_held || body->rows.global, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s' is static, but nothing holds it; prescribe displacements with -%sboundary_displacement", body->hdr.name, ((PetscObject)body)->prefix);
+  PetscCall(BodyCheckHeld(body));
   PetscCall(BodySetUpMass(body));
   PetscCall(BodySetUpSubsteps(body));
   body->keeps_start = (PetscBool)(!body->is_explicit || body->n_layer_dofs > 0 || body->loads);
