@@ -137,6 +137,56 @@ static void NaiveStabilizationDoesNotAllocate(void **state)
   RunCase("-contact_stabilization naive -left_mass_redistribute 0 -right_mass_redistribute 0");
 }
 
+/* A body on its own: the first steps make PETSc's work vectors, the others nothing */
+static void RunSolid(const char options[])
+{
+  static const char common[] = "-b_dm_plex_dim 3 -b_dm_plex_box_faces 3,3,3 -b_density 3 -b_youngs_modulus 5 -b_poissons_ratio 0.2 -b_initial_velocity 0.1*z,0,0.1*x ";
+  Body              body;
+  long              before = 0;
+
+  assert_int_equal(PetscOptionsClear(NULL), PETSC_SUCCESS);
+  assert_int_equal(PetscOptionsInsertString(NULL, common), PETSC_SUCCESS);
+  assert_int_equal(PetscOptionsInsertString(NULL, options), PETSC_SUCCESS);
+  assert_int_equal(BodyCreate(PETSC_COMM_WORLD, "b", &body), PETSC_SUCCESS);
+  assert_int_equal(BodySetFromOptions(body), PETSC_SUCCESS);
+  assert_int_equal(BodySetControllerStep(body, 0, 0.02), PETSC_SUCCESS);
+  assert_int_equal(BodySetUp(body), PETSC_SUCCESS);
+  for (int step = 0; step < 20; step++) {
+    BodyMeasures measures;
+
+    if (step == 3) before = allocations;
+    assert_int_equal(BodyIntegrate(body), PETSC_SUCCESS);
+    assert_int_equal(BodySave(body), PETSC_SUCCESS);
+    assert_int_equal(BodyGetMeasures(body, &measures), PETSC_SUCCESS);
+    assert_true(measures.kinetic > 0);
+  }
+  before = allocations - before;
+  assert_int_equal(BodyDestroy(&body), PETSC_SUCCESS);
+#if defined(__SANITIZE_ADDRESS__)
+  skip();
+#endif
+  assert_true(allocations > 0);
+  assert_int_equal(before, 0);
+}
+
+#define SOLID_LOADS "-b_gravity 0,0,-1 -b_boundary_traction xmax -b_boundary_traction_xmax 0.1*t,0,0.02*y -b_boundary_displacement zmin -b_boundary_displacement_zmin 0.01*sin(t),0,free "
+
+static void ExplicitSolidsDoNotAllocate(void **state)
+{
+  (void)state;
+  RunSolid("-b_ts_type centraldifference");
+  RunSolid("-b_ts_type centraldifference " SOLID_LOADS);
+  RunSolid("-b_ts_type centraldifference -b_material_type neo_hookean");
+  RunSolid("-b_ts_type centraldifference -b_material_type neo_hookean " SOLID_LOADS);
+}
+
+static void ImplicitSolidsDoNotAllocate(void **state)
+{
+  (void)state;
+  RunSolid("");
+  RunSolid(SOLID_LOADS);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -149,6 +199,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(LagrangeDoesNotAllocate),
       cmocka_unit_test(RatesDoNotAllocate),
       cmocka_unit_test(NaiveStabilizationDoesNotAllocate),
+      cmocka_unit_test(ExplicitSolidsDoNotAllocate),
+      cmocka_unit_test(ImplicitSolidsDoNotAllocate),
   };
   int failed;
 
