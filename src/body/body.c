@@ -215,7 +215,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpMass(body));
   PetscCall(BodySetUpSubsteps(body));
   body->keeps_start = (PetscBool)(!body->is_explicit || body->n_layer_dofs > 0 || body->loads);
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &body->keeps_start, 1, MPI_C_BOOL, MPI_LOR, PetscObjectComm((PetscObject)body)));
+  PetscCall(BodyAnyRank(body, &body->keeps_start));
   if (body->keeps_start) {
     PetscCall(BodyCreateVec(body, &body->substep_start.u));
     PetscCall(BodyCreateVec(body, &body->substep_start.v));

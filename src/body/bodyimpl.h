@@ -105,6 +105,7 @@ struct _p_Body {
 PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_Tangent;
 
 PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
+PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyCreateVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);

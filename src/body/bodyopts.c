@@ -106,7 +106,7 @@ static PetscErrorCode ReadLoads(Body body)
   PetscCall(BodyLoadsSetFromOptions(body));
   PetscCall(BodyLoadsGetHeld(body, &body->n_held, &body->held_dofs));
   body->any_held = (PetscBool)(body->n_held > 0);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &body->any_held, 1, MPI_C_BOOL, MPI_LOR, PetscObjectComm((PetscObject)body)));
+  PetscCall(BodyAnyRank(body, &body->any_held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -10,6 +10,7 @@
 */
 #include "constrainedsolver.h"
 #include <petscblaslapack.h>
+#include <sys/petsccompat.h>
 
 struct _n_ConstrainedSolver {
   KSP           ksp;

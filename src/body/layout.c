@@ -134,6 +134,17 @@ PetscErrorCode BodySetUpLayout(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether it is so on any rank */
+PetscErrorCode BodyAnyRank(Body body, PetscBool *any)
+{
+  int value = *any ? 1 : 0; /* a PetscBool is of different size in different versions of PETSc */
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
+  *any = value ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A vector with the layout of the DM's global vector and, on several ranks, room for the ghosts behind the owned values, so
    that element loops read and write it in place */
 PetscErrorCode BodyCreateVec(Body body, Vec *vec)

@@ -6,6 +6,11 @@
 #  error "Impakt needs PETSc 3.21 or newer (TSAlpha2SetPredictor)"
 #endif
 
+/* in setters: leave it as it is */
+#if !defined(PETSC_CURRENT)
+#  define PETSC_CURRENT PETSC_DEFAULT
+#endif
+
 /* the full step, without a search */
 #if PETSC_VERSION_LT(3, 26, 0)
 #  define LINESEARCH_FULL_STEP SNESLINESEARCHBASIC
