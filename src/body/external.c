@@ -27,7 +27,7 @@ PetscErrorCode BodyZeroHeld(Body body, Vec vec)
   PetscScalar *array;
 
   PetscFunctionBegin;
-  if (!body->n_held) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS); /* on all ranks alike, see BodyLoadsPrescribe() */
   PetscCall(VecGetArray(vec, &array));
   for (PetscInt i = 0; i < body->n_held; i++) array[body->held_dofs[i]] = 0;
   PetscCall(VecRestoreArray(vec, &array));

@@ -141,7 +141,8 @@ PetscErrorCode BodyLoadsPrescribe(Body body, PetscReal t, Vec u, Vec v, Vec a)
   PetscScalar       *arrays[3] = {NULL};
 
   PetscFunctionBegin;
-  if (!loads || !loads->n_held) PetscFunctionReturn(PETSC_SUCCESS);
+  /* ranks without held dofs must open the vectors too: PETSc keeps norms with them, and would take the reduction for done on some ranks alone */
+  if (!loads || !body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < 3; k++)
     if (vecs[k]) PetscCall(VecGetArray(vecs[k], &arrays[k]));
   for (PetscInt g = 0; g < loads->n_groups; g++) {
