@@ -211,8 +211,8 @@ PetscErrorCode BodySetUp(Body body)
   if (body->rows.global) {
     for (size_t i = 0; i < sizeof(sweeps) / sizeof(sweeps[0]); i++) PetscCall(BodyCreateVec(body, sweeps[i]));
   }
-  PetscCall(BodyCheckHeld(body));
   PetscCall(BodySetUpMass(body));
+  PetscCall(BodyCheckHeld(body));
   PetscCall(BodySetUpSubsteps(body));
   body->keeps_start = (PetscBool)(!body->is_explicit || body->n_layer_dofs > 0 || body->loads);
   PetscCall(BodyAnyRank(body, &body->keeps_start));

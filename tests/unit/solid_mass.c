@@ -308,6 +308,24 @@ static void is_refused_without_an_inner_node(void **state)
   }
 }
 
+/* A single node with mass cannot hold the massless rest of the body: the rest can turn about it */
+static void is_refused_where_it_cannot_hold_the_layer(void **state)
+{
+  PetscOptions options;
+  Body         body;
+
+  (void)state;
+  options = solid_body_create(&body, "%s %s -dm_plex_box_faces 2,2", kind_options(0), MATERIAL);
+  touch_side(body, "xmin");
+  touch_side(body, "xmax");
+  touch_side(body, "ymin");
+  touch_side(body, "ymax");
+  ok(BodySetControllerStep(body, 0, 1e-4));
+  refused(PETSC_ERR_USER_INPUT, "'b'|too few nodes with mass|refine|-b_mass_redistribute", BodySetUp(body));
+  ok(BodyDestroy(&body));
+  options_drop(options);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -316,6 +334,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(of_elements_without_inner_nodes_goes_to_their_neighbours),
       cmocka_unit_test(of_all_elements_is_at_a_few_inner_nodes),
       cmocka_unit_test(is_refused_without_an_inner_node),
+      cmocka_unit_test(is_refused_where_it_cannot_hold_the_layer),
   };
 
   return impakt_main(argc, argv, tests);
