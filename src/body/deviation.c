@@ -28,20 +28,14 @@ PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscRe
 {
   const Element      element = body->element;
   const PetscInt     n = element->nodes, dim = body->dim;
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
   const PetscScalar *u;
   PetscReal          x[ELEMENT_MAX_DOFS], weight[ELEMENT_MAX_DOFS], sums[2] = {0, 0};
-  Vec                local = body->state.u;
+  Vec                local;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
-  if (ghosted) {
-    PetscCall(VecGhostUpdateBegin(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostGetLocalForm(body->state.u, &local));
-  }
-  PetscCall(VecGetArrayRead(local, &u));
+  PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   for (PetscInt e = 0; e < element->count; e++) {
     const PetscInt *nodes = body->connectivity + e * n;
 
@@ -60,8 +54,7 @@ PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscRe
       }
     }
   }
-  PetscCall(VecRestoreArrayRead(local, &u));
-  if (ghosted) PetscCall(VecGhostRestoreLocalForm(body->state.u, &local));
+  PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   *difference = PetscSqrtReal(sums[0]);
   *norm       = PetscSqrtReal(sums[1]);

@@ -160,6 +160,28 @@ PetscErrorCode BodyCreateVec(Body body, Vec *vec)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The values of a vector on all nodes of this rank, ghosts up to date, for loops over elements. Collective. */
+PetscErrorCode BodyGetLocalRead(Body body, Vec vec, Vec *local, const PetscScalar *array[])
+{
+  PetscFunctionBegin;
+  *local = vec;
+  if (body->rows.size > 1) {
+    PetscCall(VecGhostUpdateBegin(vec, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostUpdateEnd(vec, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostGetLocalForm(vec, local));
+  }
+  PetscCall(VecGetArrayRead(*local, array));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyRestoreLocalRead(Body body, Vec vec, Vec *local, const PetscScalar *array[])
+{
+  PetscFunctionBegin;
+  PetscCall(VecRestoreArrayRead(*local, array));
+  if (body->rows.size > 1) PetscCall(VecGhostRestoreLocalForm(vec, local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyGetCells - the elements of the mesh, for output
 

@@ -5,10 +5,9 @@
 static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
 {
   const PetscScalar *u, *force;
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
-  const PetscInt     n       = body->owned_nodes * body->dim;
-  Vec                local   = body->state.u;
-  PetscReal          sum     = 0;
+  const PetscInt     n = body->owned_nodes * body->dim;
+  Vec                local;
+  PetscReal          sum = 0;
 
   PetscFunctionBegin;
   if (body->linear) {
@@ -20,15 +19,9 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
     *potential = 0.5 * sum;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (ghosted) {
-    PetscCall(VecGhostUpdateBegin(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostGetLocalForm(body->state.u, &local));
-  }
-  PetscCall(VecGetArrayRead(local, &u));
+  PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   PetscCall((*body->element->ops.energy)(body->element, u, potential));
-  PetscCall(VecRestoreArrayRead(local, &u));
-  if (ghosted) PetscCall(VecGhostRestoreLocalForm(body->state.u, &local));
+  PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

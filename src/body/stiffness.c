@@ -6,26 +6,20 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
 {
   const PetscScalar *u_array;
   PetscScalar       *f_array;
-  Vec                u_local = u, f_local = f;
+  Vec                u_local, f_local = f;
   const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(BODY_InternalForce, body, 0, 0, 0));
-  if (ghosted) {
-    PetscCall(VecGhostUpdateBegin(u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostGetLocalForm(u, &u_local));
-    PetscCall(VecGhostGetLocalForm(f, &f_local));
-  }
-  PetscCall(VecGetArrayRead(u_local, &u_array));
+  PetscCall(BodyGetLocalRead(body, u, &u_local, &u_array));
+  if (ghosted) PetscCall(VecGhostGetLocalForm(f, &f_local));
   PetscCall(VecGetArrayWrite(f_local, &f_array));
   PetscCall(PetscArrayzero(f_array, body->local_nodes * body->dim));
   PetscCall((*body->element->ops.internalforce)(body->element, u_array, f_array));
   PetscCall(VecRestoreArrayWrite(f_local, &f_array));
-  PetscCall(VecRestoreArrayRead(u_local, &u_array));
+  PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
   if (ghosted) {
     PetscCall(VecGhostRestoreLocalForm(f, &f_local));
-    PetscCall(VecGhostRestoreLocalForm(u, &u_local));
     PetscCall(VecGhostUpdateBegin(f, ADD_VALUES, SCATTER_REVERSE));
     PetscCall(VecGhostUpdateEnd(f, ADD_VALUES, SCATTER_REVERSE));
   }
@@ -135,22 +129,16 @@ PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
 /* K = tangent stiffness at displacement u; NULL: undeformed [N/m] */
 PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
 {
-  const PetscInt     n       = body->element->nodes * body->dim;
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  const PetscInt     n = body->element->nodes * body->dim;
   PetscInt           dofs[ELEMENT_MAX_DOFS];
   PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero = NULL;
   const PetscScalar *array;
-  Vec                local = u;
+  Vec                local;
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(BODY_Tangent, body, 0, 0, 0));
   PetscCall(MatZeroEntries(K));
-  if (u && ghosted) {
-    PetscCall(VecGhostUpdateBegin(u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostGetLocalForm(u, &local));
-  }
-  if (u) PetscCall(VecGetArrayRead(local, &array));
+  if (u) PetscCall(BodyGetLocalRead(body, u, &local, &array));
   else {
     PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
     array = zero;
@@ -160,8 +148,7 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
     PetscCall(BodyGetElementDofs(body, e, dofs));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES));
   }
-  if (u) PetscCall(VecRestoreArrayRead(local, &array));
-  if (u && ghosted) PetscCall(VecGhostRestoreLocalForm(u, &local));
+  if (u) PetscCall(BodyRestoreLocalRead(body, u, &local, &array));
   PetscCall(PetscFree(zero));
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
@@ -199,20 +186,13 @@ PetscErrorCode BodyGetStiffness(Body body, Mat *K)
 PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
 {
   const PetscScalar *u;
-  Vec                local   = body->state.u;
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  Vec                local;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
-  if (ghosted) {
-    PetscCall(VecGhostUpdateBegin(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(body->state.u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostGetLocalForm(body->state.u, &local));
-  }
-  PetscCall(VecGetArrayRead(local, &u));
+  PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   PetscCall((*body->element->ops.stress)(body->element, u, stress));
-  PetscCall(VecRestoreArrayRead(local, &u));
-  if (ghosted) PetscCall(VecGhostRestoreLocalForm(body->state.u, &local));
+  PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,40 +1,7 @@
 /* ranks: 1 */
 /* Loads allocate nothing once they are set up: the C library's allocator is replaced by one that counts. */
 #include "loads.h"
-
-extern void *__libc_malloc(size_t);
-extern void *__libc_calloc(size_t, size_t);
-extern void *__libc_realloc(void *, size_t);
-extern void *__libc_memalign(size_t, size_t);
-
-static volatile long allocations;
-
-#if !defined(__SANITIZE_ADDRESS__)
-void *malloc(size_t size)
-{
-  allocations++;
-  return __libc_malloc(size);
-}
-
-void *calloc(size_t n, size_t size)
-{
-  allocations++;
-  return __libc_calloc(n, size);
-}
-
-void *realloc(void *old, size_t size)
-{
-  allocations++;
-  return __libc_realloc(old, size);
-}
-
-int posix_memalign(void **memory, size_t alignment, size_t size)
-{
-  allocations++;
-  *memory = __libc_memalign(alignment, size);
-  return *memory ? 0 : 12;
-}
-#endif
+#include "count_allocations.h"
 
 /* Steady, uniform and varying loads of each sort, and tables */
 static void loads_do_not_allocate(void **state)

@@ -6,40 +6,7 @@
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
-
-extern void *__libc_malloc(size_t);
-extern void *__libc_calloc(size_t, size_t);
-extern void *__libc_realloc(void *, size_t);
-extern void *__libc_memalign(size_t, size_t);
-
-static volatile long allocations;
-
-#if !defined(__SANITIZE_ADDRESS__)
-void *malloc(size_t size)
-{
-  allocations++;
-  return __libc_malloc(size);
-}
-
-void *calloc(size_t n, size_t size)
-{
-  allocations++;
-  return __libc_calloc(n, size);
-}
-
-void *realloc(void *old, size_t size)
-{
-  allocations++;
-  return __libc_realloc(old, size);
-}
-
-int posix_memalign(void **memory, size_t alignment, size_t size)
-{
-  allocations++;
-  *memory = __libc_memalign(alignment, size);
-  return *memory ? 0 : 12;
-}
-#endif
+#include "count_allocations.h"
 
 /* Steps at which the count is taken. The bars touch in step 4 and part in step 505: first free flight, then contact with the
    set-up of PETSc's solvers behind it (each makes its work vectors in its first solve), then all the rest with the release. */
