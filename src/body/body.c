@@ -256,6 +256,8 @@ PetscErrorCode BodyDestroy(Body *body)
     Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in, &b->traces.displacement, &b->traces.velocity, &b->traces.acceleration, &b->traces.reaction};
 
     PetscCall(BodyDestroyResponse(b));
+    PetscCall(BodyDestroyCompliance(b));
+    PetscCall(BodyDestroyProbe(b));
     PetscCall(BodyLoadsDestroy(b));
     for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
     for (size_t i = 0; i < sizeof(traces) / sizeof(traces[0]); i++) PetscCall(TraceDestroy(traces[i]));

@@ -68,27 +68,29 @@ struct _p_Body {
   PetscScalar *kept_traces;
   Vec          work[3];
   /* interface rows */
-  Mat                   interface;
-  BodyRows              rows;
-  BodyCondition        *conditions;             /* local rows */
-  PetscBool            *held;                   /* those that are prescribed, or Robin rows */
-  PetscReal            *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
-  PetscReal            *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
-  PetscInt              n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
-  PetscInt              n_robin;
-  PetscBool             prescribed_mass; /* prescribed nodes carry mass */
-  BodyTractionType      traction;
-  BodyTraces            traces;
-  PetscInt              substep; /* 0 to substeps - 1 */
-  Vec                   row_vec[2];
-  Mat                   shifted; /* implicit: stiffness + shift mass */
-  PetscReal             shift;
-  PetscReal             force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
-  ConstrainedSolver     solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
-  IS                    layer_is;
-  Vec                   layer_rhs, layer_solution;
-  VecScatter            layer_scatter;
-  struct _BodyResponse *response;
+  Mat                     interface;
+  BodyRows                rows;
+  BodyCondition          *conditions;             /* local rows */
+  PetscBool              *held;                   /* those that are prescribed, or Robin rows */
+  PetscReal              *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
+  PetscReal              *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
+  PetscInt                n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
+  PetscInt                n_robin;
+  PetscBool               prescribed_mass; /* prescribed nodes carry mass */
+  BodyTractionType        traction;
+  BodyTraces              traces;
+  PetscInt                substep; /* 0 to substeps - 1 */
+  Vec                     row_vec[2];
+  Mat                     shifted; /* implicit: stiffness + shift mass */
+  PetscReal               shift;
+  PetscReal               force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
+  ConstrainedSolver       solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
+  IS                      layer_is;
+  Vec                     layer_rhs, layer_solution;
+  VecScatter              layer_scatter;
+  struct _BodyResponse   *response;
+  struct _BodyCompliance *compliance;
+  struct _BodyProbe      *probe; /* room for the state while unit inputs are tried; NULL until then */
   /* loads */
   struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
   PetscInt           n_held;
@@ -148,6 +150,10 @@ PETSC_INTERN PetscErrorCode BodyInvalidateWindow(Body);
 PETSC_INTERN PetscBool      BodyMatchResponse(Body);
 PETSC_INTERN PetscErrorCode BodyValidateResponse(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyDestroyResponse(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
+PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyCreateFreeRows(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[]);

@@ -153,12 +153,28 @@ static PetscErrorCode AssembleLayer(Body body, Mat *K)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The rows of the interface as the layer sees them */
+PetscErrorCode BodySetUpLayerRows(Body body, Mat *B)
+{
+  IS       rows;
+  PetscInt row_begin;
+  Mat      free_rows;
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateFreeRows(body, &free_rows));
+  PetscCall(MatGetOwnershipRange(free_rows, &row_begin, NULL));
+  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
+  PetscCall(MatCreateSubMatrix(free_rows, rows, body->layer_is, MAT_INITIAL_MATRIX, B));
+  PetscCall(ISDestroy(&rows));
+  PetscCall(MatDestroy(&free_rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The layer's balance, its matrix factored once */
 static PetscErrorCode SetUpLayerBalance(Body body)
 {
   Mat      K, B;
-  IS       rows;
-  PetscInt rstart, *global, row_begin;
+  PetscInt rstart, *global;
   char     prefix[128];
 
   PetscFunctionBegin;
@@ -167,14 +183,11 @@ static PetscErrorCode SetUpLayerBalance(Body body)
   for (PetscInt i = 0; i < body->n_layer_dofs; i++) global[i] = rstart + body->layer_dofs[i];
   PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), body->n_layer_dofs, global, PETSC_OWN_POINTER, &body->layer_is));
   PetscCall(AssembleLayer(body, &K));
-  PetscCall(MatGetOwnershipRange(body->interface, &row_begin, NULL));
-  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
-  PetscCall(MatCreateSubMatrix(body->interface, rows, body->layer_is, MAT_INITIAL_MATRIX, &B));
+  PetscCall(BodySetUpLayerRows(body, &B));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
   PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, &body->solver));
   PetscCall(MatCreateVecs(K, &body->layer_solution, &body->layer_rhs));
   PetscCall(VecScatterCreate(body->state.u, body->layer_is, body->layer_rhs, NULL, &body->layer_scatter));
-  PetscCall(ISDestroy(&rows));
   PetscCall(MatDestroy(&K));
   PetscCall(MatDestroy(&B));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -189,6 +189,7 @@ PetscErrorCode BodySetUpImplicit(Body body)
   KSP         ksp;
   PC          pc;
   Vec         residual;
+  Mat         rows;
   char        outer[128];
 
   PetscFunctionBegin;
@@ -196,7 +197,9 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(BodyCreateMatrix(body, &body->shifted));
   PetscCall(AssembleShifted(body, NULL));
   PetscCall(SetNearNullSpace(body));
-  PetscCall(ConstrainedSolverCreate(body->shifted, body->interface, body->dim, prefix, &body->solver));
+  PetscCall(BodyCreateFreeRows(body, &rows));
+  PetscCall(ConstrainedSolverCreate(body->shifted, rows, body->dim, prefix, &body->solver));
+  PetscCall(MatDestroy(&rows));
 
   PetscCall(BodyCreateVec(body, &residual));
   PetscCall(TSSetI2Function(body->ts, residual, ComputeResidual, body));

@@ -23,25 +23,10 @@ PetscErrorCode BodyDestroyResponse(Body body)
     for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&response->columns[c].change[k]));
     PetscCall(PetscFree(response->columns[c].rows));
   }
-  for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDestroy(&response->backup[k]));
-  PetscCall(PetscFree2(response->backup_traces, response->kinds));
+  PetscCall(PetscFree(response->kinds));
   PetscCall(PetscFree4(response->waveform, response->matrix, response->rate_matrix[0], response->rate_matrix[1]));
   PetscCall(PetscFree5(response->columns, response->inputs, response->new_inputs, response->mine, response->conditions));
   PetscCall(PetscFree(body->response));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode SetUnitInput(Body body, PetscInt row, InputKind kind)
-{
-  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
-  const PetscInt local    = row - body->rows.begin;
-  PetscScalar   *values;
-
-  PetscFunctionBegin;
-  for (PetscInt t = 0; t < 4; t++) PetscCall(TraceZero(traces[t]));
-  if (local < 0 || local >= body->rows.local) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TraceGetLevel(traces[kind], 1, &values));
-  values[local] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -69,7 +54,7 @@ static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
   Column               *column;
 
   PetscFunctionBegin;
-  PetscCall(SetUnitInput(body, row, kind));
+  PetscCall(BodySetUnitInput(body, row, kind));
   PetscCall(BodyRestore(body));
   PetscCall(BodyIntegrateWindow(body));
   body->total_substeps -= body->substeps;
@@ -109,72 +94,12 @@ static PetscErrorCode CreateResponse(Body body)
   response->condensed = (PetscBool)(linear && body->substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
   PetscCall(PetscCalloc4(body->substeps * rows->global * rows->global, &response->waveform, rows->global * rows->global, &response->matrix, rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
   PetscCall(PetscCalloc5(3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs, 4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
-  PetscCall(PetscMalloc2(8 * (body->substeps + 1) * rows->local, &response->backup_traces, rows->global, &response->kinds));
-  for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDuplicate(body->state.u, &response->backup[k]));
+  PetscCall(PetscMalloc1(rows->global, &response->kinds));
   if (!response->condensed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt c = 0; c < 3 * rows->global; c++) {
     for (PetscInt k = 0; k < 4; k++) PetscCall(VecDuplicate(body->state.u, &response->columns[c].change[k]));
     PetscCall(PetscMalloc1(4 * rows->local, &response->columns[c].rows));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where a body is in time, beside what its response keeps of its state */
-typedef struct {
-  PetscReal time, saved_time, work;
-  PetscInt  step, saved_step;
-} Clock;
-
-static PetscErrorCode CopyTraces(Body body, PetscScalar buffer[], PetscBool store)
-{
-  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in, body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
-  const PetscInt n        = (body->substeps + 1) * body->rows.local;
-  PetscScalar   *values;
-
-  PetscFunctionBegin;
-  for (PetscInt t = 0; t < 8; t++) {
-    PetscCall(TraceGetLevel(traces[t], 0, &values));
-    if (store) PetscCall(PetscArraycpy(buffer + t * n, values, n));
-    else PetscCall(PetscArraycpy(values, buffer + t * n, n));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode BeginProbing(Body body, Clock *clock)
-{
-  struct _BodyResponse *response       = body->response;
-  const Vec             vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < N_BACKUP; k++) {
-    PetscCall(VecCopy(vecs[k], response->backup[k]));
-    PetscCall(VecZeroEntries(vecs[k]));
-  }
-  PetscCall(CopyTraces(body, response->backup_traces, PETSC_TRUE));
-  clock->time       = body->time;
-  clock->saved_time = body->saved_time;
-  clock->step       = body->step;
-  clock->saved_step = body->saved_step;
-  clock->work       = body->external_work;
-  body->unloaded    = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode EndProbing(Body body, const Clock *clock)
-{
-  struct _BodyResponse *response       = body->response;
-  const Vec             vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecCopy(response->backup[k], vecs[k]));
-  PetscCall(CopyTraces(body, response->backup_traces, PETSC_FALSE));
-  body->time          = clock->time;
-  body->saved_time    = clock->saved_time;
-  body->step          = clock->step;
-  body->saved_step    = clock->saved_step;
-  body->external_work = clock->work;
-  body->unloaded      = PETSC_FALSE;
-  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -203,7 +128,6 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   struct _BodyResponse *response;
   BodyRows             *rows = &body->rows;
   PetscMPIInt          *kinds;
-  Clock                 clock = {0};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -218,7 +142,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   PetscCall(PetscArrayzero(response->waveform, body->substeps * rows->global * rows->global));
   PetscCall(PetscArrayzero(response->matrix, rows->global * rows->global));
   for (PetscInt k = 0; k < 2; k++) PetscCall(PetscArrayzero(response->rate_matrix[k], rows->global * rows->global));
-  PetscCall(BeginProbing(body, &clock));
+  PetscCall(BodyBeginProbe(body));
   for (PetscInt row = 0; row < rows->global; row++) {
     const PetscInt local = row - rows->begin;
 
@@ -233,7 +157,7 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
     PetscCall(Probe(body, row, INPUT_VELOCITY));
     PetscCall(Probe(body, row, INPUT_ACCELERATION));
   }
-  PetscCall(EndProbing(body, &clock));
+  PetscCall(BodyEndProbe(body));
   /* a linear rise is a sum of hats */
   for (PetscInt level = 1; level <= body->substeps; level++)
     for (PetscInt i = 0; i < rows->global * rows->global; i++) response->matrix[i] += (PetscReal)level / body->substeps * response->waveform[(body->substeps - level) * rows->global * rows->global + i];
@@ -320,6 +244,7 @@ PetscErrorCode BodyPrepareSweeps(Body body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->rows.global > MAX_CONDENSED_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->response) PetscCall(CreateResponse(body));
   if (body->response->condensed && !body->response->valid) PetscCall(BodyComputeResponse(body, &matrix));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,15 +1,6 @@
 /* What a body knows of its response. Private to response.c, which makes it, and window.c, which adds its columns. */
 #pragma once
-#include "bodyimpl.h"
-
-#define N_BACKUP 7
-
-typedef enum {
-  INPUT_DISPLACEMENT,
-  INPUT_VELOCITY,
-  INPUT_ACCELERATION,
-  INPUT_FORCE
-} InputKind;
+#include "probe.h"
 
 typedef struct {
   PetscInt     row; /* global */
@@ -33,8 +24,5 @@ struct _BodyResponse {
   Column      *columns;             /* at most 3 for each row */
   PetscScalar *inputs, *new_inputs; /* of all rows on every rank, 4 kinds each */
   PetscScalar *mine;
-  /* what probing overwrites: present and saved state, internal force; all traces */
-  Vec          backup[N_BACKUP];
-  PetscScalar *backup_traces;
   PetscMPIInt *kinds; /* conditions of all rows */
 };

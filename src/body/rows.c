@@ -1,6 +1,8 @@
 /* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
 #include "bodyimpl.h"
 
+static PetscErrorCode WriteTrace(Body, Vec, Trace, PetscInt);
+
 const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
 
 /*@
@@ -30,6 +32,93 @@ PetscErrorCode BodySetInterface(Body body, Mat B)
   body->interface = B;
   PetscCall(MatGetLocalSize(B, &rows->local, NULL));
   PetscCall(MatGetSize(B, &rows->global, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows of the interface without held dofs, which no contact force moves */
+PetscErrorCode BodyCreateFreeRows(Body body, Mat *B)
+{
+  Vec mask;
+
+  PetscFunctionBegin;
+  if (!body->any_held) {
+    PetscCall(PetscObjectReference((PetscObject)body->interface));
+    *B = body->interface;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MatDuplicate(body->interface, MAT_COPY_VALUES, B));
+  PetscCall(VecDuplicate(body->state.u, &mask));
+  PetscCall(VecSet(mask, 1));
+  PetscCall(BodyZeroHeld(body, mask));
+  PetscCall(MatDiagonalScale(*B, NULL, mask));
+  PetscCall(VecDestroy(&mask));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows that have changed, on every rank */
+static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscMPIInt all[])
+{
+  const BodyRows *rows = &body->rows;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(all, rows->global));
+  for (PetscInt i = 0; i < rows->local; i++) all[rows->begin + i] = changed[i] ? 1 : 0;
+  if (rows->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What a body tells of its rows, at the start of the controller step: from its saved state */
+static PetscErrorCode RewriteStart(Body body)
+{
+  const Vec   vecs[]   = {body->saved.u, body->saved.v, body->saved.a};
+  const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 3; t++) PetscCall(WriteTrace(body, vecs[t], traces[t], 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyUpdateInterface - gives the rows of the interface new entries, as contact surfaces slide and turn
+
+  Collective
+
+  Input Parameters:
++ body    - the `Body`, set up, at the start of a controller step
+. B       - matrix of as many rows as before
+- changed - for each row of this rank, whether it is another than before
+
+  Level: developer
+
+  Note:
+  No matrix of the body is factored again; what is known of the compliance of rows that have changed is forgotten.
+
+.seealso: `Body`, `BodySetInterface()`
+@*/
+PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
+{
+  PetscMPIInt *all;
+  Mat          free_rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscObjectReference((PetscObject)B));
+  PetscCall(MatDestroy(&body->interface));
+  body->interface = B;
+  PetscCall(PetscMalloc1(body->rows.global, &all));
+  PetscCall(GatherChanged(body, changed, all));
+  PetscCall(BodyForgetCompliance(body, all));
+  PetscCall(PetscFree(all));
+  if (body->solver) {
+    if (body->is_explicit) PetscCall(BodySetUpLayerRows(body, &free_rows));
+    else PetscCall(BodyCreateFreeRows(body, &free_rows));
+    PetscCall(ConstrainedSolverSetRows(body->solver, free_rows, changed));
+    PetscCall(MatDestroy(&free_rows));
+  }
+  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, B, changed));
+  if (body->response) PetscCall(BodyDestroyResponse(body));
+  PetscCall(BodySetConstraints(body));
+  PetscCall(RewriteStart(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -43,6 +43,29 @@ typedef enum {
   WAVEFORM_CONSTANT
 } TractionWaveform;
 
+/* Whether the sweeps of a controller step run on the interface compliance of the bodies */
+typedef enum {
+  CONDENSE_NEVER,
+  CONDENSE_ALWAYS,
+  CONDENSE_AUTO /* in two and three dimensions, where it gives the same */
+} Condense;
+
+/* The linearised contact problem on the active rows, in terms of contact forces: what Newton's method solves */
+typedef struct {
+  PetscInt      n, capacity; /* active rows of all ranks; how many there is room for */
+  PetscInt     *rows;
+  PetscInt      levels;   /* times in the controller step at which there are forces */
+  PetscBool     chain;    /* no such simple form: the matrix of the whole sweep, n x levels unknowns */
+  PetscBool     dense;    /* factored; else conjugate gradients */
+  PetscScalar  *matrices; /* levels of n x n, by columns; or that of the chain */
+  PetscScalar  *factor;   /* LU of the first */
+  PetscBLASInt *pivots;
+  PetscScalar  *residual, *force, *change; /* levels x n */
+  KSP           iterative;
+  Vec           force_vec, residual_vec, work[2];
+  PetscInt      iterations; /* of the conjugate gradients */
+} InterfaceProblem;
+
 typedef struct {
   OuterSolver         outer;
   PetscReal           atol, rtol;
@@ -53,8 +76,16 @@ typedef struct {
   Transmission        transmission;
   Predictor           predictor;
   TractionWaveform    waveform;
-  PetscReal           controller_step;    /* [s] */
-  PetscReal           robin_parameter;    /* N/m for each unit of area; 0: from the stiffness of the elements */
+  PetscReal           controller_step; /* [s] */
+  PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
+  Condense            condense;
+  PetscBool           by_compliance; /* Newton's method by the bodies' compliance; else by probing them under each set of conditions */
+  PetscBool           condensed;     /* sweeps on the compliance alone */
+  PetscBool           responding;    /* sweeps are, just now */
+  PetscBool           have_base;     /* an integration of this step that they count from */
+  PetscBool          *known;         /* per row: it is known to the bodies' compliance */
+  PetscBool           has_newton;    /* the outer iteration is Newton's */
+  InterfaceProblem    problem;
   PetscBool           recheck;            /* tensile reactions leave the active set within the step */
   PetscBool           swap;               /* sides change with every controller step */
   PetscInt            side;               /* 0, or 1 while they are swapped */
@@ -128,6 +159,12 @@ PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroyNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
+PETSC_INTERN PetscErrorCode SchwarzSetUpInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzUpdateInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzDestroyInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzChooseCondensation(Contact);
+PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);
+PETSC_INTERN PetscErrorCode SchwarzFinishCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpAitken(Contact);
 PETSC_INTERN PetscErrorCode SchwarzMeasureChange(Contact, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode SchwarzTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);

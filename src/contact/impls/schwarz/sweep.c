@@ -185,6 +185,7 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
 PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
 {
   Contact            contact = (Contact)ctx;
+  const Schwarz     *schwarz = (const Schwarz *)contact->data;
   const PetscScalar *x;
   PetscScalar       *f;
   PetscLogDouble     begin, end;
@@ -196,7 +197,8 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(VecGetArrayRead(X, &x));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     PetscCall(LoadBody(contact, contact->order[k], x));
-    PetscCall(BodyIntegrate(contact->bodies[contact->order[k]]));
+    if (schwarz->responding) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
+    else PetscCall(BodyIntegrate(contact->bodies[contact->order[k]]));
   }
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));

@@ -44,6 +44,23 @@ static PetscErrorCode SetUpWeights(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The common velocity after a plane impact of two bodies is that weighted by their impedances */
+static PetscErrorCode WeighByImpedance(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal impedance;
+
+    PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
+    for (PetscInt i = 0; i < contact->n_rows; i++)
+      for (PetscInt side = 0; side < 2; side++)
+        if (contact->pairs[contact->row_pair[i]].body[side] == b) schwarz->mass[side][i] = impedance;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The force at the end of a substep must move its row in that substep */
 static PetscErrorCode CheckBodies(Contact contact)
 {
@@ -67,6 +84,10 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc3(contact->n_rows, &schwarz->weight, contact->n_rows, &schwarz->mass[0], contact->n_rows, &schwarz->mass[1]));
   if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->predictor != PREDICTOR_INELASTIC) PetscFunctionReturn(PETSC_SUCCESS);
+  if (schwarz->by_compliance) {
+    PetscCall(WeighByImpedance(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(SetUpWeights(contact));
   if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckBodies(contact));
