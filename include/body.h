@@ -156,7 +156,7 @@ PETSC_EXTERN PetscErrorCode BodyGetRateResponse(Body, const PetscScalar *[], con
 PETSC_EXTERN PetscErrorCode BodyUpdateInterface(Body, Mat, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
-PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, const PetscInt *[], PetscInt *, const PetscScalar *[]);
+PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySetBase(Body);
 PETSC_EXTERN PetscErrorCode BodySetRoles(Body, const BodyCondition[]);

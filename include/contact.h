@@ -101,6 +101,8 @@ typedef struct {
   PetscInt       unconverged_steps; /* accepted by -schwarz_unconverged accept */
   PetscInt       set_changes;       /* rounds of the active set beyond the first, all steps */
   PetscInt       set_cycles;        /* steps in which a set came up twice and a rule ended the alternation */
+  PetscInt64     inner_iterations;  /* of conjugate gradients on the interface */
+  PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
   PetscLogDouble seconds;           /* in sweeps */
 } ContactCounts;
 

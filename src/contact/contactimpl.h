@@ -22,15 +22,16 @@ typedef struct {
 
 /* What the rows mean to the bodies */
 typedef enum {
-  CONDITIONS_FREE,    /* no row means anything */
-  CONDITIONS_SCHWARZ, /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
-  CONDITIONS_ROBIN,   /* active rows: Robin rows on both sides */
-  CONDITIONS_FORCES   /* all rows forced on both sides */
+  CONDITIONS_FREE,         /* no row means anything */
+  CONDITIONS_SCHWARZ,      /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
+  CONDITIONS_ROBIN,        /* active rows: Robin rows on both sides */
+  CONDITIONS_FORCES,       /* all rows forced on both sides */
+  CONDITIONS_ACTIVE_FORCES /* active rows forced on both sides */
 } ContactConditions;
 
 struct _p_Contact {
   PETSCHEADER(struct _ContactOps);
-  PetscInt     n_bodies, n_pairs, max_pairs;
+  PetscInt     n_bodies, n_pairs, max_pairs, dim;
   Body        *bodies;
   BodyTraces  *traces;     /* per body */
   Mat         *interfaces; /* per body: rows of all pairs */
@@ -62,6 +63,7 @@ struct _p_Contact {
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep;
 
 PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
+PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);
