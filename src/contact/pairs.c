@@ -255,6 +255,7 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc6(contact->n_bodies, &contact->traces, contact->n_bodies, &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs, contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
+  PetscCall(OrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt dim;
     DM       dm;
@@ -263,7 +264,6 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
     PetscCall(DMGetCoordinateDim(dm, &dim));
     contact->dim = PetscMax(contact->dim, dim);
   }
-  PetscCall(OrderBodies(contact));
   PetscCall(PetscMalloc2(contact->n_pairs, &transfers, 2 * contact->n_pairs, &surfaces));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CreateTransfer(contact, &contact->pairs[p], surfaces + 2 * p, &transfers[p], &extent));
