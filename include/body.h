@@ -168,6 +168,7 @@ PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetCrossSection(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyAddVelocity(Body, const PetscScalar[]);

@@ -86,6 +86,11 @@ typedef struct {
   PetscReal gap;     /* smallest normal gap [m] */
   PetscInt  active;  /* nodes in contact */
   PetscReal tension; /* largest tensile force of an active node, 0 if there is none [N] */
+  PetscReal area;    /* of the active nodes; of bars, the cross-section of the first body [m^2] */
+  /* on the second body; on the first act their opposites; zeros beyond the space dimension */
+  PetscReal force_vector[3]; /* resultant [N] */
+  PetscReal moment[3];       /* of the forces about the origin, where the nodes of the first body are now [N m] */
+  PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, trapezoidal [N s] */
 } ContactPairState;
 
 /*S
@@ -105,6 +110,22 @@ typedef struct {
   PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
   PetscLogDouble seconds;           /* in sweeps */
 } ContactCounts;
+
+/* What ContactFieldsCompute() gives for each node */
+#define CONTACT_FIELDS_FORCE    0 /* three components [N] */
+#define CONTACT_FIELDS_PRESSURE 3 /* [Pa] */
+#define CONTACT_FIELDS_GAP      4 /* [m] */
+#define CONTACT_FIELDS_ACTIVE   5 /* 1 in contact, else 0 */
+#define CONTACT_FIELDS_SIZE     6
+
+/*S
+   ContactFields - contact forces, pressures, gaps and active nodes of bodies, node by node
+
+   Level: intermediate
+
+.seealso: `ContactFieldsCreate()`, `ContactFieldsCompute()`
+S*/
+typedef struct _n_ContactFields *ContactFields;
 
 PETSC_EXTERN PetscErrorCode ContactRegisterAll(void);
 PETSC_EXTERN PetscErrorCode ContactFinalizePackage(void);
@@ -126,6 +147,11 @@ PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Body *, Body *);
 PETSC_EXTERN PetscErrorCode ContactGetPairNormal(Contact, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairState *);
+PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
 PETSC_EXTERN PetscErrorCode ContactGetPenaltyEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
 PETSC_EXTERN PetscErrorCode ContactGetBodyTrace(Contact, PetscInt, PetscReal[], PetscReal[]);
+
+PETSC_EXTERN PetscErrorCode ContactFieldsCreate(Contact, ContactFields *);
+PETSC_EXTERN PetscErrorCode ContactFieldsCompute(ContactFields, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactFieldsDestroy(ContactFields *);

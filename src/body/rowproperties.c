@@ -75,3 +75,26 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
   *impedance = PetscSqrtReal(modulus * density) * body->element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodyGetCrossSection - what lengths and points of the mesh are multiplied by to give areas
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetFromOptions()`
+
+  Output Parameter:
+. cross_section - of bars [m^2]; thickness of plane bodies [m]; 1 in three dimensions
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetImpedance()`
+@*/
+PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *cross_section = body->element->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

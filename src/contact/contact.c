@@ -280,6 +280,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscTryTypeMethod(contact, accept);
   if (contact->stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
+  PetscCall(ContactAddImpulses(contact));
   PetscCall(PetscArraycpy(contact->saved_force, contact->force, contact->n_rows));
   PetscCall(PetscArraycpy(contact->saved_gap, contact->gap, contact->n_rows));
   PetscCall(PetscArraycpy(contact->saved_active, contact->active, contact->n_rows));
@@ -353,6 +354,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree3(c->row_pair, c->initial_gap, c->area));
   PetscCall(PetscFree7(c->force, c->gap, c->saved_force, c->saved_gap, c->active, c->saved_active, c->conditions));
   PetscCall(PetscFree(c->stabilized));
+  PetscCall(ContactDestroyResultants(c));
   PetscCall(PetscFree5(c->all_row_pair, c->mine_active, c->all_active, c->counts, c->offsets));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -56,8 +56,15 @@ struct _p_Contact {
   PetscBool           *stabilized; /* work space: rows of a body in contact */
   ContactCounts        counts_made;
   PetscReal            penalty_energy;
-  PetscBool            setup;
-  void                *data;
+  /* resultants of the pairs */
+  PetscInt  *row_dof;       /* per row: first displacement of its node in the pair's first body, rank numbering */
+  PetscReal *row_normal;    /* per row: its direction, 3 numbers, 0 beyond the dimension */
+  PetscReal *cross_section; /* per pair: of the first body, which makes areas of `area` */
+  PetscReal *sums, *maxima; /* per pair: work space */
+  PetscReal *impulse;       /* per pair, this rank's share: impulse so far, force at the end of the last accepted step; 3 numbers each */
+  PetscReal  step;          /* controller step [s] */
+  PetscBool  setup;
+  void      *data;
 };
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep;
@@ -71,6 +78,10 @@ PETSC_INTERN PetscErrorCode ContactOr(Contact, int *);
 PETSC_INTERN PetscErrorCode ContactAddCompliance(Contact, PetscInt, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactGatherActive(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
+PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
 PETSC_INTERN PetscErrorCode ContactStabilize(Contact);

@@ -23,6 +23,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
+  PetscCall(ContactSetUpResultants(contact));
   PetscCall(ContactSetUpStabilization(contact));
   if (contact->n_all_rows) PetscTryTypeMethod(contact, setup);
   contact->setup = PETSC_TRUE;
@@ -140,46 +141,6 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetPairState - force, gap and active nodes of a pair at the end of the last step
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-- pair    - 0 to the number of pairs - 1
-
-  Output Parameter:
-. state - see `ContactPairState`
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactStep()`
-@*/
-PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
-{
-  const ContactPair *p       = &contact->pairs[pair];
-  PetscReal          sums[2] = {0, 0}, maxima[2] = {-PETSC_MAX_REAL, 0};
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  for (PetscInt i = p->begin; i < p->end; i++) {
-    sums[0] += contact->force[i];
-    sums[1] += contact->active[i] ? 1 : 0;
-    maxima[0] = PetscMax(maxima[0], -contact->gap[i]);
-    maxima[1] = PetscMax(maxima[1], -contact->force[i]);
-  }
-  if (contact->size > 1) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
-  }
-  state->force   = sums[0];
-  state->active  = (PetscInt)sums[1];
-  state->gap     = -maxima[0];
-  state->tension = maxima[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

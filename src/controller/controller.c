@@ -191,7 +191,7 @@ static PetscErrorCode Observe(Controller controller, PetscInt step)
     PetscCall(BodyGetMeasures(controller->bodies[b], &controller->measures[b]));
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
   }
-  for (PetscInt p = 0; p < frame.n_pairs; p++) PetscCall(ContactGetPairState(controller->contact, p, &controller->pair_states[p]));
+  PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
   PetscCall(ContactGetCounts(controller->contact, &counts));
   frame.sweeps = step ? counts.sweeps : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));

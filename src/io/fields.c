@@ -1,4 +1,4 @@
-/* Writes displacement, velocity and stress of all bodies, every so many controller steps. */
+/* Writes displacement, velocity, stress and contact of all bodies, every so many controller steps. */
 #define _POSIX_C_SOURCE 200809L
 #include "fields.h"
 #include "hdf5file.h"
@@ -23,12 +23,15 @@ struct _n_Fields {
   FieldsPrecision precision;
   PetscInt        interval, n_frames; /* in steps; of the whole run */
   FieldsMesh      mesh;
-  PetscInt        written; /* frames in the file */
-  PetscReal      *times;   /* of them [s] */
-  PetscReal      *stress;  /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
-  void           *buffer;  /* one field of a frame, in the file's precision */
-  hid_t           file;    /* < 0: not begun */
-  PetscInt        listed;  /* frames in the XDMF file */
+  PetscInt        n_fields; /* in each frame */
+  ContactFields   contact;  /* NULL: no bodies can touch */
+  PetscInt        written;  /* frames in the file */
+  PetscReal      *times;    /* of them [s] */
+  PetscReal      *stress;   /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
+  PetscReal      *nodal;    /* of each node of this rank, what ContactFieldsCompute() gives */
+  void           *buffer;   /* one field of a frame, in the file's precision */
+  hid_t           file;     /* < 0: not begun */
+  PetscInt        listed;   /* frames in the XDMF file */
   PetscLogDouble  list_ended, list_seconds;
 };
 
@@ -72,7 +75,7 @@ static double FreeSpace(const char path[])
 /* Refuses at once what would fill the disk in the end */
 static PetscErrorCode CheckSpace(Fields fields)
 {
-  const double needed = (double)FieldsFileGetSize(&fields->mesh, fields->n_frames, fields->precision);
+  const double needed = (double)FieldsFileGetSize(&fields->mesh, fields->n_fields, fields->n_frames, fields->precision);
   double       space  = 0;
 
   PetscFunctionBegin;
@@ -88,9 +91,10 @@ static PetscErrorCode CreateBuffers(Fields fields)
   size_t            length = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < FIELDS_PER_FRAME; i++) length = PetscMax(length, (size_t)fields_of_a_frame[i].components * (size_t)(fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).local);
+  for (PetscInt i = 0; i < fields->n_fields; i++) length = PetscMax(length, (size_t)fields_of_a_frame[i].components * (size_t)(fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).local);
   PetscCall(PetscMalloc(PetscMax(1, length * (fields->precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float))), &fields->buffer));
   PetscCall(PetscMalloc1((size_t)mesh->cells.local * 6, &fields->stress));
+  if (fields->contact) PetscCall(PetscMalloc1((size_t)mesh->nodes.local * CONTACT_FIELDS_SIZE, &fields->nodal));
   PetscCall(PetscMalloc1(fields->n_frames, &fields->times));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,7 +116,8 @@ static PetscErrorCode CreateBuffers(Fields fields)
 PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, FieldsPrecision precision, Fields *fields)
 {
   const Body *bodies;
-  PetscInt    steps, n_bodies;
+  Contact     contact;
+  PetscInt    steps, n_bodies, n_pairs;
   PetscMPIInt rank;
   Fields      f;
 
@@ -134,7 +139,11 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscCall(SetInterval(f, steps, interval));
   PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
   PetscCall(FieldsMeshCreate(n_bodies, bodies, &f->mesh));
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ContactGetNumPairs(contact, &n_pairs));
+  f->n_fields = n_pairs ? FIELDS_PER_FRAME : FIELDS_WITHOUT_CONTACT;
   PetscCall(CheckSpace(f));
+  if (n_pairs) PetscCall(ContactFieldsCreate(contact, &f->contact));
   PetscCall(CreateBuffers(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -164,7 +173,7 @@ static PetscErrorCode WriteMesh(Fields fields)
   PetscFunctionBegin;
   if (fields->first_rank) {
     PetscCall(PetscOptionsGetAll(NULL, &options));
-    error = FieldsFileCreate(fields->part, mesh, fields->n_frames, fields->precision, options);
+    error = FieldsFileCreate(fields->part, mesh, fields->n_fields, fields->n_frames, fields->precision, options);
     PetscCall(PetscFree(options));
   }
   PetscCall(Share(fields, error));
@@ -255,6 +264,27 @@ static PetscErrorCode WriteStress(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode WriteContact(Fields fields)
+{
+  static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE] = CONTACT_FIELDS_FORCE, [FIELDS_CONTACT_PRESSURE] = CONTACT_FIELDS_PRESSURE, [FIELDS_CONTACT_GAP] = CONTACT_FIELDS_GAP, [FIELDS_CONTACT_ACTIVE] = CONTACT_FIELDS_ACTIVE};
+  const FieldsMesh     *mesh                    = &fields->mesh;
+  size_t                first                   = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    PetscCall(ContactFieldsCompute(fields->contact, b, fields->nodal + CONTACT_FIELDS_SIZE * first));
+    first += (size_t)mesh->nodes.count[b];
+  }
+  for (FieldsKind kind = FIELDS_WITHOUT_CONTACT; kind < FIELDS_PER_FRAME; kind++) {
+    const size_t n = (size_t)fields_of_a_frame[kind].components;
+
+    for (size_t i = 0; i < first; i++)
+      for (size_t c = 0; c < n; c++) Store(fields, n * i + c, fields->nodal[CONTACT_FIELDS_SIZE * i + (size_t)begin[kind] + c]);
+    PetscCall(WriteField(fields, kind));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tells that the frame is there */
 static PetscErrorCode WriteTime(Fields fields, PetscReal time)
 {
@@ -287,7 +317,7 @@ static PetscErrorCode List(Fields fields, PetscBool always)
   PetscCall(PetscTime(&begin));
   if (!fields->first_rank || fields->listed == fields->written) PetscFunctionReturn(PETSC_SUCCESS);
   if (!always && begin - fields->list_ended < XDMF_SHARE * fields->list_seconds) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(XdmfWrite(fields->path, &fields->mesh, fields->precision, fields->written, fields->times));
+  PetscCall(XdmfWrite(fields->path, &fields->mesh, fields->n_fields, fields->precision, fields->written, fields->times));
   PetscCall(PetscTime(&fields->list_ended));
   fields->list_seconds = fields->list_ended - begin;
   fields->listed       = fields->written;
@@ -303,6 +333,7 @@ static PetscErrorCode WriteFrame(Fields fields, PetscReal time)
   PetscCall(WriteNodes(fields, FIELDS_DISPLACEMENT));
   PetscCall(WriteNodes(fields, FIELDS_VELOCITY));
   PetscCall(WriteStress(fields));
+  if (fields->contact) PetscCall(WriteContact(fields));
   PetscCall(WriteTime(fields, time));
   if (begins) PetscCall(Share(fields, TakePlace(fields)));
   PetscCall(Share(fields, List(fields, PETSC_FALSE)));
@@ -386,9 +417,11 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscFunctionBegin;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(List(f, PETSC_TRUE));
+  PetscCall(ContactFieldsDestroy(&f->contact));
   PetscCall(FieldsMeshDestroy(&f->mesh));
   PetscCall(PetscFree(f->times));
   PetscCall(PetscFree(f->stress));
+  PetscCall(PetscFree(f->nodal));
   PetscCall(PetscFree(f->buffer));
   PetscCall(PetscFree(*fields));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -3,14 +3,21 @@
 #include "fieldsmesh.h"
 
 #define FIELDS_MAX_FRAMES 10000
-#define FIELDS_PER_FRAME  4
+#define FIELDS_PER_FRAME  8
+
+/* Where no bodies can touch, what comes from contact on is left out */
+#define FIELDS_WITHOUT_CONTACT FIELDS_CONTACT_FORCE
 
 /* What is written of each frame */
 typedef enum {
   FIELDS_DISPLACEMENT,
   FIELDS_VELOCITY,
   FIELDS_STRESS,
-  FIELDS_VON_MISES
+  FIELDS_VON_MISES,
+  FIELDS_CONTACT_FORCE,
+  FIELDS_CONTACT_PRESSURE,
+  FIELDS_CONTACT_GAP,
+  FIELDS_CONTACT_ACTIVE
 } FieldsKind;
 
 typedef struct {
@@ -28,8 +35,8 @@ typedef enum {
 } FieldsPrecision;
 PETSC_INTERN const char *const FieldsPrecisions[];
 
-PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, FieldsPrecision);
-PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, PetscInt, FieldsPrecision, const char[]);
+PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, PetscInt, FieldsPrecision);
+PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, PetscInt, PetscInt, FieldsPrecision, const char[]);
 PETSC_INTERN PetscErrorCode FieldsFileOpen(MPI_Comm, const char[], hid_t *);
 PETSC_INTERN PetscErrorCode FieldsFileWrite(MPI_Comm, hid_t, const char[], const FieldsRows *, PetscInt, hid_t, const void *);
 PETSC_INTERN PetscErrorCode FieldsFileGetDataset(FieldsKind, PetscInt, size_t, char[]);

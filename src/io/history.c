@@ -57,7 +57,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
   PetscCall(PetscMalloc1(history->n_bodies, &history->dims));
-  PetscCall(PetscCalloc1(2 + 3 * n_pairs + 8 * history->n_bodies, &history->series));
+  PetscCall(PetscCalloc1(2 + 7 * n_pairs + 8 * history->n_bodies, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -65,6 +65,10 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(AddSeries(history, "/contact/", name, "force", "N", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/contact/", name, "gap", "m", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/contact/", name, "active", "1", 1, PETSC_TRUE));
+    PetscCall(AddSeries(history, "/contact/", name, "area", "m^2", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "force_vector", "N", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "moment", "N m", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "impulse", "N s", 3, PETSC_FALSE));
   }
   for (PetscInt i = 0; i < history->n_bodies; i++) {
     PetscInt *dim = &history->dims[i];
@@ -184,6 +188,10 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], Pets
     *next++ = frame->pairs[i].force;
     *next++ = frame->pairs[i].gap;
     *next++ = (PetscReal)frame->pairs[i].active;
+    *next++ = frame->pairs[i].area;
+    for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].force_vector[d];
+    for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].moment[d];
+    for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].impulse[d];
   }
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     *next++ = frame->bodies[i].kinetic;

@@ -164,8 +164,11 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   contact->force_peak      = PetscMax(contact->force_peak, state->force);
   contact->tension_max     = PetscMax(contact->tension_max, state->tension);
   contact->max_penetration = PetscMax(contact->max_penetration, -state->gap);
-  memory->touches          = touches;
-  memory->force            = state->force;
+  contact->area_max        = PetscMax(contact->area_max, state->area);
+  contact->active_max      = PetscMax(contact->active_max, state->active);
+  for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
+  memory->touches = touches;
+  memory->force   = state->force;
 }
 
 static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
@@ -213,6 +216,7 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
       any.force += frame->pairs[i].force;
       any.gap = PetscMin(any.gap, frame->pairs[i].gap);
       any.active += frame->pairs[i].active;
+      any.area += frame->pairs[i].area;
       any.tension = PetscMax(any.tension, frame->pairs[i].tension);
     }
     AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time);

@@ -12,6 +12,9 @@ typedef struct {
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
   PetscReal max_penetration;                  /* 0 or positive [m] */
+  PetscReal impulse_vector[3];                /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
+  PetscReal area_max;                         /* in contact at the same time [m^2] */
+  PetscInt  active_max;                       /* nodes in contact at the same time */
 } ContactStatistics;
 
 typedef struct {

@@ -25,6 +25,16 @@ static PetscErrorCode SetInteger(json_t *object, const char name[], PetscInt64 v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode SetVector(json_t *object, const char name[], const PetscReal values[3])
+{
+  json_t *array = json_array();
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 3; d++) PetscCheck(!json_array_append_new(array, PetscIsInfOrNanReal(values[d]) ? json_null() : json_real((double)values[d])), PETSC_COMM_SELF, PETSC_ERR_LIB, "Jansson cannot store '%s' in the summary: out of memory", name);
+  PetscCall(SetMember(object, name, array));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A new object as a member, borrowed */
 static PetscErrorCode SetObject(json_t *object, const char name[], json_t **member)
 {
@@ -48,6 +58,8 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SetReal(object, "tension_max", contact->tension_max));
   PetscCall(SetReal(object, "impulse", contact->impulse));
   PetscCall(SetReal(object, "max_penetration", contact->max_penetration));
+  PetscCall(SetReal(object, "area_max", contact->area_max));
+  PetscCall(SetInteger(object, "active_max", contact->active_max));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,13 +74,12 @@ static PetscErrorCode AddContact(json_t *root, Contact contact, const Statistics
   PetscCall(SetObject(root, "contact", &object));
   PetscCall(SetMember(object, "type", json_string(type)));
   PetscCall(SetContactStatistics(object, &results->contact));
-  if (results->n_pairs > 1) {
-    PetscCall(SetObject(root, "pairs", &object));
-    for (PetscInt i = 0; i < results->n_pairs; i++) {
-      PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
-      PetscCall(SetObject(object, name, &pair));
-      PetscCall(SetContactStatistics(pair, &results->pairs[i]));
-    }
+  PetscCall(SetObject(root, "pairs", &object));
+  for (PetscInt i = 0; i < results->n_pairs; i++) {
+    PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
+    PetscCall(SetObject(object, name, &pair));
+    PetscCall(SetContactStatistics(pair, &results->pairs[i]));
+    PetscCall(SetVector(pair, "impulse_vector", results->pairs[i].impulse_vector));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -87,6 +98,8 @@ static PetscErrorCode AddSchwarz(json_t *root, Contact contact, const Statistics
   PetscCall(SetInteger(object, "unconverged_steps", counts.unconverged_steps));
   PetscCall(SetInteger(object, "set_changes", counts.set_changes));
   PetscCall(SetInteger(object, "set_cycles", counts.set_cycles));
+  PetscCall(SetInteger(object, "inner_iterations", counts.inner_iterations));
+  PetscCall(SetInteger(object, "rebuilds", counts.rebuilds));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -81,7 +81,7 @@ static void BeginAttribute(FILE *out, const char name[], const char type[], Pets
   fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", name, type, on_cells ? "Cell" : "Node");
 }
 
-static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, FieldsPrecision precision, PetscInt frame, PetscReal time, const char file[])
+static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt frame, PetscReal time, const char file[])
 {
   static const char *const fixed[] = {"body", "rank"};
   char                     dataset[64];
@@ -89,7 +89,7 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, FieldsPrecis
   PetscFunctionBegin;
   fprintf(out, "      <Grid Name=\"bodies\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n", (double)time);
   WriteMesh(out, mesh, file);
-  for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++) {
+  for (FieldsKind i = 0; i < (FieldsKind)n_fields; i++) {
     const FieldsField *field = &fields_of_a_frame[i];
 
     PetscCall(FieldsFileGetDataset(i, frame, sizeof(dataset), dataset));
@@ -115,11 +115,12 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, FieldsPrecis
   Input Parameters:
 + fields    - path of the HDF5 file
 . mesh      - the mesh
+. n_fields  - number of fields in each frame, the first ones of `FieldsKind`
 . precision - of the numbers in the frames
 . n_frames  - how many frames to tell of
 - times     - their times [s]
 */
-PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsPrecision precision, PetscInt n_frames, const PetscReal times[])
+PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt n_frames, const PetscReal times[])
 {
   char  path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
   FILE *out;
@@ -131,7 +132,7 @@ PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsPrec
   out = fopen(part, "w");
   PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
   fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-  for (PetscInt k = 0; k < n_frames; k++) PetscCall(WriteFrame(out, mesh, precision, k, times[k], FileName(fields)));
+  for (PetscInt k = 0; k < n_frames; k++) PetscCall(WriteFrame(out, mesh, n_fields, precision, k, times[k], FileName(fields)));
   fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
   failed = ferror(out);
   failed = fclose(out) || failed;
