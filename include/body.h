@@ -162,6 +162,7 @@ PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
 PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySetBase(Body);
+PETSC_EXTERN PetscErrorCode BodySetFreeBase(Body);
 PETSC_EXTERN PetscErrorCode BodySetRoles(Body, const BodyCondition[]);
 PETSC_EXTERN PetscErrorCode BodyRespond(Body);
 PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);

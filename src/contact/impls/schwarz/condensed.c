@@ -62,13 +62,19 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An integration under the contact forces of the step before */
-static PetscErrorCode IntegrateBase(Contact contact, PetscInt b)
+/* An integration under the contact forces of the step before; or what a body that tells it for less would do without contact */
+static PetscErrorCode MakeBase(Contact contact, PetscInt b)
 {
   const BodyTraces *traces = &contact->traces[b];
   PetscInt          levels;
+  PetscBool         free_rows;
 
   PetscFunctionBegin;
+  PetscCall(BodyHasFreeRows(contact->bodies[b], &free_rows));
+  if (free_rows) {
+    PetscCall(BodySetFreeBase(contact->bodies[b]));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(TraceGetSizes(traces->force_in, NULL, &levels));
   for (PetscInt level = 0; level <= levels; level++) {
     PetscScalar *force;
@@ -81,6 +87,7 @@ static PetscErrorCode IntegrateBase(Contact contact, PetscInt b)
     }
   }
   PetscCall(BodyIntegrate(contact->bodies[b]));
+  PetscCall(BodySetBase(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,10 +99,7 @@ PetscErrorCode SchwarzPrepareCondensed(Contact contact)
   PetscFunctionBegin;
   if (!schwarz->have_base) {
     PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-    for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      PetscCall(IntegrateBase(contact, b));
-      PetscCall(BodySetBase(contact->bodies[b]));
-    }
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(MakeBase(contact, b));
     schwarz->have_base = PETSC_TRUE;
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
