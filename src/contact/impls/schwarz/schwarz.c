@@ -138,6 +138,18 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What is known of rows that have changed is not known any more */
+static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    if (contact->changed[i]) schwarz->known[i] = PETSC_FALSE;
+  schwarz->stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
@@ -215,6 +227,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
   contact->ops->setup          = ContactSetUp_Schwarz;
   contact->ops->step           = ContactStep_Schwarz;
+  contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);
