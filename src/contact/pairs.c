@@ -98,33 +98,27 @@ static PetscErrorCode OrderBodies(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair, Transfer transfer, Surface surfaces[])
+/* All nodes of both surfaces: they may slide, and any of them may come to lie opposite to the partner */
+static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair, Surface surfaces[])
 {
   PetscFunctionBegin;
   for (PetscInt side = 0; side < 2; side++) {
-    const PetscInt *nodes;
-    PetscInt        n, n_vertices, *vertices, start, end, rstart, body = pair->body[side];
-    PetscSection    section;
-    Vec             positions;
-    DM              dm;
+    const SurfaceData *data;
+    const PetscInt    *vertices;
+    PetscInt           n, rstart, body = pair->body[side];
+    Vec                positions;
 
-    PetscCall(TransferGetNodes(transfer, (PetscBool)(side == 1), &n, &nodes));
-    PetscCall(SurfaceGetVertices(surfaces[side], n, nodes, &n_vertices, &vertices));
-    PetscCall(BodySetContactNodes(contact->bodies[body], n_vertices, vertices));
-    if (!contact->n_all_nodes[body]) {
-      /* the first pair of a body says where its contact point is */
-      contact->n_all_nodes[body] = n;
-      PetscCall(BodyGetDM(contact->bodies[body], &dm));
-      PetscCall(DMGetGlobalSection(dm, &section));
-      PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
-      PetscCall(VecGetOwnershipRange(positions, &rstart, &end));
-      PetscCall(PetscMalloc1(n_vertices, &contact->node_dofs[body]));
-      for (PetscInt v = 0; v < n_vertices; v++) {
-        PetscCall(PetscSectionGetOffset(section, vertices[v], &start));
-        if (start >= 0) contact->node_dofs[body][contact->n_node_dofs[body]++] = start - rstart;
-      }
-    }
-    PetscCall(PetscFree(vertices));
+    PetscCall(SurfaceGetVertices(surfaces[side], &n, &vertices));
+    PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
+    if (contact->n_all_nodes[body]) continue;
+    /* the first pair of a body says where its contact point is */
+    PetscCall(SurfaceGetData(surfaces[side], &data));
+    PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->n_all_nodes[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+    PetscCall(VecGetOwnershipRange(positions, &rstart, NULL));
+    PetscCall(PetscMalloc1(data->n_owned, &contact->node_dofs[body]));
+    for (PetscInt i = 0; i < data->n_owned; i++) contact->node_dofs[body][i] = data->dofs[i] - rstart;
+    contact->n_node_dofs[body] = data->n_owned;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -135,20 +129,11 @@ static PetscErrorCode CountRows(Contact contact, Transfer transfers[])
   PetscFunctionBegin;
   contact->n_rows = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscInt n, dof, rstart, rend;
-    Vec      positions;
+    TransferRows rows;
 
-    PetscCall(BodyGetReferencePositions(contact->bodies[contact->pairs[p].body[0]], &positions));
-    PetscCall(VecGetOwnershipRange(positions, &rstart, &rend));
-    PetscCall(TransferGetSize(transfers[p], &n));
-    PetscCheck(n, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", contact->pairs[p].name);
+    PetscCall(TransferGetRows(transfers[p], &rows));
     contact->pairs[p].begin = contact->n_rows;
-    for (PetscInt row = 0; row < n; row++) {
-      PetscReal gap, area;
-
-      PetscCall(TransferGetRow(transfers[p], row, &dof, &gap, &area));
-      if (dof >= rstart && dof < rend) contact->n_rows++;
-    }
+    contact->n_rows += rows.n;
     contact->pairs[p].end = contact->n_rows;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,8 +160,7 @@ static PetscErrorCode AllocateRows(Contact contact)
 
 static PetscErrorCode FillRows(Contact contact, Transfer transfers[])
 {
-  MPI_Comm comm  = PetscObjectComm((PetscObject)contact);
-  PetscInt local = 0;
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -192,23 +176,15 @@ static PetscErrorCode FillRows(Contact contact, Transfer transfers[])
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
-    PetscInt     n, dof, rstart, rend;
-    Vec          positions;
+    TransferRows rows;
 
-    PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
-    PetscCall(VecGetOwnershipRange(positions, &rstart, &rend));
-    PetscCall(TransferGetSize(transfers[p], &n));
-    for (PetscInt row = 0; row < n; row++) {
-      PetscReal gap, area;
-
-      PetscCall(TransferGetRow(transfers[p], row, &dof, &gap, &area));
-      if (dof < rstart || dof >= rend) continue;
-      contact->row_pair[local]    = p;
-      contact->initial_gap[local] = gap;
-      contact->area[local]        = area;
-      PetscCall(TransferSetValues(transfers[p], row, contact->row_begin + local, contact->interfaces[pair->body[0]], contact->interfaces[pair->body[1]]));
-      local++;
+    PetscCall(TransferGetRows(transfers[p], &rows));
+    for (PetscInt i = 0; i < rows.n; i++) {
+      contact->row_pair[pair->begin + i]    = p;
+      contact->initial_gap[pair->begin + i] = rows.gap[i];
+      contact->area[pair->begin + i]        = rows.area[i];
     }
+    PetscCall(TransferSetValues(transfers[p], contact->row_begin + pair->begin, 1, contact->interfaces[pair->body[0]], contact->interfaces[pair->body[1]]));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
@@ -223,26 +199,46 @@ static PetscErrorCode FillRows(Contact contact, Transfer transfers[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Mean normal of the rows, and whether there are any */
+static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair, Transfer transfer, PetscInt dim)
+{
+  MPI_Comm     comm    = PetscObjectComm((PetscObject)contact);
+  PetscReal    sums[4] = {0};
+  TransferRows rows;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(transfer, &rows));
+  for (PetscInt i = 0; i < rows.n; i++) {
+    if (!rows.opposite[i]) continue;
+    for (PetscInt d = 0; d < dim; d++) sums[d] += rows.normals[dim * i + d];
+    sums[3] += 1;
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, comm));
+  PetscCheck(sums[3] > 0, comm, PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
+  for (PetscInt d = 0; d < 3; d++) pair->normal[d] = sums[d] / sums[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, Surface surfaces[], Transfer *transfer, PetscReal *extent)
 {
-  const SurfaceData *data;
-  const PetscInt    *nodes;
-  PetscInt           n;
+  PetscInt  dim = 0;
+  PetscBool rebuilt;
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < 2; side++) {
-    DM dm;
+    PetscReal lower[3], upper[3];
+    DM        dm;
 
     PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
     PetscCall(SurfaceCreate(dm, pair->surface[side], &surfaces[side]));
-    PetscCall(SurfaceGetData(surfaces[side], &data));
-    for (PetscInt d = 0; d < data->dim; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(data->lower[d]), PetscAbsReal(data->upper[d])));
+    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(DMGetBoundingBox(dm, lower, upper));
+    for (PetscInt d = 0; d < dim; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }
-  PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), surfaces[0], surfaces[1], transfer));
-  PetscCall(SurfaceGetData(surfaces[0], &data));
-  PetscCall(TransferGetNodes(*transfer, PETSC_FALSE, &n, &nodes));
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt d = 0; d < data->dim; d++) pair->normal[d] += data->normals[nodes[i] * data->dim + d] / n;
+  PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], NULL, (PetscBool)!pair->surface[0], (PetscBool)!pair->surface[1]));
+  PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), surfaces[0], surfaces[1], NULL, transfer));
+  PetscCall(TransferUpdate(*transfer, NULL, NULL, PETSC_MAX_REAL, &rebuilt));
+  PetscCall(GetPairNormal(contact, pair, *transfer, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -259,7 +255,7 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   PetscCall(PetscMalloc2(contact->n_pairs, &transfers, 2 * contact->n_pairs, &surfaces));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CreateTransfer(contact, &contact->pairs[p], surfaces + 2 * p, &transfers[p], &extent));
-    PetscCall(MarkContactNodes(contact, &contact->pairs[p], transfers[p], surfaces + 2 * p));
+    PetscCall(MarkContactNodes(contact, &contact->pairs[p], surfaces + 2 * p));
   }
   PetscCall(CountRows(contact, transfers));
   PetscCall(AllocateRows(contact));
