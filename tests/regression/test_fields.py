@@ -293,6 +293,34 @@ def test_png(pictured, launch, tmp_path):
     assert min(shares["solids"], shares["fields"], shares["moved"]) > 0.06
 
 
+def test_contact_fields_drawn(pictured, launch, tmp_path):
+    """Pressure comes with contact; the gap is drawn though most nodes have none."""
+    pictures = {}
+    for name, options in {"before": "--field contact_pressure --step 0", "during": "--field contact_pressure --step 2", "gap": "--field contact_gap --step 2"}.items():
+        run = launch([*RENDER, pictured / "bars.xdmf", "--output", tmp_path / f"{name}.png", "--size", "600x400", *options.split()], env=ENVIRONMENT)
+        assert run.returncode == 0, run.stderr
+        pictures[name] = np.asarray(Image.open(tmp_path / f"{name}.png").convert("RGB")).astype(int)
+    middle = slice(100, 250)  # rows with the bars, without time and colour bar
+    colours = {name: {tuple(pixel) for pixel in picture[middle].reshape(-1, 3) if np.ptp(pixel) > 30} for name, picture in pictures.items()}
+    assert len(colours["before"]) >= 1
+    assert len(colours["during"] - colours["before"]) >= 1
+    assert (np.ptp(pictures["gap"][middle], axis=2) == 0).mean() > 0.9  # grey and white
+    assert ((pictures["gap"][middle] == 0xBB).all(axis=2)).sum() > 1000  # the bars, but for their contact nodes
+
+
+def test_cut(pictured, launch, tmp_path):
+    """What is before the plane is gone: two thirds of the larger body; the upper half of both."""
+    shares = {}
+    for name, options in {"whole": "", "near": "--cut x=2", "middle": "--cut z"}.items():
+        run = launch([*RENDER, pictured / "solids.xdmf", tmp_path / f"{name}.png", "--field", "body", *options.split()], env=ENVIRONMENT)
+        assert run.returncode == 0, run.stderr
+        shares[name] = coloured(Image.open(tmp_path / f"{name}.png"))
+    bar = 0.026  # of the colours
+    assert shares["near"] - bar < 0.8 * (shares["whole"] - bar)
+    assert shares["middle"] - bar < 0.9 * (shares["whole"] - bar)
+    assert shares["near"] > bar + 0.01
+
+
 def test_gif(pictured, launch, tmp_path):
     run = launch([*RENDER, pictured / "bars.xdmf", tmp_path / "film.gif", "--field", "velocity_x", "--size", "500x300", "--fps", "5"], env=ENVIRONMENT)
     assert run.returncode == 0, run.stderr
@@ -324,10 +352,15 @@ def test_gif(pictured, launch, tmp_path):
         ("bars.xdmf p.jpg", "give the name of a .png, .gif or .mp4"),
         ("bars.xdmf p.png --size 3x4", "--size"),
         ("bars.xdmf", "usage"),
+        ("bars.xdmf p.png --output q.png", "give the name of the picture, once"),
+        ("bars.xdmf p.png --cut x", "only what has three dimensions can be cut"),
+        ("solids.xdmf p.png --cut r", "--cut r: give x, y or z"),
+        ("solids.xdmf p.png --cut x=two", "--cut x=two: two is not a number"),
+        ("solids.xdmf p.png --cut x=7", "--cut x=7: the bodies lie between x = 0 and 5"),
     ],
 )
 def test_cannot_be_drawn(arguments, message, pictured, launch, tmp_path):
-    for name in ("bars.h5", "bars.xdmf"):
+    for name in ("bars.h5", "bars.xdmf", "solids.h5", "solids.xdmf"):
         (tmp_path / name).symlink_to(pictured / name)
     (tmp_path / "text.xdmf").write_text("no XML\n")
     (tmp_path / "lost.xdmf").write_text((pictured / "bars.xdmf").read_text().replace("bars.h5", "gone.h5"))
