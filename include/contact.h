@@ -32,6 +32,23 @@ typedef const char *ContactType;
 #define CONTACT_AUGMENTED_LAGRANGIAN "augmented_lagrangian"
 
 /*E
+   ContactLaw - what contact surfaces do to each other
+
+   Values:
++ `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
+- `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start stay there: all components of the displacement are equal
+
+   Level: beginner
+
+.seealso: `ContactSetFromOptions()`
+E*/
+typedef enum {
+  CONTACT_LAW_FRICTIONLESS,
+  CONTACT_LAW_TIED
+} ContactLaw;
+PETSC_EXTERN const char *const ContactLaws[];
+
+/*E
    ContactConstraint - what contact forces keep from becoming negative
 
    Values:

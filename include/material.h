@@ -71,6 +71,7 @@ PETSC_EXTERN PetscErrorCode MaterialIsLinear(Material, PetscBool *);
 PETSC_EXTERN PetscErrorCode MaterialGetWaveModulus(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetPlaneStress(Material, PetscBool);
 PETSC_EXTERN PetscErrorCode MaterialGetKernels(Material, MaterialKernels *);
+PETSC_EXTERN PetscErrorCode MaterialLinearize(Material, Material *);
 PETSC_EXTERN PetscErrorCode MaterialComputeUniaxial(Material, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode MaterialComputeUniaxialTangent(Material, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode MaterialComputeUniaxialEnergy(Material, PetscInt, const PetscReal[], PetscReal[]);

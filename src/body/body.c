@@ -2,7 +2,7 @@
 #include "bodyimpl.h"
 
 PetscClassId  BODY_CLASSID = 0;
-PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_Tangent;
+PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
 
 /*@
   BodyRegisterAll - registers the class, its materials and elements
@@ -20,6 +20,7 @@ PetscErrorCode BodyRegisterAll(void)
   PetscCall(PetscLogEventRegister("BodyIntegrate", BODY_CLASSID, &BODY_Integrate));
   PetscCall(PetscLogEventRegister("BodyResponse", BODY_CLASSID, &BODY_Response));
   PetscCall(PetscLogEventRegister("BodyForce", BODY_CLASSID, &BODY_InternalForce));
+  PetscCall(PetscLogEventRegister("BodyLayerForce", BODY_CLASSID, &BODY_LayerForce));
   PetscCall(PetscLogEventRegister("BodyTangent", BODY_CLASSID, &BODY_Tangent));
   PetscCall(MaterialRegisterAll());
   PetscCall(ElementRegisterAll());
@@ -271,8 +272,11 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->shifted));
   PetscCall(MatDestroy(&b->interface));
   PetscCall(TSDestroy(&b->ts));
+  PetscCall(BodyLayerElementsDestroy(&b->layer_elements));
   PetscCall(ElementDestroy(&b->element));
+  PetscCall(ElementDestroy(&b->linearized_element));
   PetscCall(MaterialDestroy(&b->material));
+  PetscCall(MaterialDestroy(&b->linearized_material));
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
   PetscCall(PetscFree(b->kept_traces));
   PetscCall(PetscFree4(b->conditions, b->held, b->flexibility, b->robin));

@@ -17,6 +17,8 @@ typedef struct {
   PetscMPIInt *counts, *offsets;
 } BodyRows;
 
+typedef struct _n_LayerElements *LayerElements;
+
 struct _p_Body {
   PETSCHEADER(int);
   /* mesh and numbering: nodes of this rank are numbered owned first, then ghosts */
@@ -27,12 +29,13 @@ struct _p_Body {
   PetscInt       vertex_start;
   PetscInt      *node_of_vertex;
   PetscInt      *connectivity;
-  PetscReal     *coordinates; /* local_nodes x dim */
-  PetscInt      *ghost_dofs;  /* global numbers */
-  Vec            positions;   /* reference positions of owned nodes [m] */
-  Element        element;
-  Material       material;
-  PetscBool      linear; /* constant stiffness */
+  PetscReal     *coordinates;                 /* local_nodes x dim */
+  PetscInt      *ghost_dofs;                  /* global numbers */
+  Vec            positions;                   /* reference positions of owned nodes [m] */
+  Element        element, linearized_element; /* the latter NULL until BodyPrepareLinearized() */
+  Material       material, linearized_material;
+  PetscBool      linear;     /* constant stiffness */
+  PetscBool      linearized; /* forces are those of the linearized elements */
   /* mass */
   BodyMassType      mass_type;
   PetscBool         mass_redistribute;
@@ -87,7 +90,9 @@ struct _p_Body {
   ConstrainedSolver       solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
   IS                      layer_is;
   Vec                     layer_rhs, layer_solution;
+  PetscReal               layer_reach; /* norm of the reference positions, on which round-off of its balance hangs [m] */
   VecScatter              layer_scatter;
+  LayerElements           layer_elements; /* those that touch the massless layer; NULL: no layer on any rank */
   struct _BodyResponse   *response;
   struct _BodyCompliance *compliance;
   struct _BodyProbe      *probe; /* room for the state while unit inputs are tried; NULL until then */
@@ -104,7 +109,7 @@ struct _p_Body {
   PetscBool          setup;
 };
 
-PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_Tangent;
+PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
 
 PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
 PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
@@ -136,6 +141,12 @@ PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
 PETSC_INTERN PetscErrorCode BodyFinishSubstepImplicit(Body);
 PETSC_INTERN PetscErrorCode BodyFinishSubstepExplicit(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
+PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body);
+PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
+PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
+PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, PetscReal, PetscBool, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[]);

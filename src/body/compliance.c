@@ -295,43 +295,54 @@ PetscErrorCode BodyForgetCompliance(Body body, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sums of hats that rise linearly over the controller step */
+static PetscErrorCode ComputeRamp(Body body)
+{
+  struct _BodyCompliance *c = body->compliance;
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < c->n; j++)
+    for (PetscInt i = 0; i < c->n; i++) {
+      PetscScalar sum = 0;
+
+      for (PetscInt l = 1; l <= body->substeps; l++) sum += (PetscReal)l / body->substeps * c->levels[((body->substeps - l) * c->capacity + j) * c->capacity + i];
+      c->ramp[j * c->capacity + i] = sum;
+    }
+  c->ramp_valid = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  BodyGetCompliance - displacements of known rows at the end of the controller step for unit forces on them that rise linearly over it
+  BodyGetCompliance - displacements of known rows under unit forces on them
 
   Not Collective
 
-  Input Parameter:
-. body - the `Body`, after `BodyExtendCompliance()`
+  Input Parameters:
++ body  - the `Body`, after `BodyExtendCompliance()`
+- level - k: at the end of a substep for a force at the end of the k-th substep before it, a hat; -1: at the end of the controller step, for
+          forces that rise linearly over it
 
   Output Parameters:
 + place   - for each row of all ranks its place among the known ones, or -1
 . leading - distance between columns
-- ramp    - known rows by known rows, by columns [m/N], owned by the body
+- matrix  - known rows by known rows, by columns [m/N], owned by the body
 
   Level: developer
 
 .seealso: `Body`, `BodyExtendCompliance()`
 @*/
-PetscErrorCode BodyGetCompliance(Body body, const PetscInt *place[], PetscInt *leading, const PetscScalar *ramp[])
+PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *place[], PetscInt *leading, const PetscScalar *matrix[])
 {
   struct _BodyCompliance *c = body->compliance;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyExtendCompliance() first");
-  if (!c->ramp_valid)
-    for (PetscInt j = 0; j < c->n; j++)
-      for (PetscInt i = 0; i < c->n; i++) {
-        PetscScalar sum = 0;
-
-        /* a linear rise is a sum of hats */
-        for (PetscInt l = 1; l <= body->substeps; l++) sum += (PetscReal)l / body->substeps * c->levels[((body->substeps - l) * c->capacity + j) * c->capacity + i];
-        c->ramp[j * c->capacity + i] = sum;
-      }
-  c->ramp_valid = PETSC_TRUE;
-  *place        = c->place;
-  *leading      = c->capacity;
-  *ramp         = c->ramp;
+  PetscCheck(level >= -1 && level < body->substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE, "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->substeps);
+  if (level < 0 && !c->ramp_valid) PetscCall(ComputeRamp(body));
+  *place   = c->place;
+  *leading = c->capacity;
+  *matrix  = level < 0 ? c->ramp : c->levels + level * c->capacity * c->capacity;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

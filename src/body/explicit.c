@@ -7,34 +7,62 @@
 #define BALANCE_TOLERANCE  1e-12
 #define BALANCE_ROUND_OFF  (4 * PETSC_MACHINE_EPSILON)
 
-/* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (forces - internal force)_L, with prescribed
-   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the undeformed layer's
-   factors. */
-static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position, Vec u)
+/* Whether anything but elements pulls at the body: loads, or contact unless that is left out */
+static PetscBool HasOutsideForce(Body body, PetscBool contact)
 {
-  Vec       force = body->work[0];
-  PetscReal first = 0, round_off = 0, size;
+  return (PetscBool)(body->loads || (contact && body->n_forced));
+}
+
+static PetscErrorCode ComputeOutsideForce(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
+{
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(force));
+  PetscCall(BodyAddExternalForce(body, time, 1, force));
+  if (contact) PetscCall(BodyAddContactForce(body, position, 1, u, force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With contact: under the constraints of the rows; else as if there were no rows */
+static PetscErrorCode SolveLayer(Body body, PetscBool contact)
+{
+  KSP ksp;
 
   PetscFunctionBegin;
-  if (!body->linear) {
-    PetscCall(VecNorm(u, NORM_2, &size));
-    PetscCall(VecNorm(body->positions, NORM_2, &round_off));
-    round_off = BALANCE_ROUND_OFF * (round_off + size);
+  if (contact) PetscCall(ConstrainedSolverSolve(body->solver, body->layer_rhs, body->layer_solution));
+  else {
+    PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
+    PetscCall(KSPSolve(ksp, body->layer_rhs, body->layer_solution));
   }
-  for (PetscInt round = 0; round < (body->linear ? 1 : MAX_BALANCE_ROUNDS); round++) {
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (forces - internal force)_L, with prescribed
+   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the undeformed layer's
+   factors. `force` becomes that of ComputeOutsideForce(), where there is any. */
+static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
+{
+  const PetscBool outside = HasOutsideForce(body, contact), linear = (PetscBool)(body->linear || body->linearized), robin = (PetscBool)(contact && body->n_robin);
+  PetscReal       first = 0, round_off = 0;
+
+  PetscFunctionBegin;
+  if (!linear) {
+    PetscCall(VecNorm(u, NORM_2, &round_off));
+    round_off = BALANCE_ROUND_OFF * (round_off + body->layer_reach);
+  }
+  if (outside) PetscCall(ComputeOutsideForce(body, time, position, contact, u, force));
+  for (PetscInt round = 0; round < (linear ? 1 : MAX_BALANCE_ROUNDS); round++) {
     PetscReal change;
 
-    PetscCall(BodyComputeInternalForce(body, u, body->internal_force));
-    PetscCall(VecCopy(body->internal_force, force));
-    PetscCall(VecScale(force, -1));
-    PetscCall(BodyAddExternalForce(body, time, 1, force));
-    PetscCall(BodyAddContactForce(body, position, 1, u, force));
-    PetscCall(VecScatterBegin(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(ConstrainedSolverSolve(body->solver, body->layer_rhs, body->layer_solution));
+    if (round && robin) PetscCall(ComputeOutsideForce(body, time, position, contact, u, force));
+    if (outside) {
+      PetscCall(VecScatterBegin(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
+      PetscCall(VecScatterEnd(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
+    } else PetscCall(VecZeroEntries(body->layer_rhs));
+    PetscCall(BodySubtractLayerForce(body, u, body->layer_rhs));
+    PetscCall(SolveLayer(body, contact));
     PetscCall(VecScatterBegin(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
     PetscCall(VecScatterEnd(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
-    if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
+    if (linear) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(VecNorm(body->layer_solution, NORM_2, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
@@ -43,20 +71,27 @@ static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position
   SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED, "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or -%smass_redistribute false", body->hdr.name, MAX_BALANCE_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
 }
 
-/* a = -f / m in one pass */
-static PetscErrorCode DivideByMass(Body body, Vec A)
+/* a = (force - internal force) / m in one pass; without a force, where it is NULL */
+static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
 {
-  const PetscScalar *force, *inverse;
+  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscScalar *internal, *inverse, *outside;
   PetscScalar       *a;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->internal_force, &force));
+  PetscCall(VecGetArrayRead(body->internal_force, &internal));
   PetscCall(VecGetArrayRead(body->inverse_mass, &inverse));
   PetscCall(VecGetArrayWrite(A, &a));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) a[i] = -force[i] * inverse[i];
+  if (force) {
+    PetscCall(VecGetArrayRead(force, &outside));
+    for (PetscInt i = 0; i < n; i++) a[i] = (outside[i] - internal[i]) * inverse[i];
+    PetscCall(VecRestoreArrayRead(force, &outside));
+  } else {
+    for (PetscInt i = 0; i < n; i++) a[i] = -internal[i] * inverse[i];
+  }
   PetscCall(VecRestoreArrayWrite(A, &a));
   PetscCall(VecRestoreArrayRead(body->inverse_mass, &inverse));
-  PetscCall(VecRestoreArrayRead(body->internal_force, &force));
+  PetscCall(VecRestoreArrayRead(body->internal_force, &internal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,91 +100,28 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
 {
   Body            body       = (Body)ctx;
   const PetscReal position   = (PetscReal)(body->substep + 1) / body->substeps;
-  const PetscBool prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass);
-  Vec             force      = body->work[0];
+  const PetscBool prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass), outside = HasOutsideForce(body, PETSC_TRUE);
+  Vec             force = body->work[0];
 
   PetscFunctionBegin;
   (void)ts;
   (void)V;
   PetscCall(BodyPrescribeHeld(body, t, U, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
-  if (body->layer_scatter) PetscCall(BalanceLayer(body, t, position, U));
+  if (body->layer_scatter) PetscCall(BalanceLayer(body, t, position, PETSC_TRUE, U, force));
+  /* Robin rows have moved with the layer */
+  if (outside && (!body->layer_scatter || body->n_robin)) PetscCall(ComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
-  if (body->inverse_mass && !body->n_forced && !body->loads) {
-    PetscCall(DivideByMass(body, A));
+  if (body->inverse_mass) {
+    PetscCall(DivideByMass(body, outside ? force : NULL, A));
     if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  } else {
+    if (!outside) PetscCall(VecZeroEntries(force));
+    PetscCall(VecAXPY(force, -1, body->internal_force));
+    PetscCall(BodyAddHeldInertia(body, t, force, A));
+    PetscCall(BodySolveMass(body, force, position, prescribed, A));
   }
-  PetscCall(VecCopy(body->internal_force, force));
-  PetscCall(VecScale(force, -1));
-  PetscCall(BodyAddExternalForce(body, t, 1, force));
-  PetscCall(BodyAddContactForce(body, position, 1, U, force));
-  PetscCall(BodyAddHeldInertia(body, t, force, A));
-  PetscCall(BodySolveMass(body, force, position, prescribed, A));
   PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The number of each dof of this rank's nodes, ghosts too, within the layer; -1 for others */
-static PetscErrorCode NumberLayer(Body body, PetscInt first, Vec *numbers, PetscScalar **number)
-{
-  PetscScalar *array;
-  Vec          local;
-
-  PetscFunctionBegin;
-  PetscCall(BodyCreateVec(body, numbers));
-  PetscCall(VecSet(*numbers, -1));
-  PetscCall(VecGetArray(*numbers, &array));
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) array[body->layer_dofs[i]] = first + i;
-  PetscCall(VecRestoreArray(*numbers, &array));
-  local = *numbers;
-  if (body->rows.size > 1) {
-    PetscCall(VecGhostUpdateBegin(*numbers, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(*numbers, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostGetLocalForm(*numbers, &local));
-  }
-  PetscCall(PetscMalloc1(body->local_nodes * body->dim, number));
-  PetscCall(VecGetArray(local, &array));
-  PetscCall(PetscArraycpy(*number, array, body->local_nodes * body->dim));
-  PetscCall(VecRestoreArray(local, &array));
-  if (body->rows.size > 1) PetscCall(VecGhostRestoreLocalForm(*numbers, &local));
-  PetscCall(VecDestroy(numbers));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Stiffness of the massless layer, from the elements that touch it: the whole body's matrix would be many times as large */
-static PetscErrorCode AssembleLayer(Body body, Mat *K)
-{
-  const PetscInt n = body->element->nodes * body->dim;
-  PetscInt       end, dofs[ELEMENT_MAX_DOFS];
-  PetscScalar    element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *number, *zero;
-  Vec            numbers;
-
-  PetscFunctionBegin;
-  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), K));
-  PetscCall(MatSetSizes(*K, body->n_layer_dofs, body->n_layer_dofs, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(*K, MATAIJ));
-  PetscCall(MatSetUp(*K));
-  PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(MatGetOwnershipRange(*K, &end, NULL));
-  PetscCall(NumberLayer(body, end, &numbers, &number));
-  PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
-  for (PetscInt e = 0; e < body->element->count; e++) {
-    const PetscInt *nodes   = body->connectivity + e * body->element->nodes;
-    PetscBool       touches = PETSC_FALSE;
-
-    for (PetscInt i = 0; i < n; i++) {
-      dofs[i] = (PetscInt)number[nodes[i / body->dim] * body->dim + i % body->dim];
-      if (dofs[i] >= 0) touches = PETSC_TRUE;
-    }
-    if (!touches) continue;
-    PetscCall((*body->element->ops.stiffness)(body->element, e, zero, element));
-    PetscCall(MatSetValues(*K, n, dofs, n, dofs, element, ADD_VALUES));
-  }
-  PetscCall(PetscFree(zero));
-  PetscCall(PetscFree(number));
-  PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,11 +154,16 @@ static PetscErrorCode SetUpLayerBalance(Body body)
   PetscCall(PetscMalloc1(body->n_layer_dofs, &global));
   for (PetscInt i = 0; i < body->n_layer_dofs; i++) global[i] = rstart + body->layer_dofs[i];
   PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), body->n_layer_dofs, global, PETSC_OWN_POINTER, &body->layer_is));
-  PetscCall(AssembleLayer(body, &K));
+  PetscCall(VecCreate(PetscObjectComm((PetscObject)body), &body->layer_rhs));
+  PetscCall(VecSetSizes(body->layer_rhs, body->n_layer_dofs, PETSC_DETERMINE));
+  PetscCall(VecSetType(body->layer_rhs, VECSTANDARD));
+  PetscCall(VecDuplicate(body->layer_rhs, &body->layer_solution));
+  PetscCall(BodySetUpLayerElements(body));
+  PetscCall(BodyAssembleLayer(body, &K));
   PetscCall(BodySetUpLayerRows(body, &B));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
   PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, &body->solver));
-  PetscCall(MatCreateVecs(K, &body->layer_solution, &body->layer_rhs));
+  PetscCall(VecNorm(body->positions, NORM_2, &body->layer_reach));
   PetscCall(VecScatterCreate(body->state.u, body->layer_is, body->layer_rhs, NULL, &body->layer_scatter));
   PetscCall(MatDestroy(&K));
   PetscCall(MatDestroy(&B));
@@ -224,5 +201,78 @@ PetscErrorCode BodyFinishSubstepExplicit(Body body)
   }
   if (body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->substep + 1) / body->substeps, body->state.v));
   PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyHasFreeRows - whether `BodyComputeFreeRows()` can tell where the rows get
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. has - whether it is explicit, with massless contact nodes, and makes one substep to a controller step
+
+  Level: developer
+
+.seealso: `Body`, `BodyComputeFreeRows()`
+@*/
+PetscErrorCode BodyHasFreeRows(Body body, PetscBool *has)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
+  *has = (PetscBool)(body->is_explicit && body->layer_scatter && body->substeps == 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeFreeRows - where the rows get at the end of the controller step if no contact acts on any of them
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, one with `BodyHasFreeRows()`
+
+  Output Parameter:
+. displacement - of this rank's rows [m]
+
+  Level: developer
+
+  Notes:
+  From the saved state, which remains as it is, as do the present one and all traces. The same as the displacement traces of
+  `BodyIntegrate()` under `BODY_FREE` conditions, for the price of the elements that touch the massless layer: central differences
+  know the displacement of all nodes with mass before the step's internal force.
+
+.seealso: `Body`, `BodyHasFreeRows()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyComputeFreeRows(Body body, PetscScalar displacement[])
+{
+  const PetscReal    end = body->saved_time + body->time_step, dt = body->time_step;
+  const PetscScalar *u, *v, *a, *rows;
+  PetscScalar       *moved;
+  Vec                way = body->work[1];
+  PetscBool          has;
+
+  PetscFunctionBegin;
+  PetscCall(BodyHasFreeRows(body, &has));
+  PetscCheck(has, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s' is not explicit with massless contact nodes and one substep to a controller step: only integrating tells where its rows get; see BodyHasFreeRows()", body->hdr.name);
+  PetscCall(VecGetArrayRead(body->saved.u, &u));
+  PetscCall(VecGetArrayRead(body->saved.v, &v));
+  PetscCall(VecGetArrayRead(body->saved.a, &a));
+  PetscCall(VecGetArrayWrite(way, &moved));
+  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) moved[i] = u[i] + dt * (v[i] + 0.5 * dt * a[i]);
+  PetscCall(VecRestoreArrayWrite(way, &moved));
+  PetscCall(VecRestoreArrayRead(body->saved.a, &a));
+  PetscCall(VecRestoreArrayRead(body->saved.v, &v));
+  PetscCall(VecRestoreArrayRead(body->saved.u, &u));
+  PetscCall(BodyPrescribeHeld(body, end, way, NULL, NULL));
+  PetscCall(BalanceLayer(body, end, 1, PETSC_FALSE, way, body->work[0]));
+  PetscCall(MatMult(body->interface, way, body->row_vec[0]));
+  PetscCall(VecGetArrayRead(body->row_vec[0], &rows));
+  PetscCall(PetscArraycpy(displacement, rows, body->rows.local));
+  PetscCall(VecRestoreArrayRead(body->row_vec[0], &rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

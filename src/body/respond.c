@@ -44,6 +44,29 @@ PetscErrorCode BodySetBase(Body body)
 }
 
 /*@
+  BodySetFreeBase - takes what the body would do without contact as what `BodyRespond()` counts changes from, without integrating it
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, one with `BodyHasFreeRows()`
+
+  Level: developer
+
+.seealso: `Body`, `BodySetBase()`, `BodyComputeFreeRows()`
+@*/
+PetscErrorCode BodySetFreeBase(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyCreateCompliance(body));
+  PetscCall(BodyComputeFreeRows(body, body->compliance->base_displacement));
+  PetscCall(PetscArrayzero(body->compliance->base_force, body->rows.local));
+  body->compliance->base_gathered = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodySetRoles - says which rows are prescribed and which are loaded in `BodyRespond()`
 
   Collective

@@ -8,14 +8,16 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscScalar       *f_array;
   Vec                u_local, f_local = f;
   const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  Element            element;
 
   PetscFunctionBegin;
+  PetscCall(BodyGetElement(body, &element));
   PetscCall(PetscLogEventBegin(BODY_InternalForce, body, 0, 0, 0));
   PetscCall(BodyGetLocalRead(body, u, &u_local, &u_array));
   if (ghosted) PetscCall(VecGhostGetLocalForm(f, &f_local));
   PetscCall(VecGetArrayWrite(f_local, &f_array));
   PetscCall(PetscArrayzero(f_array, body->local_nodes * body->dim));
-  PetscCall((*body->element->ops.internalforce)(body->element, u_array, f_array));
+  PetscCall((*element->ops.internalforce)(element, u_array, f_array));
   PetscCall(VecRestoreArrayWrite(f_local, &f_array));
   PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
   if (ghosted) {
@@ -31,13 +33,16 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
    where it is known to all ranks that something is wrong. */
 PetscErrorCode BodyCheckInverted(Body body)
 {
-  MPI_Comm       comm = PetscObjectComm((PetscObject)body);
-  const PetscInt e = body->element->inverted, n = body->element->nodes;
+  MPI_Comm       comm      = PetscObjectComm((PetscObject)body);
+  const PetscInt n         = body->element->nodes;
   PetscReal      centre[3] = {0};
-  PetscInt       number, offset;
+  PetscInt       e, number, offset;
   PetscMPIInt    rank, first;
+  Element        element;
 
   PetscFunctionBegin;
+  PetscCall(BodyGetElement(body, &element));
+  e = element->inverted;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   first = e < 0 ? body->rows.size : rank;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm));
@@ -131,11 +136,13 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
 {
   const PetscInt     n = body->element->nodes * body->dim;
   PetscInt           dofs[ELEMENT_MAX_DOFS];
-  PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero = NULL;
+  PetscScalar        tangent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero = NULL;
   const PetscScalar *array;
+  Element            element;
   Vec                local;
 
   PetscFunctionBegin;
+  PetscCall(BodyGetElement(body, &element));
   PetscCall(PetscLogEventBegin(BODY_Tangent, body, 0, 0, 0));
   PetscCall(MatZeroEntries(K));
   if (u) PetscCall(BodyGetLocalRead(body, u, &local, &array));
@@ -144,9 +151,9 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
     array = zero;
   }
   for (PetscInt e = 0; e < body->element->count; e++) {
-    PetscCall((*body->element->ops.stiffness)(body->element, e, array, element));
+    PetscCall((*element->ops.stiffness)(element, e, array, tangent));
     PetscCall(BodyGetElementDofs(body, e, dofs));
-    PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES));
+    PetscCall(MatSetValues(K, n, dofs, n, dofs, tangent, ADD_VALUES));
   }
   if (u) PetscCall(BodyRestoreLocalRead(body, u, &local, &array));
   PetscCall(PetscFree(zero));

@@ -1,23 +1,29 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
 #include "contactimpl.h"
 
+/* What the rows mean to a body */
+void ContactGetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
+{
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
+    const PetscBool    takes = (PetscBool)(pair->body[0] == b || pair->body[1] == b);
+
+    rows[i] = BODY_FREE;
+    if (!takes || conditions == CONDITIONS_FREE) continue;
+    if (conditions == CONDITIONS_FORCES) rows[i] = BODY_FORCED;
+    if (!contact->active[i]) continue;
+    if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
+    if (conditions == CONDITIONS_SCHWARZ) rows[i] = pair->body[pair->dirichlet] == b ? BODY_PRESCRIBED : BODY_FORCED;
+    if (conditions == CONDITIONS_ROBIN) rows[i] = BODY_ROBIN;
+  }
+}
+
 /* Tells every body what its rows mean */
 PetscErrorCode ContactSetConditions(Contact contact, ContactConditions conditions)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair      = &contact->pairs[contact->row_pair[i]];
-      BodyCondition      condition = BODY_FREE;
-
-      if (conditions == CONDITIONS_FORCES && (pair->body[0] == b || pair->body[1] == b)) condition = BODY_FORCED;
-      if (conditions == CONDITIONS_SCHWARZ && contact->active[i]) {
-        if (pair->body[pair->dirichlet] == b) condition = BODY_PRESCRIBED;
-        if (pair->body[1 - pair->dirichlet] == b) condition = BODY_FORCED;
-      }
-      if (conditions == CONDITIONS_ROBIN && contact->active[i] && (pair->body[0] == b || pair->body[1] == b)) condition = BODY_ROBIN;
-      contact->conditions[i] = condition;
-    }
+    ContactGetConditions(contact, conditions, b, contact->conditions);
     PetscCall(BodySetConditions(contact->bodies[b], contact->conditions));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

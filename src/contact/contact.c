@@ -4,6 +4,7 @@
 PetscClassId  CONTACT_CLASSID = 0;
 PetscLogEvent CONTACT_Step, CONTACT_Sweep;
 
+const char *const ContactLaws[]        = {"frictionless", "tied", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
 
 static PetscFunctionList ContactList = NULL;
@@ -86,6 +87,8 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscFunctionBegin;
   PetscCall(PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
+  (*contact)->slip_bound  = 0.05;
+  (*contact)->angle_bound = 0.02;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,7 +202,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
 {
   char      type[64] = CONTACT_SCHWARZ, *pairs[64];
   PetscInt  n        = 64;
-  PetscBool set, none = PETSC_FALSE;
+  PetscBool set, none = PETSC_FALSE, all = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
@@ -210,20 +213,22 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetFromOptions", contact->tolerance, &contact->tolerance, NULL));
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations, (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
+  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "", ContactLaws, (PetscEnum)contact->law, (PetscEnum *)&contact->law, NULL));
+  PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "", contact->slip_bound, &contact->slip_bound, NULL));
+  PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "", contact->angle_bound, &contact->angle_bound, NULL));
   PetscOptionsEnd();
+  PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound, (double)contact->angle_bound);
+  PetscCall(ContactReadObstacles(contact));
   if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "none", &none));
+  if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "auto", &all));
   if (set) {
     for (PetscInt p = 0; p < n; p++) {
-      if (!none) PetscCall(ContactAddPair(contact, pairs[p]));
+      if (!none && !all) PetscCall(ContactAddPair(contact, pairs[p]));
       PetscCall(PetscFree(pairs[p]));
     }
-  } else if (contact->n_bodies == 2) {
-    char pair[256];
-
-    PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[0])->name, ((PetscObject)contact->bodies[1])->name));
-    PetscCall(ContactAddPair(contact, pair));
   }
-  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or none", contact->n_bodies);
+  if (all || (!set && (contact->n_bodies == 2 || (contact->n_bodies == 1 && contact->n_obstacles)))) PetscCall(ContactAddAllPairs(contact));
+  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none", contact->n_bodies);
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -250,6 +255,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
   contact->counts_made.sweeps = 0;
+  PetscCall(ContactUpdateRows(contact));
   if (contact->n_all_rows) PetscUseTypeMethod(contact, step);
   else { /* nothing can touch */
     PetscBool penetrating;
@@ -306,8 +312,9 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PetscViewerASCIIPrintf(viewer, " %s", contact->pairs[p].name));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PetscViewerASCIIPrintf(viewer, " %s%s", contact->pairs[p].name, contact->pairs[p].chosen && !contact->pairs[p].obstacle ? " (sides chosen)" : ""));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->n_all_rows, contact->n_all_rows == 1 ? "" : "s"));
+  if (contact->law != CONTACT_LAW_FRICTIONLESS) PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactLaws[contact->law]));
   if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->constraint]));
   if (contact->stabilization != CONTACT_STABILIZATION_NONE) PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->stabilization]));
   PetscTryTypeMethod(contact, view, viewer);
@@ -343,19 +350,11 @@ PetscErrorCode ContactDestroy(Contact *contact)
     if (c->interfaces) PetscCall(MatDestroy(&c->interfaces[b]));
     if (c->node_dofs) PetscCall(PetscFree(c->node_dofs[b]));
   }
-  for (PetscInt p = 0; p < c->n_pairs; p++) {
-    PetscCall(PetscFree(c->pairs[p].name));
-    PetscCall(PetscFree(c->pairs[p].surface[0]));
-    PetscCall(PetscFree(c->pairs[p].surface[1]));
-  }
+  PetscCall(ContactDestroyRows(c));
   PetscCall(PetscFree(c->bodies));
-  PetscCall(PetscFree(c->pairs));
   PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->node_dofs, c->n_node_dofs, c->n_all_nodes));
-  PetscCall(PetscFree3(c->row_pair, c->initial_gap, c->area));
-  PetscCall(PetscFree7(c->force, c->gap, c->saved_force, c->saved_gap, c->active, c->saved_active, c->conditions));
   PetscCall(PetscFree(c->stabilized));
   PetscCall(ContactDestroyResultants(c));
-  PetscCall(PetscFree5(c->all_row_pair, c->mine_active, c->all_active, c->counts, c->offsets));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

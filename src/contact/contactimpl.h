@@ -5,8 +5,9 @@
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
   PetscErrorCode (*setup)(Contact);
-  PetscErrorCode (*step)(Contact);   /* advances all bodies from their saved states through one controller step */
-  PetscErrorCode (*accept)(Contact); /* corrects the states at the end of the step, before they become the next one's start */
+  PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
+  PetscErrorCode (*rowschanged)(Contact); /* some rows of the bodies' interfaces, contact->changed, have new entries */
+  PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of the step, before they become the next one's start */
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -16,30 +17,45 @@ typedef struct {
   PetscInt  body[2];    /* numbers in the contact's bodies: the one that has a node for each row, and its partner */
   PetscInt  dirichlet;  /* 0 or 1: which of them takes displacements in this controller step */
   char     *surface[2]; /* names of the surfaces, NULL for all that face each other */
+  Obstacle  obstacle;   /* in place of the second body, whose number is that of the bodies then; borrowed */
+  PetscBool chosen;     /* by the program, not by the user */
+  Surface   surfaces[2];
+  Transfer  transfer;
+  PetscInt  components; /* rows of each node: its normal, or all directions */
   PetscInt  begin, end; /* its rows of this rank */
   PetscReal normal[3];  /* mean outward normal of the first */
 } ContactPair;
 
 /* What the rows mean to the bodies */
 typedef enum {
-  CONDITIONS_FREE,    /* no row means anything */
-  CONDITIONS_SCHWARZ, /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
-  CONDITIONS_ROBIN,   /* active rows: Robin rows on both sides */
-  CONDITIONS_FORCES   /* all rows forced on both sides */
+  CONDITIONS_FREE,         /* no row means anything */
+  CONDITIONS_SCHWARZ,      /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
+  CONDITIONS_ROBIN,        /* active rows: Robin rows on both sides */
+  CONDITIONS_FORCES,       /* all rows forced on both sides */
+  CONDITIONS_ACTIVE_FORCES /* active rows forced on both sides */
 } ContactConditions;
 
 struct _p_Contact {
   PETSCHEADER(struct _ContactOps);
-  PetscInt     n_bodies, n_pairs, max_pairs;
+  PetscInt     n_bodies, n_pairs, max_pairs, dim;
   Body        *bodies;
-  BodyTraces  *traces;     /* per body */
+  BodyTraces  *traces;     /* per body, and then those of what stays where it is */
   Mat         *interfaces; /* per body: rows of all pairs */
   ContactPair *pairs;
-  PetscInt    *order; /* sweep order: Dirichlet sides before their Neumann sides */
+  PetscInt     n_obstacles;
+  Obstacle    *obstacles;
+  ContactLaw   law;
+  PetscReal    slip_bound, angle_bound; /* beyond which rows are built again: parts of a face, rad */
+  PetscInt    *order;                   /* sweep order: Dirichlet sides before their Neumann sides */
   /* rows of this rank */
   PetscInt             n_rows, row_begin, n_all_rows;
   PetscInt            *row_pair;
   PetscReal           *initial_gap, *area;
+  PetscInt            *row_dof;                 /* first displacement of its node in the pair's first body, rank numbering */
+  PetscReal           *row_normal;              /* its direction, 3 numbers, 0 beyond the dimension */
+  PetscBool           *opposite;                /* it has anything to touch */
+  PetscBool           *tied;                    /* it is held whatever its force and gap */
+  PetscBool           *changed;                 /* it has new entries */
   PetscReal           *force, *gap;             /* at the end of the controller step */
   PetscReal           *saved_force, *saved_gap; /* at its start */
   PetscBool           *active, *saved_active;
@@ -56,8 +72,6 @@ struct _p_Contact {
   ContactCounts        counts_made;
   PetscReal            penalty_energy;
   /* resultants of the pairs */
-  PetscInt  *row_dof;       /* per row: first displacement of its node in the pair's first body, rank numbering */
-  PetscReal *row_normal;    /* per row: its direction, 3 numbers, 0 beyond the dimension */
   PetscReal *cross_section; /* per pair: of the first body, which makes areas of `area` */
   PetscReal *sums, *maxima; /* per pair: work space */
   PetscReal *impulse;       /* per pair, this rank's share: impulse so far, force at the end of the last accepted step; 3 numbers each */
@@ -68,7 +82,15 @@ struct _p_Contact {
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep;
 
+PETSC_INTERN PetscErrorCode ContactReadObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
+PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
+PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);

@@ -23,6 +23,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
+  PetscCall(ContactSetUpObstacleTraces(contact));
   PetscCall(ContactSetUpResultants(contact));
   PetscCall(ContactSetUpStabilization(contact));
   if (contact->n_all_rows) PetscTryTypeMethod(contact, setup);
@@ -50,20 +51,14 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-    PetscScalar       *dirichlet, *neumann;
-
-    PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
-    PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-    contact->gap[i] = contact->saved_gap[i] = contact->initial_gap[i] + neumann[i] - dirichlet[i];
-  }
+  PetscCall(ContactComputeStartGaps(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     ContactPairState   state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)", ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+    PetscCheck(!pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the body is %g m inside the obstacle at the start; move one of them", pair->name, (double)-state.gap);
+    PetscCheck(pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)", ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,7 +98,7 @@ PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
   Output Parameters:
 + name      - as it was given, or `NULL`
 . dirichlet - body that takes displacements, or `NULL`
-- neumann   - body that takes tractions, or `NULL`
+- neumann   - body that takes tractions, `NULL` for an obstacle; or `NULL`
 
   Level: intermediate
 
@@ -116,7 +111,7 @@ PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[]
   PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
   if (name) *name = contact->pairs[pair].name;
   if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[0]];
-  if (neumann) *neumann = contact->bodies[contact->pairs[pair].body[1]];
+  if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

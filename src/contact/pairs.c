@@ -1,7 +1,8 @@
-/* Contact pairs: from their names to rows of the interface. */
+/* Contact pairs: from their names to surfaces of bodies, and which side takes displacements. */
 #include "contactimpl.h"
 
-static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface)
+/* One side of a pair; the second may be an obstacle, for which the body is one past the last */
+static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)
 {
   char     *dot;
   char      name[256], known[1024] = "";
@@ -22,7 +23,16 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
     PetscCall(PetscStrlcat(known, b ? ", " : "", sizeof(known)));
     PetscCall(PetscStrlcat(known, ((PetscObject)contact->bodies[b])->name, sizeof(known)));
   }
-  PetscCheck(*body >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: there is no body '%s'; -bodies has %s", pair, name, known);
+  for (PetscInt o = 0; obstacle && !dot && *body < 0 && o < contact->n_obstacles; o++) {
+    const char *other;
+
+    PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+    PetscCall(PetscStrcmp(other, name, &same));
+    if (!same) continue;
+    *body     = contact->n_bodies;
+    *obstacle = contact->obstacles[o];
+  }
+  PetscCheck(*body >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: there is no body '%s'; -bodies has %s (obstacles stand second, without a surface)", pair, name, known);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -33,7 +43,8 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
 
   Input Parameters:
 + contact - the `Contact`, with its bodies
-- pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`
+- pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`; or of a body and an
+            obstacle, `ball:floor`
 
   Options Database Key:
 . -contact_pairs a:b,b:c - pairs
@@ -61,8 +72,8 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   p = &contact->pairs[contact->n_pairs++];
   PetscCall(PetscMemzero(p, sizeof(*p)));
   PetscCall(PetscStrallocpy(pair, &p->name));
-  PetscCall(ParseSide(contact, pair, text, &p->body[0], &p->surface[0]));
-  PetscCall(ParseSide(contact, pair, colon + 1, &p->body[1], &p->surface[1]));
+  PetscCall(ParseSide(contact, pair, text, &p->body[0], &p->surface[0], NULL));
+  PetscCall(ParseSide(contact, pair, colon + 1, &p->body[1], &p->surface[1], &p->obstacle));
   PetscCheck(p->body[0] != p->body[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: a body cannot touch itself", pair);
   for (PetscInt other = 0; other < contact->n_pairs - 1; other++) {
     PetscBool same;
@@ -73,8 +84,104 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rigid obstacles, by the options */
+PetscErrorCode ContactReadObstacles(Contact contact)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  char    *names[64];
+  PetscInt n = 64;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-obstacles", names, &n, NULL));
+  PetscCall(PetscMalloc1(n, &contact->obstacles));
+  for (PetscInt o = 0; o < n; o++) {
+    for (PetscInt b = 0; b < contact->n_bodies; b++) {
+      PetscBool same;
+
+      PetscCall(PetscStrcmp(names[o], ((PetscObject)contact->bodies[b])->name, &same));
+      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", names[o]);
+    }
+    PetscCall(ObstacleCreateFromOptions(comm, names[o], &contact->obstacles[contact->n_obstacles]));
+    contact->n_obstacles++;
+    PetscCall(PetscFree(names[o]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean edge length of a body's elements [m] */
+static PetscErrorCode GetElementSize(Body body, PetscReal *size)
+{
+  PetscReal sums[2] = {0, 0};
+  PetscInt  cstart, cend, dim;
+  DM        dm;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDM(body, &dm));
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &cstart, &cend));
+  for (PetscInt cell = cstart; cell < cend; cell++) {
+    PetscReal volume;
+
+    PetscCall(DMPlexComputeCellGeometryFVM(dm, cell, &volume, NULL, NULL));
+    sums[0] += volume;
+  }
+  sums[1] = cend - cstart;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *size = PetscPowReal(sums[0] / sums[1], 1. / dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the second body should take displacements rather than the first: an implicit one before an explicit one, then the one with the finer
+   mesh. A difference of a thousandth is none. */
+static PetscErrorCode PrefersSecond(Contact contact, PetscInt first, PetscInt second, PetscBool *prefers)
+{
+  PetscBool is_explicit[2];
+  PetscReal size[2];
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsExplicit(contact->bodies[first], &is_explicit[0]));
+  PetscCall(BodyIsExplicit(contact->bodies[second], &is_explicit[1]));
+  PetscCall(GetElementSize(contact->bodies[first], &size[0]));
+  PetscCall(GetElementSize(contact->bodies[second], &size[1]));
+  *prefers = is_explicit[0] == is_explicit[1] ? (PetscBool)(size[1] < 0.999 * size[0]) : is_explicit[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A pair of whole bodies whose order is not stated */
+static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second)
+{
+  char      pair[256];
+  PetscBool turn = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PrefersSecond(contact, first, second, &turn));
+  PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[turn ? second : first])->name, ((PetscObject)contact->bodies[turn ? first : second])->name));
+  PetscCall(ContactAddPair(contact, pair));
+  contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All bodies with each other and with all obstacles */
+PetscErrorCode ContactAddAllPairs(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt a = 0; a < contact->n_bodies; a++)
+    for (PetscInt b = a + 1; b < contact->n_bodies; b++) PetscCall(AddUnordered(contact, a, b));
+  for (PetscInt a = 0; a < contact->n_bodies; a++)
+    for (PetscInt o = 0; o < contact->n_obstacles; o++) {
+      const char *name;
+      char        pair[256];
+
+      PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+      PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[a])->name, name));
+      PetscCall(ContactAddPair(contact, pair));
+      contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Bodies in an order in which every Dirichlet side comes before its Neumann side */
-static PetscErrorCode OrderBodies(Contact contact)
+PetscErrorCode ContactOrderBodies(Contact contact)
 {
   PetscInt  done  = 0;
   PetscBool moved = PETSC_TRUE, *placed;
@@ -95,183 +202,5 @@ static PetscErrorCode OrderBodies(Contact contact)
   }
   PetscCall(PetscFree(placed));
   PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a instead of a:b)");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair, Transfer transfer, Surface surfaces[])
-{
-  PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) {
-    const PetscInt *nodes;
-    PetscInt        n, n_vertices, *vertices, start, end, rstart, body = pair->body[side];
-    PetscSection    section;
-    Vec             positions;
-    DM              dm;
-
-    PetscCall(TransferGetNodes(transfer, (PetscBool)(side == 1), &n, &nodes));
-    PetscCall(SurfaceGetVertices(surfaces[side], n, nodes, &n_vertices, &vertices));
-    PetscCall(BodySetContactNodes(contact->bodies[body], n_vertices, vertices));
-    if (!contact->n_all_nodes[body]) {
-      /* the first pair of a body says where its contact point is */
-      contact->n_all_nodes[body] = n;
-      PetscCall(BodyGetDM(contact->bodies[body], &dm));
-      PetscCall(DMGetGlobalSection(dm, &section));
-      PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
-      PetscCall(VecGetOwnershipRange(positions, &rstart, &end));
-      PetscCall(PetscMalloc1(n_vertices, &contact->node_dofs[body]));
-      for (PetscInt v = 0; v < n_vertices; v++) {
-        PetscCall(PetscSectionGetOffset(section, vertices[v], &start));
-        if (start >= 0) contact->node_dofs[body][contact->n_node_dofs[body]++] = start - rstart;
-      }
-    }
-    PetscCall(PetscFree(vertices));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows live on the rank that owns their Dirichlet node */
-static PetscErrorCode CountRows(Contact contact, Transfer transfers[])
-{
-  PetscFunctionBegin;
-  contact->n_rows = 0;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscInt n, dof, rstart, rend;
-    Vec      positions;
-
-    PetscCall(BodyGetReferencePositions(contact->bodies[contact->pairs[p].body[0]], &positions));
-    PetscCall(VecGetOwnershipRange(positions, &rstart, &rend));
-    PetscCall(TransferGetSize(transfers[p], &n));
-    PetscCheck(n, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", contact->pairs[p].name);
-    contact->pairs[p].begin = contact->n_rows;
-    for (PetscInt row = 0; row < n; row++) {
-      PetscReal gap, area;
-
-      PetscCall(TransferGetRow(transfers[p], row, &dof, &gap, &area));
-      if (dof >= rstart && dof < rend) contact->n_rows++;
-    }
-    contact->pairs[p].end = contact->n_rows;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AllocateRows(Contact contact)
-{
-  MPI_Comm    comm = PetscObjectComm((PetscObject)contact);
-  PetscMPIInt mine, total = 0;
-  PetscInt    n = contact->n_rows;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Scan(&n, &contact->row_begin, 1, MPIU_INT, MPI_SUM, comm));
-  contact->row_begin -= n;
-  PetscCallMPI(MPI_Allreduce(&n, &contact->n_all_rows, 1, MPIU_INT, MPI_SUM, comm));
-  PetscCall(PetscMalloc3(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area));
-  PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n, &contact->saved_active, n, &contact->conditions));
-  PetscCall(PetscCalloc5(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets));
-  PetscCall(PetscMPIIntCast(n, &mine));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->counts, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < contact->size; total += contact->counts[r++]) contact->offsets[r] = total;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FillRows(Contact contact, Transfer transfers[])
-{
-  MPI_Comm comm  = PetscObjectComm((PetscObject)contact);
-  PetscInt local = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Vec      positions;
-    PetscInt n;
-
-    PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
-    PetscCall(VecGetLocalSize(positions, &n));
-    PetscCall(MatCreate(comm, &contact->interfaces[b]));
-    PetscCall(MatSetSizes(contact->interfaces[b], contact->n_rows, n, PETSC_DETERMINE, PETSC_DETERMINE));
-    PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
-    PetscCall(MatSetUp(contact->interfaces[b]));
-  }
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-    PetscInt     n, dof, rstart, rend;
-    Vec          positions;
-
-    PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
-    PetscCall(VecGetOwnershipRange(positions, &rstart, &rend));
-    PetscCall(TransferGetSize(transfers[p], &n));
-    for (PetscInt row = 0; row < n; row++) {
-      PetscReal gap, area;
-
-      PetscCall(TransferGetRow(transfers[p], row, &dof, &gap, &area));
-      if (dof < rstart || dof >= rend) continue;
-      contact->row_pair[local]    = p;
-      contact->initial_gap[local] = gap;
-      contact->area[local]        = area;
-      PetscCall(TransferSetValues(transfers[p], row, contact->row_begin + local, contact->interfaces[pair->body[0]], contact->interfaces[pair->body[1]]));
-      local++;
-    }
-  }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
-    PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
-  }
-  {
-    PetscMPIInt *counts = contact->counts, *offsets = contact->offsets;
-
-    PetscCallMPI(MPI_Allgatherv(contact->row_pair, (PetscMPIInt)contact->n_rows, MPIU_INT, contact->all_row_pair, counts, offsets, MPIU_INT, comm));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, Surface surfaces[], Transfer *transfer, PetscReal *extent)
-{
-  const SurfaceData *data;
-  const PetscInt    *nodes;
-  PetscInt           n;
-
-  PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) {
-    DM dm;
-
-    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
-    PetscCall(SurfaceCreate(dm, pair->surface[side], &surfaces[side]));
-    PetscCall(SurfaceGetData(surfaces[side], &data));
-    for (PetscInt d = 0; d < data->dim; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(data->lower[d]), PetscAbsReal(data->upper[d])));
-  }
-  PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), surfaces[0], surfaces[1], transfer));
-  PetscCall(SurfaceGetData(surfaces[0], &data));
-  PetscCall(TransferGetNodes(*transfer, PETSC_FALSE, &n, &nodes));
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt d = 0; d < data->dim; d++) pair->normal[d] += data->normals[nodes[i] * data->dim + d] / n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Surfaces, transfers and rows of all pairs */
-PetscErrorCode ContactSetUpPairs(Contact contact)
-{
-  Transfer *transfers;
-  Surface  *surfaces;
-  PetscReal extent = 0;
-
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc6(contact->n_bodies, &contact->traces, contact->n_bodies, &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs, contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
-  PetscCall(OrderBodies(contact));
-  PetscCall(PetscMalloc2(contact->n_pairs, &transfers, 2 * contact->n_pairs, &surfaces));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscCall(CreateTransfer(contact, &contact->pairs[p], surfaces + 2 * p, &transfers[p], &extent));
-    PetscCall(MarkContactNodes(contact, &contact->pairs[p], transfers[p], surfaces + 2 * p));
-  }
-  PetscCall(CountRows(contact, transfers));
-  PetscCall(AllocateRows(contact));
-  PetscCall(FillRows(contact, transfers));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscCall(TransferDestroy(&transfers[p]));
-    PetscCall(SurfaceDestroy(&surfaces[2 * p]));
-    PetscCall(SurfaceDestroy(&surfaces[2 * p + 1]));
-  }
-  PetscCall(PetscFree2(transfers, surfaces));
-  /* what a converged outer iteration leaves of the gap must not count as penetration in the next trial */
-  if (contact->tolerance == (PetscReal)PETSC_DEFAULT) contact->tolerance = 3e-12 * extent;
-  PetscCheck(contact->tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_tolerance %g m must not be negative", (double)contact->tolerance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

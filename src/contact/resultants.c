@@ -19,34 +19,6 @@ enum {
   N_MAXIMA
 };
 
-/* Where the rows of this rank act, and along what: from the rows of the first body, each of which is of one node */
-static PetscErrorCode GetRowDirections(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscInt           dim, first;
-    Vec                positions;
-    DM                 dm;
-
-    PetscCall(BodyGetDM(contact->bodies[pair->body[0]], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
-    PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
-    PetscCall(VecGetOwnershipRange(positions, &first, NULL));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscInt    *columns;
-      const PetscScalar *values;
-      PetscInt           n;
-
-      PetscCall(MatGetRow(contact->interfaces[pair->body[0]], contact->row_begin + i, &n, &columns, &values));
-      if (n) contact->row_dof[i] = (columns[0] - first) / dim * dim;
-      for (PetscInt k = 0; k < n; k++) contact->row_normal[3 * i + (columns[k] - first) % dim] = PetscRealPart(values[k]);
-      PetscCall(MatRestoreRow(contact->interfaces[pair->body[0]], contact->row_begin + i, &n, &columns, &values));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Memory, and what stays as it is; after the bodies have been set up */
 PetscErrorCode ContactSetUpResultants(Contact contact)
 {
@@ -55,9 +27,7 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
 
   PetscFunctionBegin;
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(contact->n_rows, &contact->row_dof, 3 * contact->n_rows, &contact->row_normal));
   PetscCall(PetscCalloc4(contact->n_pairs, &contact->cross_section, N_SUMS * contact->n_pairs, &contact->sums, N_MAXIMA * contact->n_pairs, &contact->maxima, 6 * contact->n_pairs, &contact->impulse));
-  PetscCall(GetRowDirections(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->cross_section[p]));
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTimeStep(ts, &contact->step));
@@ -69,7 +39,6 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
 PetscErrorCode ContactDestroyResultants(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree2(contact->row_dof, contact->row_normal));
   PetscCall(PetscFree4(contact->cross_section, contact->sums, contact->maxima, contact->impulse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -139,7 +108,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     sums[SUM_FORCE] += contact->force[i];
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->gap[i]);
-    maxima[MAX_TENSION]     = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
+    if (!contact->tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
     if (!contact->active[i]) continue;
     sums[SUM_ACTIVE] += 1;
     if (contact->row_dof[i] != counted) sums[SUM_AREA] += contact->area[i] * contact->cross_section[p];

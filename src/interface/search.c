@@ -1,64 +1,131 @@
-#include "search.h"
+/* Which faces may lie opposite to a face: a tree of boxes, O(log n) a query. */
+#include "interfaceimpl.h"
 
-/* Weights of the nodes of a simplex face (a point, segment or triangle) at the point of it that is closest to x: minimises
-   |x - sum_k w_k p_k| over weights that sum to one and are not negative. The distance is returned. */
-static PetscReal ProjectOnFace(const SurfaceData *data, PetscInt face, const PetscReal x[], PetscReal weights[])
+#define LEAF 4
+
+static PetscReal Middle(PetscInt n, const Face *face, PetscInt d)
 {
-  const PetscInt dim = data->dim, n = data->face_nodes, *nodes = data->faces + face * n;
-  PetscReal      distance = 0;
+  PetscReal sum = 0;
 
-  for (PetscInt k = 0; k < n; k++) weights[k] = k == 0;
-  /* exact minimisation along one edge after the other, which ends in the minimum since the problem is convex; a segment
-     needs one pass, a point none */
-  for (PetscInt pass = 0; pass < (n > 2 ? 100 : n - 1); pass++) {
-    PetscReal moved = 0;
-
-    for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = a + 1; b < n; b++) {
-        PetscReal along = 0, square = 0, step;
-
-        for (PetscInt d = 0; d < dim; d++) {
-          const PetscReal edge = data->positions[nodes[b] * dim + d] - data->positions[nodes[a] * dim + d];
-          PetscReal       rest = x[d];
-
-          for (PetscInt k = 0; k < n; k++) rest -= weights[k] * data->positions[nodes[k] * dim + d];
-          along += rest * edge;
-          square += edge * edge;
-        }
-        step = PetscMin(PetscMax(along / square, -weights[b]), weights[a]);
-        weights[a] -= step;
-        weights[b] += step;
-        moved = PetscMax(moved, PetscAbsReal(step));
-      }
-    if (moved < 1e-15) break;
-  }
-  for (PetscInt d = 0; d < dim; d++) {
-    PetscReal rest = x[d];
-
-    for (PetscInt k = 0; k < n; k++) rest -= weights[k] * data->positions[nodes[k] * dim + d];
-    distance += rest * rest;
-  }
-  return PetscSqrtReal(distance);
+  for (PetscInt k = 0; k < n; k++) sum += face->x[k][d];
+  return sum;
 }
 
-/* The face whose outward normal is against that of the point and which is closest to it, with its nodes' weights; -1 where
-   there is none. All faces are tried: contact in one dimension has a handful. */
-PetscErrorCode SearchClosestFace(const SurfaceData *data, const PetscReal x[], const PetscReal normal[], PetscInt *closest, PetscReal weights[])
+/* Puts the faces whose middle along d is less than that of the median one before it (Hoare's selection) */
+static void SplitAtMedian(PetscInt n, const Face faces[], PetscInt d, PetscInt begin, PetscInt end, PetscInt order[])
 {
-  PetscReal smallest = PETSC_MAX_REAL, trial[4];
+  const PetscInt median = (begin + end) / 2;
+  PetscInt       low = begin, high = end - 1;
+
+  while (low < high) {
+    const PetscReal pivot = Middle(n, &faces[order[(low + high) / 2]], d);
+    PetscInt        i = low, j = high;
+
+    while (i <= j) {
+      while (Middle(n, &faces[order[i]], d) < pivot) i++;
+      while (Middle(n, &faces[order[j]], d) > pivot) j--;
+      if (i <= j) {
+        const PetscInt swap = order[i];
+
+        order[i++] = order[j];
+        order[j--] = swap;
+      }
+    }
+    if (median <= j) high = j;
+    else if (median >= i) low = i;
+    else return;
+  }
+}
+
+static void BoundFaces(PetscInt n, const Face faces[], const PetscInt order[], Box *box)
+{
+  for (PetscInt d = 0; d < 3; d++) {
+    box->lower[d] = PETSC_MAX_REAL;
+    box->upper[d] = -PETSC_MAX_REAL;
+  }
+  for (PetscInt i = box->begin; i < box->end; i++)
+    for (PetscInt k = 0; k < n; k++)
+      for (PetscInt d = 0; d < 3; d++) {
+        box->lower[d] = PetscMin(box->lower[d], faces[order[i]].x[k][d]);
+        box->upper[d] = PetscMax(box->upper[d], faces[order[i]].x[k][d]);
+      }
+}
+
+PetscErrorCode TreeCreate(PetscInt face_nodes, PetscInt n, const Face faces[], Tree *tree)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(tree, sizeof(*tree)));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(n, &tree->order, 2 * n, &tree->boxes));
+  for (PetscInt i = 0; i < n; i++) tree->order[i] = i;
+  tree->boxes[0].begin = 0;
+  tree->boxes[0].end   = n;
+  tree->n_boxes        = 1;
+  for (PetscInt b = 0; b < tree->n_boxes; b++) {
+    Box     *box  = &tree->boxes[b];
+    PetscInt axis = 0, half = (box->begin + box->end) / 2;
+
+    BoundFaces(face_nodes, faces, tree->order, box);
+    box->child = -1;
+    if (box->end - box->begin <= LEAF) continue;
+    for (PetscInt d = 1; d < 3; d++)
+      if (box->upper[d] - box->lower[d] > box->upper[axis] - box->lower[axis]) axis = d;
+    SplitAtMedian(face_nodes, faces, axis, box->begin, box->end, tree->order);
+    box->child                       = tree->n_boxes;
+    tree->boxes[tree->n_boxes].begin = box->begin;
+    tree->boxes[tree->n_boxes++].end = half;
+    tree->boxes[tree->n_boxes].begin = half;
+    tree->boxes[tree->n_boxes++].end = box->end;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TreeDestroy(Tree *tree)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(tree->order, tree->boxes));
+  PetscCall(PetscFree(tree->found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a box reaches into the intervals lower to upper along the two tangents and the normal of a frame */
+static PetscBool BoxMeets(const Box *box, const Frame *frame, const PetscReal lower[], const PetscReal upper[])
+{
+  for (PetscInt a = 0; a < 3; a++) {
+    const PetscReal *axis   = a < 2 ? frame->tangents[a] : frame->normal;
+    PetscReal        middle = 0, half = 0;
+
+    for (PetscInt d = 0; d < 3; d++) {
+      middle += ((box->lower[d] + box->upper[d]) / 2 - frame->origin[d]) * axis[d];
+      half += (box->upper[d] - box->lower[d]) / 2 * PetscAbsReal(axis[d]);
+    }
+    if (middle - half > upper[a] || middle + half < lower[a]) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* The faces that may reach into those intervals; they are in tree->found */
+PetscErrorCode TreeQuery(Tree *tree, const Frame *frame, const PetscReal lower[], const PetscReal upper[], PetscInt *n)
+{
+  PetscInt stack[128], depth = 0;
 
   PetscFunctionBegin;
-  *closest = -1;
-  for (PetscInt f = 0; f < data->n_faces; f++) {
-    PetscReal against = 0, distance;
+  *n = 0;
+  if (tree->n_boxes) stack[depth++] = 0;
+  while (depth) {
+    const Box *box = &tree->boxes[stack[--depth]];
 
-    for (PetscInt d = 0; d < data->dim; d++) against -= normal[d] * data->face_normals[f * data->dim + d];
-    if (against <= 1e-6) continue;
-    distance = ProjectOnFace(data, f, x, trial);
-    if (distance >= smallest) continue;
-    smallest = distance;
-    *closest = f;
-    PetscCall(PetscArraycpy(weights, trial, data->face_nodes));
+    if (!BoxMeets(box, frame, lower, upper)) continue;
+    if (box->child >= 0) {
+      stack[depth++] = box->child;
+      stack[depth++] = box->child + 1;
+      continue;
+    }
+    if (*n + LEAF > tree->max_found) {
+      tree->max_found = 2 * tree->max_found + 64;
+      PetscCall(PetscRealloc((size_t)tree->max_found * sizeof(PetscInt), &tree->found));
+    }
+    for (PetscInt i = box->begin; i < box->end; i++) tree->found[(*n)++] = tree->order[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,169 +1,229 @@
-#include <surface.h>
+#include "interfaceimpl.h"
 #include <mesh.h>
 
-struct _n_Surface {
-  DM          dm;
-  SurfaceData data;
-  PetscInt   *dofs, *faces;
-  PetscReal  *positions, *areas, *normals, *face_normals;
-};
-
-/* One face as its rank sees it */
-typedef struct {
-  PetscInt  dofs[4];
-  PetscReal positions[4][3], normal[3], area;
-} Face;
-
-/* Component of `out` across the face, as a unit vector: `out` less its projections on the edges that leave the first node */
-static void OutwardNormal(PetscInt dim, PetscInt n, PetscReal positions[][3], PetscReal out[])
+/* The vertices of a boundary face and how many they are; those of a cell too */
+static PetscErrorCode GetVertices(DM dm, PetscInt point, PetscInt *n, PetscInt vertices[])
 {
-  PetscReal tangents[3][3], length = 0;
-  PetscInt  n_tangents = 0;
-
-  for (PetscInt k = 1; k < n && n_tangents < dim - 1; k++) {
-    PetscReal tangent[3] = {0}, size = 0, full = 0;
-
-    for (PetscInt d = 0; d < dim; d++) tangent[d] = positions[k][d] - positions[0][d];
-    for (PetscInt d = 0; d < dim; d++) full += tangent[d] * tangent[d];
-    for (PetscInt t = 0; t < n_tangents; t++) {
-      PetscReal dot = 0;
-
-      for (PetscInt d = 0; d < dim; d++) dot += tangent[d] * tangents[t][d];
-      for (PetscInt d = 0; d < dim; d++) tangent[d] -= dot * tangents[t][d];
-    }
-    for (PetscInt d = 0; d < dim; d++) size += tangent[d] * tangent[d];
-    if (size <= 1e-20 * full) continue;
-    for (PetscInt d = 0; d < dim; d++) tangents[n_tangents][d] = tangent[d] / PetscSqrtReal(size);
-    n_tangents++;
-  }
-  for (PetscInt t = 0; t < n_tangents; t++) {
-    PetscReal dot = 0;
-
-    for (PetscInt d = 0; d < dim; d++) dot += out[d] * tangents[t][d];
-    for (PetscInt d = 0; d < dim; d++) out[d] -= dot * tangents[t][d];
-  }
-  for (PetscInt d = 0; d < dim; d++) length += out[d] * out[d];
-  for (PetscInt d = 0; d < dim; d++) out[d] /= PetscSqrtReal(length);
-}
-
-static PetscErrorCode DescribeFace(DM dm, PetscInt face, PetscInt dim, PetscInt *n_nodes, Face *description)
-{
-  PetscSection       section, coordinate_section;
-  Vec                coordinates;
-  const PetscScalar *x;
-  const PetscInt    *support;
-  PetscInt          *closure     = NULL, n_points, vstart, vend;
-  PetscReal          centroid[3] = {0}, cell_centroid[3] = {0};
+  PetscInt *closure = NULL, n_points, vstart, vend;
 
   PetscFunctionBegin;
-  PetscCall(DMGetGlobalSection(dm, &section));
-  PetscCall(DMGetCoordinateSection(dm, &coordinate_section));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
-  PetscCall(PetscMemzero(description, sizeof(*description)));
-  PetscCall(VecGetArrayRead(coordinates, &x));
-  *n_nodes = 0;
-  PetscCall(DMPlexGetTransitiveClosure(dm, face, PETSC_TRUE, &n_points, &closure));
+  *n = 0;
+  PetscCall(DMPlexGetTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
   for (PetscInt p = 0; p < n_points; p++) {
-    PetscInt offset;
-
     if (closure[2 * p] < vstart || closure[2 * p] >= vend) continue;
-    PetscCheck(*n_nodes < 4, PETSC_COMM_SELF, PETSC_ERR_SUP, "Faces with more than four nodes are not supported");
-    PetscCall(PetscSectionGetOffset(section, closure[2 * p], &offset));
-    description->dofs[*n_nodes] = offset < 0 ? -(offset + 1) : offset;
-    PetscCall(PetscSectionGetOffset(coordinate_section, closure[2 * p], &offset));
-    for (PetscInt d = 0; d < dim; d++) description->positions[*n_nodes][d] = PetscRealPart(x[offset + d]);
-    (*n_nodes)++;
+    PetscCheck(*n < 8, PETSC_COMM_SELF, PETSC_ERR_SUP, "Cells with more than eight nodes are not supported");
+    vertices[(*n)++] = closure[2 * p];
   }
-  PetscCall(DMPlexRestoreTransitiveClosure(dm, face, PETSC_TRUE, &n_points, &closure));
-  PetscCall(VecRestoreArrayRead(coordinates, &x));
-  description->area = 1;
-  if (*n_nodes > 1) PetscCall(DMPlexComputeCellGeometryFVM(dm, face, &description->area, NULL, NULL));
-  for (PetscInt k = 0; k < *n_nodes; k++)
-    for (PetscInt d = 0; d < dim; d++) centroid[d] += description->positions[k][d] / *n_nodes;
-  PetscCall(DMPlexGetSupport(dm, face, &support));
-  PetscCall(DMPlexComputeCellGeometryFVM(dm, support[0], NULL, cell_centroid, NULL));
-  for (PetscInt d = 0; d < dim; d++) description->normal[d] = centroid[d] - cell_centroid[d];
-  OutwardNormal(dim, *n_nodes, description->positions, description->normal);
+  PetscCall(DMPlexRestoreTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The faces of this rank that a name means */
-static PetscErrorCode CollectFaces(Surface surface, const char name[], PetscInt *n_faces, Face **faces)
+/* Marks the vertices of the faces, on all ranks that have them; the chart's size */
+static PetscErrorCode MarkVertices(DM dm, PetscInt n_faces, const PetscInt points[], PetscSF sf, PetscInt marks[])
 {
-  DM       dm      = surface->dm;
-  PetscInt n_nodes = 0, *points;
+  PetscInt start;
 
   PetscFunctionBegin;
-  PetscCall(MeshGetSurface(dm, name, n_faces, &points));
-  PetscCall(PetscMalloc1(*n_faces, faces));
-  for (PetscInt i = 0; i < *n_faces; i++) PetscCall(DescribeFace(dm, points[i], surface->data.dim, &n_nodes, &(*faces)[i]));
-  PetscCall(PetscFree(points));
-  PetscCallMPI(MPI_Allreduce(&n_nodes, &surface->data.face_nodes, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All faces on every rank: surfaces are small beside bodies */
-static PetscErrorCode GatherFaces(MPI_Comm comm, PetscInt n, const Face mine[], PetscInt *n_all, Face **all)
-{
-  PetscMPIInt size, bytes, *counts, *offsets, total = 0;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc2(size, &counts, size, &offsets));
-  PetscCall(PetscMPIIntCast(n * (PetscInt)sizeof(Face), &bytes));
-  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < size; total += counts[r++]) offsets[r] = total;
-  *n_all = total / (PetscInt)sizeof(Face);
-  PetscCall(PetscMalloc1(*n_all, all));
-  PetscCallMPI(MPI_Allgatherv(mine, bytes, MPI_BYTE, *all, counts, offsets, MPI_BYTE, comm));
-  PetscCall(PetscFree2(counts, offsets));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Numbers the nodes, and gives them normals and areas */
-static PetscErrorCode SetUpNodes(Surface surface, PetscInt n_faces, const Face faces[])
-{
-  SurfaceData   *data = &surface->data;
-  const PetscInt dim = data->dim, n = data->face_nodes;
-  PetscInt       n_nodes = n_faces * n;
-
-  PetscFunctionBegin;
-  data->n_faces = n_faces;
-  PetscCall(PetscMalloc1(n_nodes, &surface->dofs));
-  for (PetscInt f = 0; f < n_faces; f++)
-    for (PetscInt k = 0; k < n; k++) surface->dofs[f * n + k] = faces[f].dofs[k];
-  PetscCall(PetscSortRemoveDupsInt(&n_nodes, surface->dofs));
-  data->n_nodes = n_nodes;
-  PetscCall(PetscMalloc1(n_faces * n, &surface->faces));
-  PetscCall(PetscMalloc1(n_faces * dim, &surface->face_normals));
-  PetscCall(PetscCalloc3(n_nodes * dim, &surface->positions, n_nodes, &surface->areas, n_nodes * dim, &surface->normals));
+  PetscCall(DMPlexGetChart(dm, &start, NULL));
   for (PetscInt f = 0; f < n_faces; f++) {
-    for (PetscInt d = 0; d < dim; d++) surface->face_normals[f * dim + d] = faces[f].normal[d];
-    for (PetscInt k = 0; k < n; k++) {
-      PetscInt node;
+    PetscInt n, vertices[8];
 
-      PetscCall(PetscFindInt(faces[f].dofs[k], n_nodes, surface->dofs, &node));
-      surface->faces[f * n + k] = node;
-      surface->areas[node] += faces[f].area / n;
-      for (PetscInt d = 0; d < dim; d++) {
-        surface->positions[node * dim + d] = faces[f].positions[k][d];
-        surface->normals[node * dim + d] += faces[f].area * faces[f].normal[d];
-      }
+    PetscCall(GetVertices(dm, points[f], &n, vertices));
+    PetscCheck(n <= 4, PETSC_COMM_SELF, PETSC_ERR_SUP, "Faces with more than four nodes are not supported");
+    for (PetscInt k = 0; k < n; k++) marks[vertices[k] - start] = 1;
+  }
+  if (sf) {
+    PetscCall(PetscSFReduceBegin(sf, MPIU_INT, marks, marks, MPI_MAX));
+    PetscCall(PetscSFReduceEnd(sf, MPIU_INT, marks, marks, MPI_MAX));
+    PetscCall(PetscSFBcastBegin(sf, MPIU_INT, marks, marks, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf, MPIU_INT, marks, marks, MPI_REPLACE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes of this rank: owned ones first. marks become their numbers, -1 elsewhere. */
+static PetscErrorCode NumberNodes(Surface surface, PetscInt marks[])
+{
+  SurfaceData *data = &surface->data;
+  PetscSection section;
+  PetscInt     start, end, vstart, vend;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetGlobalSection(surface->dm, &section));
+  PetscCall(DMPlexGetChart(surface->dm, &start, &end));
+  PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
+  data->n_nodes = 0;
+  for (PetscInt v = vstart; v < vend; v++) data->n_nodes += marks[v - start] ? 1 : 0;
+  PetscCall(PetscMalloc4(data->n_nodes, &data->vertices, data->n_nodes, &data->dofs, data->n_nodes, &surface->owner_index, data->n_nodes, &surface->owner_rank));
+  data->n_nodes = 0;
+  for (PetscInt ghosts = 0; ghosts < 2; ghosts++) {
+    for (PetscInt v = vstart; v < vend; v++) {
+      PetscInt offset;
+
+      PetscCall(PetscSectionGetOffset(section, v, &offset));
+      if ((offset < 0) != (ghosts == 1) || marks[v - start] != 1) continue;
+      data->vertices[data->n_nodes] = v;
+      data->dofs[data->n_nodes++]   = offset < 0 ? -(offset + 1) : offset;
+    }
+    if (!ghosts) data->n_owned = data->n_nodes;
+  }
+  for (PetscInt p = 0; p < end - start; p++) marks[p] = -1;
+  for (PetscInt i = 0; i < data->n_nodes; i++) marks[data->vertices[i] - start] = i;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the nodes live, and the way from their owners to ghosts */
+static PetscErrorCode ConnectNodes(Surface surface, PetscSF points, PetscInt numbers[])
+{
+  MPI_Comm           comm = PetscObjectComm((PetscObject)surface->dm);
+  SurfaceData       *data = &surface->data;
+  PetscInt           start, n_leaves = 0, n_ghosts = 0, *ghosts;
+  const PetscInt    *leaves = NULL;
+  const PetscSFNode *roots  = NULL;
+  PetscSFNode       *owners;
+  PetscMPIInt        rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(DMPlexGetChart(surface->dm, &start, NULL));
+  for (PetscInt i = 0; i < data->n_owned; i++) {
+    surface->owner_index[i] = i;
+    surface->owner_rank[i]  = rank;
+  }
+  if (points) {
+    PetscInt *mine;
+
+    PetscCall(PetscSFGetGraph(points, NULL, &n_leaves, &leaves, &roots));
+    PetscCall(PetscMalloc1(n_leaves, &mine));
+    for (PetscInt l = 0; l < n_leaves; l++) mine[l] = numbers[(leaves ? leaves[l] : l)];
+    PetscCall(PetscSFBcastBegin(points, MPIU_INT, numbers, numbers, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(points, MPIU_INT, numbers, numbers, MPI_REPLACE));
+    for (PetscInt l = 0; l < n_leaves; l++) {
+      if (mine[l] < 0) continue;
+      surface->owner_index[mine[l]]   = numbers[leaves ? leaves[l] : l];
+      surface->owner_rank[mine[l]]    = (PetscMPIInt)roots[l].rank;
+      numbers[leaves ? leaves[l] : l] = mine[l];
+    }
+    PetscCall(PetscFree(mine));
+  }
+  n_ghosts = data->n_nodes - data->n_owned;
+  PetscCall(PetscMalloc1(n_ghosts, &ghosts));
+  PetscCall(PetscMalloc1(n_ghosts, &owners));
+  for (PetscInt i = 0; i < n_ghosts; i++) {
+    ghosts[i]       = data->n_owned + i;
+    owners[i].rank  = surface->owner_rank[data->n_owned + i];
+    owners[i].index = surface->owner_index[data->n_owned + i];
+  }
+  PetscCall(PetscSFCreate(comm, &surface->sf));
+  PetscCall(PetscSFSetGraph(surface->sf, data->n_owned, n_ghosts, ghosts, PETSC_OWN_POINTER, owners, PETSC_OWN_POINTER));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetPosition(DM dm, PetscInt vertex, const PetscScalar coordinates[], PetscInt dim, PetscReal x[])
+{
+  PetscSection section;
+  PetscInt     offset;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetCoordinateSection(dm, &section));
+  PetscCall(PetscSectionGetOffset(section, vertex, &offset));
+  for (PetscInt d = 0; d < 3; d++) x[d] = d < dim ? PetscRealPart(coordinates[offset + d]) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes of a face in an order that makes its normal outward, away from its cell */
+static PetscErrorCode OrientFace(Surface surface, PetscInt f, const PetscInt numbers[], PetscInt start, const PetscScalar coordinates[])
+{
+  SurfaceData    *data = &surface->data;
+  const PetscInt  n    = data->face_nodes;
+  const PetscInt *support;
+  PetscInt        n_vertices, vertices[8];
+  PetscReal       x[4][3], normal[3], area, out = 0, outward[3] = {0};
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetSupport(surface->dm, surface->points[f], &support));
+  PetscCall(GetVertices(surface->dm, support[0], &n_vertices, vertices));
+  for (PetscInt k = 0; k < n_vertices; k++) {
+    PetscReal position[3];
+
+    PetscCall(GetPosition(surface->dm, vertices[k], coordinates, data->dim, position));
+    for (PetscInt d = 0; d < 3; d++) outward[d] -= position[d] / n_vertices;
+  }
+  PetscCall(GetVertices(surface->dm, surface->points[f], &n_vertices, vertices));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(GetPosition(surface->dm, vertices[k], coordinates, data->dim, x[k]));
+    data->faces[f * n + k] = numbers[vertices[k] - start];
+    for (PetscInt d = 0; d < 3; d++) outward[d] += x[k][d] / n;
+  }
+  if (data->dim == 1) {
+    surface->signs[f] = outward[0] < 0 ? -1 : 1;
+  } else {
+    FaceNormal(n, x, normal, &area);
+    out = Dot(normal, outward);
+    for (PetscInt k = 0; k < n / 2 && out < 0; k++) {
+      const PetscInt swap = data->faces[f * n + k];
+
+      data->faces[f * n + k]         = data->faces[f * n + n - 1 - k];
+      data->faces[f * n + n - 1 - k] = swap;
     }
   }
-  for (PetscInt node = 0; node < n_nodes; node++) {
-    PetscReal length = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    for (PetscInt d = 0; d < dim; d++) length += PetscSqr(surface->normals[node * dim + d]);
-    for (PetscInt d = 0; d < dim; d++) surface->normals[node * dim + d] /= PetscSqrtReal(length);
-  }
-  data->dofs         = surface->dofs;
-  data->faces        = surface->faces;
-  data->positions    = surface->positions;
-  data->areas        = surface->areas;
-  data->normals      = surface->normals;
-  data->face_normals = surface->face_normals;
+static PetscErrorCode SetUpFaces(Surface surface, const PetscInt numbers[])
+{
+  SurfaceData       *data = &surface->data;
+  const PetscScalar *coordinates;
+  PetscInt           start, n = 0, vertices[8];
+  Vec                local;
+
+  PetscFunctionBegin;
+  if (data->n_faces) PetscCall(GetVertices(surface->dm, surface->points[0], &n, vertices));
+  PetscCallMPI(MPIU_Allreduce(&n, &data->face_nodes, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)surface->dm)));
+  n = data->face_nodes;
+  PetscCall(PetscMalloc4(data->n_faces * n, &data->faces, data->n_faces, &surface->signs, 3 * data->n_faces, &data->face_normals, data->n_faces, &data->face_areas));
+  PetscCall(PetscMalloc5(3 * data->n_nodes, &data->reference, 3 * data->n_nodes, &data->positions, 3 * data->n_nodes, &data->normals, data->n_nodes, &data->areas, data->n_nodes, &data->sizes));
+  PetscCall(DMPlexGetChart(surface->dm, &start, NULL));
+  PetscCall(DMGetCoordinatesLocal(surface->dm, &local));
+  PetscCall(VecGetArrayRead(local, &coordinates));
+  for (PetscInt f = 0; f < data->n_faces; f++) PetscCall(OrientFace(surface, f, numbers, start, coordinates));
+  for (PetscInt i = 0; i < data->n_nodes; i++) PetscCall(GetPosition(surface->dm, data->vertices[i], coordinates, data->dim, data->reference + 3 * i));
+  PetscCall(VecRestoreArrayRead(local, &coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Everything that follows from the faces in surface->points */
+PetscErrorCode SurfaceSetUpNodes(Surface surface)
+{
+  PetscInt start, end, roots, *numbers;
+  PetscSF  points;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetPointSF(surface->dm, &points));
+  PetscCall(PetscSFGetGraph(points, &roots, NULL, NULL, NULL));
+  if (roots < 0) points = NULL; /* a mesh on one rank */
+  PetscCall(DMPlexGetChart(surface->dm, &start, &end));
+  PetscCheck(!start, PETSC_COMM_SELF, PETSC_ERR_PLIB, "The points of a mesh begin at 0");
+  PetscCall(PetscCalloc1(end, &numbers));
+  PetscCall(MarkVertices(surface->dm, surface->data.n_faces, surface->points, points, numbers));
+  PetscCall(NumberNodes(surface, numbers));
+  PetscCall(ConnectNodes(surface, points, numbers));
+  PetscCall(SetUpFaces(surface, numbers));
+  PetscCall(PetscFree(numbers));
+  PetscCall(SurfaceUpdate(surface, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceClearNodes(Surface surface)
+{
+  SurfaceData *data = &surface->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSFDestroy(&surface->sf));
+  PetscCall(PetscFree4(data->vertices, data->dofs, surface->owner_index, surface->owner_rank));
+  PetscCall(PetscFree4(data->faces, surface->signs, data->face_normals, data->face_areas));
+  PetscCall(PetscFree5(data->reference, data->positions, data->normals, data->areas, data->sizes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,35 +234,32 @@ static PetscErrorCode SetUpNodes(Surface surface, PetscInt n_faces, const Face f
 
   Input Parameters:
 + dm   - a `DMPLEX` with a local section of one block of displacements at each vertex
-- name - as `MeshGetSurface()` takes it: a label of the mesh, a number, a side of its bounding box; `NULL` or empty for the
-         whole boundary
+- name - as `MeshGetSurface()` takes it: a label of the mesh, a number, a side of its bounding box; `all`, `NULL` or empty for
+         the whole boundary
 
   Output Parameter:
-. surface - the `Surface`
+. surface - the `Surface`, in its reference position
 
   Level: developer
 
-.seealso: `Surface`, `SurfaceGetData()`, `MeshGetSurface()`
+.seealso: `Surface`, `SurfaceGetData()`, `SurfaceKeepFacing()`, `SurfaceUpdate()`, `MeshGetSurface()`
 @*/
 PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
 {
-  MPI_Comm     comm = PetscObjectComm((PetscObject)dm);
   PetscSection section;
-  Face        *mine, *all;
-  PetscInt     n_mine = 0, n_all = 0;
+  PetscBool    all = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(surface));
   PetscCall(PetscObjectReference((PetscObject)dm));
   (*surface)->dm = dm;
+  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &(*surface)->vector));
+  PetscCallMPI(MPI_Type_commit(&(*surface)->vector));
   PetscCall(DMGetCoordinateDim(dm, &(*surface)->data.dim));
-  PetscCall(DMGetBoundingBox(dm, (*surface)->data.lower, (*surface)->data.upper));
   PetscCall(DMGetGlobalSection(dm, &section)); /* made by all ranks together, also by those that have no face */
-  PetscCall(CollectFaces(*surface, name, &n_mine, &mine));
-  PetscCall(GatherFaces(comm, n_mine, mine, &n_all, &all));
-  PetscCall(PetscFree(mine));
-  PetscCall(SetUpNodes(*surface, n_all, all));
-  PetscCall(PetscFree(all));
+  if (name) PetscCall(PetscStrcmp(name, "all", &all));
+  PetscCall(MeshGetSurface(dm, all ? NULL : name, &(*surface)->data.n_faces, &(*surface)->points));
+  PetscCall(SurfaceSetUpNodes(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,10 +279,9 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
 {
   PetscFunctionBegin;
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree((*surface)->dofs));
-  PetscCall(PetscFree((*surface)->faces));
-  PetscCall(PetscFree((*surface)->face_normals));
-  PetscCall(PetscFree3((*surface)->positions, (*surface)->areas, (*surface)->normals));
+  PetscCall(SurfaceClearNodes(*surface));
+  PetscCallMPI(MPI_Type_free(&(*surface)->vector));
+  PetscCall(PetscFree((*surface)->points));
   PetscCall(DMDestroy(&(*surface)->dm));
   PetscCall(PetscFree(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -240,7 +296,7 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
 . surface - the `Surface`
 
   Output Parameter:
-. data - the same on every rank, owned by the surface
+. data - of this rank, owned by the surface
 
   Level: developer
 
@@ -254,43 +310,25 @@ PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
 }
 
 /*@
-  SurfaceGetVertices - the mesh points of some nodes, as far as this rank has them
+  SurfaceGetVertices - the mesh points of the nodes that this rank has
 
   Not Collective
 
-  Input Parameters:
-+ surface - the `Surface`
-. n       - number of nodes
-- nodes   - nodes of the surface
+  Input Parameter:
+. surface - the `Surface`
 
   Output Parameters:
-+ n_vertices - number of vertices
-- vertices   - points of the `DMPLEX`, owned or ghosts; free with `PetscFree()`
++ n        - number of vertices
+- vertices - points of the `DMPLEX`, those owned by this rank first, then ghosts; owned by the surface
 
   Level: developer
 
 .seealso: `Surface`
 @*/
-PetscErrorCode SurfaceGetVertices(Surface surface, PetscInt n, const PetscInt nodes[], PetscInt *n_vertices, PetscInt **vertices)
+PetscErrorCode SurfaceGetVertices(Surface surface, PetscInt *n, const PetscInt *vertices[])
 {
-  PetscSection section;
-  PetscInt     vstart, vend, *dofs;
-
   PetscFunctionBegin;
-  PetscCall(DMGetGlobalSection(surface->dm, &section));
-  PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
-  PetscCall(PetscMalloc1(n, &dofs));
-  for (PetscInt i = 0; i < n; i++) dofs[i] = surface->dofs[nodes[i]];
-  PetscCall(PetscSortInt(n, dofs));
-  PetscCall(PetscMalloc1(PetscMin(n, vend - vstart), vertices));
-  *n_vertices = 0;
-  for (PetscInt v = vstart; v < vend; v++) {
-    PetscInt offset, found;
-
-    PetscCall(PetscSectionGetOffset(section, v, &offset));
-    PetscCall(PetscFindInt(offset < 0 ? -(offset + 1) : offset, n, dofs, &found));
-    if (found >= 0) (*vertices)[(*n_vertices)++] = v;
-  }
-  PetscCall(PetscFree(dofs));
+  *n        = surface->data.n_nodes;
+  *vertices = surface->data.vertices;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -112,9 +112,14 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
   Options Database Keys:
 + -<body>_dm_plex_filename f                                    - Gmsh (.msh, version 2.2 or 4.1) or Exodus II (.g, .e, .exo, .ex2)
 . -<body>_mesh_blocks a,b                                       - blocks of the file that make this body, by name or number; default all
-. -<body>_dm_plex_dim d                                         - dimension of a box; of a file: checked
+. -<body>_dm_plex_dim d                                         - dimension of a box or ball; of a file: checked
 . -<body>_dm_plex_box_faces n,n,n, _box_lower, _box_upper       - a box [m]
 . -<body>_dm_plex_simplex (true|false)                          - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
+. -<body>_dm_plex_shape ball                                    - a disc or a ball instead, in blocks around a central one
+. -<body>_ball_radius r, _ball_centre x,y,z                     - where it is [m], default 1 and the origin
+. -<body>_ball_divisions n, _ball_layers m                      - elements along an edge of the central block, default 4, and around it, default n/2
+. -<body>_ball_grading g, _ball_pole x,y,z                      - largest by smallest size of elements, default 1, and the direction where they are small, default down the last axis
+. -<body>_ball_part (full|half|quarter)                         - all, x >= centre, or also y >= centre (in 3-D)
 . -<body>_scale s                                               - factor for all coordinates, 0.001 for a file in millimetres
 . -<body>_rotate ax,ay,az,degrees, in two dimensions degrees    - turns it about an axis through the origin
 . -<body>_rotate_centre x,y,z                                   - through another point [m], after scaling
@@ -125,7 +130,10 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
   Notes:
   Groups of a file (Gmsh's physical groups; Exodus' blocks, side sets and node sets) become labels: their numbers in "Cell
   Sets", "Face Sets" and "Vertex Sets", their names as labels with the value 1. The sides of a box have labels xmin, xmax, ...
-  which a rotation takes along.
+  which a rotation takes along. Those of a ball are surface (the sphere), and cut_x and cut_y of its parts.
+
+  A graded ball has elements of size sqrt(g) h opposite to the pole, where h = pi R / (2 n) is their size without grading, and
+  h / sqrt(g) at the pole; where the former are not small beside the radius, the ball is a coarse polyhedron there.
 
   The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that no element of the
   body has are left out. The file is read by the first rank.
@@ -135,14 +143,16 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   char      path[PETSC_MAX_PATH_LEN];
-  PetscBool from_file, blocks;
+  PetscBool from_file, blocks, ball = PETSC_FALSE;
 
   PetscFunctionBegin;
   *dm = NULL;
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_filename", path, sizeof(path), &from_file));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_blocks", &blocks));
   PetscCheck(from_file || !blocks, comm, PETSC_ERR_USER_INPUT, "-%smesh_blocks needs a mesh file: give -%sdm_plex_filename", prefix, prefix);
+  if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
   if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm));
+  else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm));
   else PetscCall(MeshCreateBox(comm, prefix, name, dm));
   PetscCall(DMSetOptionsPrefix(*dm, prefix));
   PetscCall(DMSetFromOptions(*dm)); /* distributes it */

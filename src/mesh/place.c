@@ -5,7 +5,8 @@ typedef struct {
   PetscReal scale, rotation[3][3], centre[3], shift[3];
 } Motion;
 
-static PetscErrorCode ReadNumbers(MPI_Comm comm, const char prefix[], const char option[], PetscInt expected, const char meaning[], PetscReal values[], PetscBool *set)
+/* As many numbers as expected, up to four; `values` has room for four */
+PetscErrorCode MeshReadNumbers(MPI_Comm comm, const char prefix[], const char option[], PetscInt expected, const char meaning[], PetscReal values[], PetscBool *set)
 {
   PetscInt n = 4;
 
@@ -34,10 +35,10 @@ static PetscErrorCode ReadMotion(MPI_Comm comm, const char prefix[], const char 
 
   PetscFunctionBegin;
   *motion = (Motion){.scale = 1, .rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  PetscCall(ReadNumbers(comm, prefix, "-scale", 1, "a factor for all coordinates", values, &scale));
+  PetscCall(MeshReadNumbers(comm, prefix, "-scale", 1, "a factor for all coordinates", values, &scale));
   if (scale) motion->scale = values[0];
   PetscCheck(motion->scale > 0, comm, PETSC_ERR_USER_INPUT, "-%sscale %g: the factor must be positive", prefix, (double)motion->scale);
-  PetscCall(ReadNumbers(comm, prefix, "-rotate", dim == 3 ? 4 : 1, dim == 3 ? "axis and degrees" : "degrees", values, &rotate));
+  PetscCall(MeshReadNumbers(comm, prefix, "-rotate", dim == 3 ? 4 : 1, dim == 3 ? "axis and degrees" : "degrees", values, &rotate));
   PetscCheck(!rotate || dim > 1, comm, PETSC_ERR_USER_INPUT, "-%srotate: body '%s' is one-dimensional and cannot be rotated", prefix, name);
   if (rotate) {
     if (dim == 3)
@@ -45,9 +46,9 @@ static PetscErrorCode ReadMotion(MPI_Comm comm, const char prefix[], const char 
     PetscCheck(axis[0] != 0 || axis[1] != 0 || axis[2] != 0, comm, PETSC_ERR_USER_INPUT, "-%srotate: the axis is (0, 0, 0), which has no direction", prefix);
     Rotation(axis, values[dim == 3 ? 3 : 0], motion->rotation);
   }
-  PetscCall(ReadNumbers(comm, prefix, "-rotate_centre", dim, "a point [m]", motion->centre, &centre));
+  PetscCall(MeshReadNumbers(comm, prefix, "-rotate_centre", dim, "a point [m]", motion->centre, &centre));
   PetscCheck(!centre || rotate, comm, PETSC_ERR_USER_INPUT, "-%srotate_centre without -%srotate has no effect", prefix, prefix);
-  PetscCall(ReadNumbers(comm, prefix, "-translate", dim, "one for each dimension of the body [m]", motion->shift, &translate));
+  PetscCall(MeshReadNumbers(comm, prefix, "-translate", dim, "one for each dimension of the body [m]", motion->shift, &translate));
   *moves = (PetscBool)(scale || rotate || translate);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,6 +27,13 @@ static PetscErrorCode ElementSetFromOptions_Bar2(Element element, MPI_Comm comm,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ElementCopyOptions_Bar2(Element element, Element other)
+{
+  PetscFunctionBegin;
+  ((Bar2 *)other->data)->cross_section = ((const Bar2 *)element->data)->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordinates[])
 {
   Bar2 *bar = (Bar2 *)element->data;
@@ -199,6 +206,7 @@ PetscErrorCode ElementCreate_Bar2(Element element)
   element->n_points           = 2;
   element->shape              = shape;
   element->ops.setfromoptions = ElementSetFromOptions_Bar2;
+  element->ops.copyoptions    = ElementCopyOptions_Bar2;
   element->ops.setup          = ElementSetUp_Bar2;
   element->ops.internalforce  = ElementInternalForce_Bar2;
   element->ops.energy         = ElementEnergy_Bar2;

@@ -28,6 +28,18 @@ PetscErrorCode ElementFinalizePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Create(PetscErrorCode (*create)(Element), Material material, Element *element)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscNew(element));
+  (*element)->create        = create;
+  (*element)->material      = material;
+  (*element)->cross_section = 1;
+  (*element)->inverted      = -1;
+  PetscCall((*create)(*element));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The element for a shape of cell, with its own options (prefix of the body) read. */
 PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType cell, Material material, Element *element)
 {
@@ -36,12 +48,18 @@ PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType 
   PetscFunctionBegin;
   PetscCall(PetscFunctionListFind(ElementList, DMPolytopeTypes[cell], &create));
   PetscCheck(create, comm, PETSC_ERR_SUP, "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar), triangle (3 nodes), quad (4 nodes), tetrahedron (4 nodes), hexahedron (8 nodes)", prefix, DMPolytopeTypes[cell]);
-  PetscCall(PetscNew(element));
-  (*element)->material      = material;
-  (*element)->cross_section = 1;
-  (*element)->inverted      = -1;
-  PetscCall((*create)(*element));
+  PetscCall(Create(create, material, element));
   if ((*element)->ops.setfromoptions) PetscCall((*(*element)->ops.setfromoptions)(*element, comm, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One of the same shape with the same options, for other cells or another material; not set up */
+PetscErrorCode ElementCreateLike(Element element, Material material, Element *other)
+{
+  PetscFunctionBegin;
+  PetscCall(Create(element->create, material, other));
+  (*other)->cross_section = element->cross_section;
+  if (element->ops.copyoptions) PetscCall((*element->ops.copyoptions)(element, *other));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,6 +9,7 @@ typedef struct _n_Element *Element;
 
 typedef struct {
   PetscErrorCode (*setfromoptions)(Element, MPI_Comm, const char[]);
+  PetscErrorCode (*copyoptions)(Element, Element);                                    /* what options have set, from the first to the second */
   PetscErrorCode (*setup)(Element, const PetscReal[]);                                /* coordinates of the rank's nodes */
   PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]);       /* adds to the second [N] */
   PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);                /* stored by all elements of this rank [J] */
@@ -20,10 +21,11 @@ typedef struct {
 } ElementOps;
 
 struct _n_Element {
-  ElementOps       ops;
-  PetscInt         dim, nodes;   /* space dimension; nodes of one element */
-  PetscInt         count;        /* elements of this rank */
-  const PetscInt  *connectivity; /* count x nodes: local node numbers, in VTK's order of vertices; owned by the body */
+  ElementOps ops;
+  PetscErrorCode (*create)(Element); /* of this shape */
+  PetscInt         dim, nodes;       /* space dimension; nodes of one element */
+  PetscInt         count;            /* elements of this rank */
+  const PetscInt  *connectivity;     /* count x nodes: local node numbers, in VTK's order of vertices; owned by the body */
   Material         material;
   PetscReal        cross_section; /* of bars [m^2], thickness of plane bodies [m]; 1 for other shapes */
   PetscInt         n_points;      /* load points of one element: a rule exact for quadratic functions at least */
@@ -36,6 +38,7 @@ PETSC_INTERN PetscErrorCode ElementRegister(DMPolytopeType, PetscErrorCode (*)(E
 PETSC_INTERN PetscErrorCode ElementRegisterAll(void);
 PETSC_INTERN PetscErrorCode ElementFinalizePackage(void);
 PETSC_INTERN PetscErrorCode ElementCreate(MPI_Comm, const char[], DMPolytopeType, Material, Element *);
+PETSC_INTERN PetscErrorCode ElementCreateLike(Element, Material, Element *);
 PETSC_INTERN PetscErrorCode ElementSetUp(Element, PetscInt, const PetscInt[], const PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementDestroy(Element *);
 

@@ -117,6 +117,13 @@ static PetscErrorCode ElementSetFromOptions_Solid(Element element, MPI_Comm comm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ElementCopyOptions_Solid(Element element, Element other)
+{
+  PetscFunctionBegin;
+  ((Solid *)other->data)->plane_stress = ((const Solid *)element->data)->plane_stress;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordinates[])
 {
   Solid *solid = (Solid *)element->data;
@@ -256,6 +263,7 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   element->n_points           = shape->n_load_points;
   element->shape              = solid->load_shape;
   element->ops.setfromoptions = ElementSetFromOptions_Solid;
+  element->ops.copyoptions    = ElementCopyOptions_Solid;
   element->ops.setup          = ElementSetUp_Solid;
   element->ops.stiffness      = ElementStiffness_Solid;
   element->ops.mass           = ElementMass_Solid;

@@ -29,6 +29,7 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
   PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "", Unconvergeds, (PetscEnum)schwarz->unconverged, (PetscEnum *)&schwarz->unconverged, NULL));
   PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "", schwarz->recheck, &schwarz->recheck, NULL));
   PetscOptionsEnd();
+  PetscCall(SchwarzReadCondensation(contact));
   PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -64,6 +65,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
   PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
+  PetscCall(PetscCalloc1(contact->n_rows, &schwarz->known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,6 +88,24 @@ static PetscErrorCode PrepareContact(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Newton's method by the bodies' compliance, or by probing them under each set of conditions; the latter is only for interfaces of a few rows */
+static PetscErrorCode SetUpNewton(Contact contact)
+{
+  Schwarz  *schwarz = (Schwarz *)contact->data;
+  PetscBool newton;
+
+  PetscFunctionBegin;
+  schwarz->stale = PETSC_TRUE;
+  if (schwarz->by_compliance) {
+    PetscCall(SchwarzSetUpInterfaceProblem(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &newton));
+  if (newton || contact->dim == 1) PetscCall(SchwarzSetUpNewton(contact));
+  if (newton || contact->dim == 1) PetscCall(PrepareContact(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
@@ -97,8 +117,8 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
   PetscCall(SchwarzSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
+  PetscCall(SchwarzChooseCondensation(contact));
   PetscCall(SchwarzSetUpTransmission(contact));
-  PetscCall(SchwarzSetUpNewton(contact));
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
@@ -114,7 +134,19 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
   if (schwarz->convergence == CONVERGENCE_AUTO) schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED ? CONVERGENCE_POSITION : CONVERGENCE_MISMATCH;
-  PetscCall(PrepareContact(contact));
+  PetscCall(SetUpNewton(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is known of rows that have changed is not known any more */
+static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    if (contact->changed[i]) schwarz->known[i] = PETSC_FALSE;
+  schwarz->stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,10 +172,12 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(SchwarzDestroyNewton(contact));
+  PetscCall(SchwarzDestroyInterfaceProblem(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->jacobian_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
   PetscCall(PetscFree3(schwarz->tried, schwarz->kept_force, schwarz->previous));
+  PetscCall(PetscFree(schwarz->known));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -168,6 +202,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 .  -schwarz_convergence (auto|position|contact_position|mismatch) - change of all positions from sweep to sweep (the paper's), of those
                                                                   of the contact nodes, or the change of the contact nodes that a plain
                                                                   sweep would bring
+.  -schwarz_condense (0|1|auto)                                 - whether sweeps run on the interface compliance of the bodies
 .  -schwarz_recheck (true|false)                                - whether tensile nodes leave contact within the step
 -  -schwarz_unconverged (error|accept)                          - what to do with a step that does not converge
 
@@ -187,10 +222,12 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   schwarz->traction            = BODY_TRACTION_INTERNAL;
   schwarz->predictor           = PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
+  schwarz->condense            = CONDENSE_AUTO;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
   contact->ops->setup          = ContactSetUp_Schwarz;
   contact->ops->step           = ContactStep_Schwarz;
+  contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);

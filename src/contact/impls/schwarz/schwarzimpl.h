@@ -52,18 +52,17 @@ typedef enum {
 
 /* The linearised contact problem on the active rows, in terms of contact forces: what Newton's method solves */
 typedef struct {
-  PetscInt      n, capacity; /* active rows of all ranks; how many there is room for */
-  PetscInt     *rows;
-  PetscInt      levels;   /* times in the controller step at which there are forces */
-  PetscBool     chain;    /* no such simple form: the matrix of the whole sweep, n x levels unknowns */
-  PetscBool     dense;    /* factored; else conjugate gradients */
-  PetscScalar  *matrices; /* levels of n x n, by columns; or that of the chain */
-  PetscScalar  *factor;   /* LU of the first */
+  PetscInt      n, capacity; /* active rows of all ranks; how many unknowns there is room for */
+  PetscInt     *rows, *body_rows;
+  PetscInt      levels;               /* times in the controller step at which there are forces */
+  PetscBool     chain;                /* no such simple form: the matrix of the whole sweep */
+  PetscBool     dense, factored;      /* else conjugate gradients */
+  PetscScalar  *matrices, *dirichlet; /* for each level n x n, by columns: on gaps, and on the displacement of Dirichlet sides [m/N] */
+  PetscScalar  *factor;               /* LU of the first, or of the chain */
   PetscBLASInt *pivots;
   PetscScalar  *residual, *force, *change; /* levels x n */
   KSP           iterative;
   Vec           force_vec, residual_vec, work[2];
-  PetscInt      iterations; /* of the conjugate gradients */
 } InterfaceProblem;
 
 typedef struct {
@@ -162,6 +161,7 @@ PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzSetUpInterfaceProblem(Contact);
 PETSC_INTERN PetscErrorCode SchwarzUpdateInterfaceProblem(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroyInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzReadCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzChooseCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzFinishCondensed(Contact);

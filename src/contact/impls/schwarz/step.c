@@ -1,25 +1,46 @@
 /* One controller step: trial, contact, and the nodes that join and leave. */
 #include "schwarzimpl.h"
 
+/* Marks what belongs to the last active set as stale if it is another one now */
+static PetscErrorCode CompareActive(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+  int      differs = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->jacobian_active[i] != contact->active[i];
+  PetscCall(ContactOr(contact, &differs));
+  if (!differs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(schwarz->jacobian_active, contact->active, contact->n_rows));
+  schwarz->stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The bodies under the conditions of the active set as it is, ready for sweeps */
+static PetscErrorCode PrepareSweeps(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(CompareActive(contact));
+  if (schwarz->by_compliance) PetscCall(SchwarzUpdateInterfaceProblem(contact));
+  schwarz->responding = (PetscBool)(schwarz->condensed && schwarz->problem.dense);
+  if (schwarz->responding) PetscCall(SchwarzPrepareCondensed(contact));
+  PetscCall(SchwarzPredict(contact));
+  if (schwarz->responding) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
+  if (!schwarz->by_compliance)
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The outer iteration with the active set as it is, then forces and gaps */
 static PetscErrorCode SolveActive(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(SchwarzPredict(contact));
-  PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
-  {
-    int differs = 0;
-
-    for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->jacobian_active[i] != contact->active[i];
-    PetscCall(ContactOr(contact, &differs));
-    if (differs) {
-      PetscCall(PetscArraycpy(schwarz->jacobian_active, contact->active, contact->n_rows));
-      schwarz->stale = PETSC_TRUE;
-    }
-  }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  PetscCall(PrepareSweeps(contact));
   schwarz->swept = PETSC_FALSE;
   PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
   PetscCall(SchwarzCheckConverged(contact));
@@ -56,7 +77,8 @@ static PetscErrorCode FindActiveSet(Contact contact, PetscBool *seen, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes that penetrate join, nodes that are pulled leave */
+/* Nodes that penetrate join, nodes that are pulled leave. While sweeps run on the compliance, the gaps of rows that it does not know are not
+   there yet. */
 static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
@@ -64,8 +86,8 @@ static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscBool leaves = (PetscBool)(contact->active[i] && schwarz->recheck && contact->force[i] < 0);
-    const PetscBool joins  = (PetscBool)(!contact->active[i] && contact->gap[i] < -contact->tolerance);
+    const PetscBool leaves = (PetscBool)(contact->active[i] && schwarz->recheck && contact->force[i] < 0 && !contact->tied[i]);
+    const PetscBool joins  = (PetscBool)(!contact->active[i] && contact->gap[i] < -contact->tolerance && (!schwarz->responding || schwarz->known[i]));
 
     if (!leaves && !joins) continue;
     contact->active[i] = joins;
@@ -79,9 +101,15 @@ static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
 /* Free trial, where no pair is pushed together already; the rows that penetrate at its end become active */
 static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
 {
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
   PetscFunctionBegin;
+  schwarz->responding = PETSC_FALSE;
   PetscCall(ContactIntegrateFree(contact, in_contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->gap[i] < -contact->tolerance);
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || contact->gap[i] < -contact->tolerance);
+  if (!schwarz->condensed || !*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetBase(contact->bodies[b]));
+  schwarz->have_base = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,21 +117,42 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
    the contact solution is the better of both, and is taken back. */
 static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *final)
 {
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool seen, last;
+  Schwarz        *schwarz    = (Schwarz *)contact->data;
+  const PetscBool responding = schwarz->responding;
+  PetscBool       seen, last;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
+  if (!responding)
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
   PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FindActiveSet(contact, &seen, &last));
   if (!last) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->counts_made.set_cycles++;
+  *final = PETSC_TRUE;
+  if (responding) PetscFunctionReturn(PETSC_SUCCESS); /* to be found again */
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
   PetscCall(PetscArraycpy(contact->force, schwarz->kept_force, contact->n_rows));
   PetscCall(ContactComputeGaps(contact));
-  contact->counts_made.set_cycles++;
-  *final = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the sweeps on the compliance have ended with, put on the whole bodies: then all rows have gaps, and one that the compliance did not know
+   may penetrate */
+static PetscErrorCode Finish(Contact contact, PetscBool *changed)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  *changed = PETSC_FALSE;
+  if (!schwarz->responding) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchwarzFinishCondensed(contact));
+  schwarz->responding = PETSC_FALSE;
+  PetscCall(ContactAny(contact, PETSC_TRUE, changed));
+  if (!*changed) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    if (contact->gap[i] < -contact->tolerance) contact->active[i] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,25 +162,31 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscBool in_contact, changed, seen, last, final = PETSC_FALSE;
 
   PetscFunctionBegin;
-  schwarz->n_tried = 0;
+  schwarz->n_tried   = 0;
+  schwarz->have_base = PETSC_FALSE;
   if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || (contact->saved_active[i] && contact->saved_force[i] > 0));
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
   while (in_contact) {
     PetscCheck(schwarz->n_tried < SCHWARZ_MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", SCHWARZ_MAX_ROUNDS);
     PetscCall(PetscArraycpy(schwarz->tried + schwarz->n_tried++ * contact->n_rows, contact->active, contact->n_rows));
     PetscCall(SolveActive(contact));
-    if (final) break;
+    if (final) {
+      PetscCall(Finish(contact, &changed));
+      break;
+    }
     PetscCall(UpdateActiveSet(contact, &changed));
+    if (!changed) PetscCall(Finish(contact, &changed));
     if (!changed) break;
     contact->counts_made.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
     if (!in_contact) {
       PetscCall(TrialAfterContact(contact, &in_contact, &final));
-      if (final) break;
+      if (final && !schwarz->condensed) break;
+      if (final) continue;
     }
     PetscCall(FindActiveSet(contact, &seen, &last));
     if (in_contact && seen) {

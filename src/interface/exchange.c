@@ -1,0 +1,121 @@
+/* What ranks send each other: records of any kind, and the faces that come near. */
+#include "interfaceimpl.h"
+
+/* Sends record i, of `bytes` bytes, to rank destination[i]; what arrives is sorted by the rank it comes from. Free with PetscFree(). */
+PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const PetscMPIInt destination[], const void *records, PetscInt *n_received, void **received)
+{
+  PetscMPIInt  size, *sent, *arrived, *sent_at, *arrived_at, total[2] = {0, 0};
+  MPI_Datatype type;
+  char        *sorted;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc4(size, &sent, size, &arrived, size + 1, &sent_at, size, &arrived_at));
+  PetscCall(PetscArrayzero(sent, size));
+  for (PetscInt i = 0; i < n; i++) sent[destination[i]]++;
+  PetscCallMPI(MPI_Alltoall(sent, 1, MPI_INT, arrived, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    sent_at[r]    = total[0];
+    arrived_at[r] = total[1];
+    total[0] += sent[r];
+    total[1] += arrived[r];
+  }
+  PetscCall(PetscMalloc1((size_t)n * bytes, &sorted));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PetscMemcpy(sorted + (size_t)(sent_at[destination[i]]++) * bytes, (const char *)records + (size_t)i * bytes, bytes));
+  for (PetscMPIInt r = 0; r < size; r++) sent_at[r] -= sent[r];
+  *n_received = total[1];
+  PetscCall(PetscMalloc((size_t)total[1] * bytes, received));
+  PetscCallMPI(MPI_Type_contiguous((int)bytes, MPI_BYTE, &type));
+  PetscCallMPI(MPI_Type_commit(&type));
+  PetscCallMPI(MPI_Alltoallv(sorted, sent, sent_at, type, *received, arrived, arrived_at, type, comm));
+  PetscCallMPI(MPI_Type_free(&type));
+  PetscCall(PetscFree(sorted));
+  PetscCall(PetscFree4(sent, arrived, sent_at, arrived_at));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Box about all that may lie opposite to the faces of this rank: they, swept along their normals; [0]: lower, [3]: upper corner */
+static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind, PetscReal box[])
+{
+  for (PetscInt d = 0; d < 3; d++) {
+    box[d]     = PETSC_MAX_REAL;
+    box[3 + d] = -PETSC_MAX_REAL;
+  }
+  for (PetscInt f = 0; f < data->n_faces; f++) {
+    const PetscReal *normal = data->face_normals + 3 * f, size = FaceSize(data->face_nodes, data->face_areas[f]);
+
+    for (PetscInt k = 0; k < data->face_nodes; k++)
+      for (PetscInt d = 0; d < 3; d++) {
+        const PetscReal x = data->positions[3 * data->faces[f * data->face_nodes + k] + d], to = x + normal[d] * (ahead + size), from = x - normal[d] * (behind + size);
+
+        box[d]     = PetscMin(box[d], PetscMin(from, to) - 0.1 * size);
+        box[3 + d] = PetscMax(box[3 + d], PetscMax(from, to) + 0.1 * size);
+      }
+  }
+  if (ahead < PETSC_MAX_REAL || !data->n_faces) return;
+  for (PetscInt d = 0; d < 3; d++) { /* any distance: all faces are wanted */
+    box[d]     = -PETSC_MAX_REAL;
+    box[3 + d] = PETSC_MAX_REAL;
+  }
+}
+
+static void FillFace(Surface surface, PetscInt f, Face *face)
+{
+  const SurfaceData *data = &surface->data;
+
+  for (PetscInt d = 0; d < 3; d++) face->normal[d] = data->face_normals[3 * f + d];
+  for (PetscInt k = 0; k < data->face_nodes; k++) {
+    const PetscInt node = data->faces[f * data->face_nodes + k];
+
+    face->dofs[k]        = data->dofs[node];
+    face->owner_index[k] = surface->owner_index[node];
+    face->owner_rank[k]  = surface->owner_rank[node];
+    for (PetscInt d = 0; d < 3; d++) face->x[k][d] = data->positions[3 * node + d];
+  }
+}
+
+/* The faces of `to` that may lie opposite to those that this rank has of `from`. Free with PetscFree(). */
+PetscErrorCode ExchangeFaces(MPI_Comm comm, Surface from, Surface to, PetscReal ahead, PetscReal behind, PetscInt *n_faces, Face *faces[])
+{
+  const SurfaceData *data = &to->data;
+  PetscReal          box[6], *boxes;
+  PetscMPIInt        size, *destination = NULL;
+  PetscInt           n = 0, max = 0;
+  Face              *sent = NULL;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(6 * size, &boxes));
+  SweptBox(&from->data, ahead, behind, box);
+  PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, comm));
+  for (PetscMPIInt r = 0; r < size; r++)
+    for (PetscInt f = 0; f < data->n_faces; f++) {
+      const PetscReal *wanted = boxes + 6 * r;
+      PetscBool        meets  = PETSC_TRUE;
+      Face             face   = {0};
+
+      FillFace(to, f, &face);
+      for (PetscInt d = 0; d < data->dim; d++) {
+        PetscReal lower = face.x[0][d], upper = face.x[0][d];
+
+        for (PetscInt k = 1; k < data->face_nodes; k++) {
+          lower = PetscMin(lower, face.x[k][d]);
+          upper = PetscMax(upper, face.x[k][d]);
+        }
+        if (lower > wanted[3 + d] || upper < wanted[d]) meets = PETSC_FALSE;
+      }
+      if (!meets) continue;
+      if (n == max) {
+        max = 2 * max + 64;
+        PetscCall(PetscRealloc((size_t)max * sizeof(Face), &sent));
+        PetscCall(PetscRealloc((size_t)max * sizeof(PetscMPIInt), &destination));
+      }
+      sent[n]          = face;
+      destination[n++] = r;
+    }
+  PetscCall(ExchangeRecords(comm, sizeof(Face), n, destination, sent, n_faces, (void **)faces));
+  PetscCall(PetscFree(sent));
+  PetscCall(PetscFree(destination));
+  PetscCall(PetscFree(boxes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

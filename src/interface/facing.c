@@ -1,0 +1,270 @@
+/* Which faces of a body may touch another at all: those that see it. */
+#include "interfaceimpl.h"
+
+#define CELLS   5 /* directions are grouped on a cube with 5 x 5 cells to a side; those of the axes are in the middle of a cell */
+#define GROUPS  (6 * CELLS * CELLS)
+#define OPPOSED -0.1
+
+/* Faces of similar direction, of all ranks: bounds of their normals n, centroids x, and of n . (x - centre). All are minima, so that one
+   reduction finds them; upper bounds are kept with the opposite sign. */
+typedef struct {
+  PetscReal normal[2][3], x[2][3], support;
+} Group;
+#define GROUP_VALUES 13
+
+typedef struct {
+  PetscReal centre[3], extent;
+  Group     groups[GROUPS];
+} Directions;
+
+static PetscInt GroupOf(const PetscReal normal[])
+{
+  PetscInt  axis = 0, cell[2];
+  PetscReal largest;
+
+  for (PetscInt d = 1; d < 3; d++)
+    if (PetscAbsReal(normal[d]) > PetscAbsReal(normal[axis]) * (1 + 1e-9)) axis = d;
+  largest = PetscAbsReal(normal[axis]);
+  for (PetscInt d = 0; d < 2; d++) cell[d] = PetscMin((PetscInt)((normal[(axis + 1 + d) % 3] / largest + 1) / 2 * CELLS), CELLS - 1);
+  return ((2 * axis + (normal[axis] > 0)) * CELLS + cell[0]) * CELLS + cell[1];
+}
+
+static void Centroid(const SurfaceData *data, PetscInt f, PetscReal x[])
+{
+  for (PetscInt d = 0; d < 3; d++) {
+    x[d] = 0;
+    for (PetscInt k = 0; k < data->face_nodes; k++) x[d] += data->positions[3 * data->faces[f * data->face_nodes + k] + d] / data->face_nodes;
+  }
+}
+
+static PetscErrorCode GetDirections(Surface surface, Directions *directions)
+{
+  const SurfaceData *data = &surface->data;
+  MPI_Comm           comm = PetscObjectComm((PetscObject)surface->dm);
+  PetscReal          box[2][3];
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 6; i++) box[i / 3][i % 3] = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < 3 * data->n_nodes; i++) {
+    box[0][i % 3] = PetscMin(box[0][i % 3], data->positions[i]);
+    box[1][i % 3] = PetscMin(box[1][i % 3], -data->positions[i]);
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MIN, comm));
+  directions->extent = 0;
+  for (PetscInt d = 0; d < 3; d++) {
+    directions->centre[d] = (box[0][d] - box[1][d]) / 2;
+    directions->extent    = PetscMax(directions->extent, -box[1][d] - box[0][d]);
+  }
+  for (PetscInt i = 0; i < GROUPS * GROUP_VALUES; i++) ((PetscReal *)directions->groups)[i] = PETSC_MAX_REAL;
+  for (PetscInt f = 0; f < data->n_faces; f++) {
+    const PetscReal *normal = data->face_normals + 3 * f;
+    Group           *group  = &directions->groups[GroupOf(normal)];
+    PetscReal        x[3], support = 0;
+
+    Centroid(data, f, x);
+    for (PetscInt d = 0; d < 3; d++) {
+      support += normal[d] * (x[d] - directions->centre[d]);
+      group->normal[0][d] = PetscMin(group->normal[0][d], normal[d]);
+      group->normal[1][d] = PetscMin(group->normal[1][d], -normal[d]);
+      group->x[0][d]      = PetscMin(group->x[0][d], x[d]);
+      group->x[1][d]      = PetscMin(group->x[1][d], -x[d]);
+    }
+    group->support = PetscMin(group->support, support);
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, directions->groups, GROUPS * GROUP_VALUES, MPIU_REAL, MPIU_MIN, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest scalar product of a with a vector between the bounds */
+static PetscReal LargestProduct(const PetscReal a[], PetscReal bounds[2][3])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt d = 0; d < 3; d++) sum += PetscMax(a[d] * bounds[0][d], -a[d] * bounds[1][d]);
+  return sum;
+}
+
+/* Whether a face may see one of the others: their normals are opposed, and each lies before the plane of the other, or behind it by no more
+   than the depth by which the bodies overlap */
+static PetscBool SeesGroups(const PetscReal x[], const PetscReal normal[], Directions *others, PetscReal depth)
+{
+  for (PetscInt g = 0; g < GROUPS; g++) {
+    Group          *group   = &others->groups[g];
+    const PetscReal back[3] = {-normal[0], -normal[1], -normal[2]}, from[3] = {x[0] - others->centre[0], x[1] - others->centre[1], x[2] - others->centre[2]};
+
+    if (group->support == PETSC_MAX_REAL || -LargestProduct(back, group->normal) >= OPPOSED) continue;
+    if (LargestProduct(normal, group->x) - Dot(normal, x) < -depth) continue;
+    if (LargestProduct(from, group->normal) - group->support < -depth) continue;
+    return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode SeesObstacle(Obstacle obstacle, const PetscReal x[], const PetscReal normal[], PetscBool *sees)
+{
+  PetscReal distance, gradient[3];
+
+  PetscFunctionBegin;
+  PetscCall(ObstacleGetGap(obstacle, x, &distance, gradient));
+  *sees = (PetscBool)(Dot(normal, gradient) < OPPOSED);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode KeepFaces(Surface surface, const PetscBool keep[])
+{
+  SurfaceData *data = &surface->data;
+  PetscInt     kept = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt f = 0; f < data->n_faces; f++)
+    if (keep[f]) surface->points[kept++] = surface->points[f];
+  PetscCall(SurfaceClearNodes(surface));
+  data->n_faces = kept;
+  PetscCall(SurfaceSetUpNodes(surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bounds of the whole body's extent along directions: the largest n . x of all its nodes */
+static PetscErrorCode GetSupport(Surface surface, Vec u, PetscInt n, const PetscReal directions[][3], PetscReal support[])
+{
+  const PetscInt     dim = surface->data.dim;
+  PetscSection       coordinate_section, section;
+  const PetscScalar *x, *values = NULL;
+  PetscInt           vstart, vend;
+  Vec                coordinates, local = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetCoordinateSection(surface->dm, &coordinate_section));
+  PetscCall(DMGetCoordinatesLocal(surface->dm, &coordinates));
+  PetscCall(DMGetLocalSection(surface->dm, &section));
+  PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
+  if (u) {
+    PetscCall(DMGetLocalVector(surface->dm, &local));
+    PetscCall(DMGlobalToLocalBegin(surface->dm, u, INSERT_VALUES, local));
+    PetscCall(DMGlobalToLocalEnd(surface->dm, u, INSERT_VALUES, local));
+    PetscCall(VecGetArrayRead(local, &values));
+  }
+  PetscCall(VecGetArrayRead(coordinates, &x));
+  for (PetscInt i = 0; i < n; i++) support[i] = -PETSC_MAX_REAL;
+  for (PetscInt v = vstart; v < vend; v++) {
+    PetscReal position[3] = {0};
+    PetscInt  offset, at;
+
+    PetscCall(PetscSectionGetOffset(coordinate_section, v, &offset));
+    PetscCall(PetscSectionGetOffset(section, v, &at));
+    for (PetscInt d = 0; d < dim; d++) position[d] = PetscRealPart(x[offset + d]) + (u ? PetscRealPart(values[at + d]) : 0);
+    for (PetscInt i = 0; i < n; i++) support[i] = PetscMax(support[i], Dot(position, directions[i]));
+  }
+  PetscCall(VecRestoreArrayRead(coordinates, &x));
+  if (u) {
+    PetscCall(VecRestoreArrayRead(local, &values));
+    PetscCall(DMRestoreLocalVector(surface->dm, &local));
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, support, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)surface->dm)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, PetscReal list[][3])
+{
+  for (PetscInt g = 0; g < GROUPS; g++) {
+    Group *group = &directions->groups[g];
+
+    if (group->support == PETSC_MAX_REAL) continue;
+    for (PetscInt d = 0; d < 3; d++) list[*n][d] = sign * (group->normal[0][d] - group->normal[1][d]) / 2;
+    if (Normalize(list[*n]) > 0) (*n)++;
+  }
+}
+
+/* How deep the convex hulls of two bodies overlap, in the direction of a face normal in which they do least; 0: they are apart (theorem
+   of separating axes) */
+static PetscErrorCode ComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b, PetscReal *overlap)
+{
+  PetscReal(*list)[3], *support[2];
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(2 * GROUPS + 6, &list, 2 * GROUPS + 6, &support[0], 2 * GROUPS + 6, &support[1]));
+  for (PetscInt side = 0; side < 2 * a->data.dim; side++, n++)
+    for (PetscInt d = 0; d < 3; d++) list[n][d] = d == side / 2 ? (side % 2 ? 1 : -1) : 0;
+  AddDirections(of_a, 1, &n, list);
+  AddDirections(of_b, -1, &n, list);
+  PetscCall(GetSupport(a, u_a, n, (const PetscReal(*)[3])list, support[0]));
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt d = 0; d < 3; d++) list[i][d] = -list[i][d];
+  PetscCall(GetSupport(b, u_b, n, (const PetscReal(*)[3])list, support[1]));
+  *overlap = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < n; i++) *overlap = PetscMin(*overlap, support[0][i] + support[1][i]);
+  *overlap = PetscMax(*overlap, 0) * (1 + 1e-6) + 1e-9 * PetscMax(of_a->extent, of_b->extent);
+  PetscCall(PetscFree3(list, support[0], support[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap)
+{
+  Directions *directions;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(2, &directions));
+  PetscCall(GetDirections(a, &directions[0]));
+  PetscCall(GetDirections(b, &directions[1]));
+  PetscCall(ComputeOverlap(a, u_a, b, u_b, &directions[0], &directions[1], overlap));
+  PetscCall(PetscFree(directions));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceKeepFacing - restricts surfaces to the faces that see the partner
+
+  Collective
+
+  Input Parameters:
++ a        - a `Surface`
+. b        - its partner, or `NULL`
+. obstacle - its partner, or `NULL`
+. keep_a   - restrict `a`
+- keep_b   - restrict `b`
+
+  Level: developer
+
+  Notes:
+  A face sees another one if their normals are opposed and each lies before the plane of the other, in the reference positions; where bodies overlap,
+  or behind it by as much. Faces of the partner are compared in groups of similar direction, which keeps all faces that see one, and may keep more.
+  Two blocks side by side keep the ends that face each other, two balls their front halves.
+
+  What is left may be nothing.
+
+.seealso: `Surface`, `SurfaceCreate()`
+@*/
+PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscBool keep_a, PetscBool keep_b)
+{
+  Surface     surfaces[2] = {a, b};
+  PetscBool   wanted[2] = {keep_a, keep_b}, *keep[2] = {NULL, NULL};
+  Directions *directions = NULL;
+  PetscReal   depth      = 0;
+
+  PetscFunctionBegin;
+  if (b) {
+    PetscCheck(a->data.dim == b->data.dim, PetscObjectComm((PetscObject)a->dm), PETSC_ERR_USER_INPUT, "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", a->data.dim, b->data.dim);
+    PetscCall(PetscMalloc1(2, &directions));
+    for (PetscInt side = 0; side < 2; side++) PetscCall(GetDirections(surfaces[side], &directions[side]));
+    PetscCall(ComputeOverlap(a, NULL, b, NULL, &directions[0], &directions[1], &depth));
+  }
+  for (PetscInt side = 0; side < 2; side++) {
+    if (!surfaces[side] || !wanted[side]) continue;
+    PetscCall(PetscMalloc1(surfaces[side]->data.n_faces, &keep[side]));
+    for (PetscInt f = 0; f < surfaces[side]->data.n_faces; f++) {
+      const PetscReal *normal = surfaces[side]->data.face_normals + 3 * f;
+      PetscReal        x[3];
+
+      Centroid(&surfaces[side]->data, f, x);
+      if (b) keep[side][f] = SeesGroups(x, normal, &directions[1 - side], depth);
+      else PetscCall(SeesObstacle(obstacle, x, normal, &keep[side][f]));
+    }
+  }
+  for (PetscInt side = 0; side < 2; side++) {
+    if (surfaces[side] && wanted[side]) PetscCall(KeepFaces(surfaces[side], keep[side]));
+    PetscCall(PetscFree(keep[side]));
+  }
+  PetscCall(PetscFree(directions));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,121 @@
+/* Private to src/interface. */
+#pragma once
+#include <petscsf.h>
+#include <transfer.h>
+
+struct _n_Surface {
+  DM           dm;
+  SurfaceData  data;
+  PetscInt    *points;      /* per face: point of the DMPLEX, ascending */
+  PetscReal   *signs;       /* per face, in one dimension: of its normal */
+  PetscInt    *owner_index; /* per node: its number on the rank that owns it */
+  PetscMPIInt *owner_rank;
+  PetscSF      sf;     /* from owned nodes to ghosts */
+  MPI_Datatype vector; /* three reals */
+};
+
+/* A face of the Neumann side as it travels between ranks */
+typedef struct {
+  PetscInt    dofs[4], owner_index[4];
+  PetscMPIInt owner_rank[4];
+  PetscReal   x[4][3], normal[3];
+} Face;
+
+/* The plane in which a Dirichlet face is compared with others: its centroid, unit normal, and tangents such that t0 x t1 = n */
+typedef struct {
+  PetscReal origin[3], normal[3], tangents[2][3];
+} Frame;
+
+/* A tree of boxes about faces */
+typedef struct {
+  PetscReal lower[3], upper[3];
+  PetscInt  begin, end, child; /* its faces in the order; the first of its two children, -1: a leaf */
+} Box;
+typedef struct {
+  PetscInt  n_boxes, *order;
+  Box      *boxes;
+  PetscInt *found, max_found; /* work space of the query */
+} Tree;
+
+/* The share of one Neumann node in one row */
+typedef struct {
+  PetscInt    row, dof, owner_index;
+  PetscMPIInt owner_rank;
+  PetscReal   value;
+} Share;
+
+/* The rows of a transfer */
+typedef struct {
+  PetscBool *opposite, *changed;
+  PetscReal *gap, *area, *normals; /* normals: dim each */
+  PetscInt  *offsets;              /* of each row among the shares, n + 1 */
+  Share     *shares;               /* sorted by row and dof */
+  PetscInt   n_columns;            /* distinct Neumann nodes of the shares */
+  PetscInt  *columns;              /* per share: its column */
+  PetscSF    sf;                   /* from owned nodes of the Neumann side to columns */
+} RowSet;
+
+struct _n_Transfer {
+  MPI_Comm       comm;
+  Surface        dirichlet, neumann; /* neumann NULL: an obstacle */
+  Obstacle       obstacle;
+  PetscInt       dim, n;
+  PetscReal      slip_bound, angle_bound;
+  RowSet         rows;
+  PetscBool      built;
+  PetscReal      built_near, smallest_size;
+  PetscReal     *built_x[2]; /* positions of the owned nodes of both sides at the last build */
+  PetscReal     *built_slip; /* per row: part of sum_j P_ij x_j - x_i across the normal at the last build, 3 each */
+  PetscReal     *column_x;   /* work space: present positions of the columns */
+  TransferCounts counts;
+};
+
+static inline PetscReal Dot(const PetscReal a[], const PetscReal b[])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void Cross(const PetscReal a[], const PetscReal b[], PetscReal c[])
+{
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline PetscReal Normalize(PetscReal a[])
+{
+  const PetscReal length = PetscSqrtReal(Dot(a, a));
+
+  if (length > 0)
+    for (PetscInt d = 0; d < 3; d++) a[d] /= length;
+  return length;
+}
+
+/* Geometry of faces with 1 to 4 nodes */
+PETSC_INTERN void      FaceNormal(PetscInt, const PetscReal[][3], PetscReal[], PetscReal *);
+PETSC_INTERN PetscReal FaceNodeAreas(PetscInt, const PetscReal[][3], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal FaceSize(PetscInt, PetscReal);
+PETSC_INTERN void      FrameOfFace(PetscInt, const PetscReal[][3], const PetscReal[], Frame *);
+PETSC_INTERN void      FrameProject(const Frame *, const PetscReal[], PetscReal[]);
+PETSC_INTERN void      FaceShapes(PetscInt, const PetscReal[][2], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscInt  PolygonClip(PetscInt, const PetscReal[][2], PetscInt, const PetscReal[][2], PetscReal[][2]);
+PETSC_INTERN PetscReal PolygonMeasure(PetscInt, const PetscReal[][2], PetscReal[]);
+PETSC_INTERN PetscReal PolygonDistance(PetscInt, const PetscReal[][2], const PetscReal[]);
+PETSC_INTERN PetscInt  PolygonQuadrature(PetscInt, const PetscReal[][2], PetscReal[][2], PetscReal[]);
+
+PETSC_INTERN PetscErrorCode TreeCreate(PetscInt, PetscInt, const Face[], Tree *);
+PETSC_INTERN PetscErrorCode TreeDestroy(Tree *);
+PETSC_INTERN PetscErrorCode TreeQuery(Tree *, const Frame *, const PetscReal[], const PetscReal[], PetscInt *);
+
+PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const PetscMPIInt[], const void *, PetscInt *, void **);
+PETSC_INTERN PetscErrorCode ExchangeFaces(MPI_Comm, Surface, Surface, PetscReal, PetscReal, PetscInt *, Face *[]);
+PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
+PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
+PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, PetscReal *);
+
+PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscReal[], PetscInt *, Share *[]);
+PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
+PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
+PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
+PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
+PETSC_INTERN void           RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

@@ -1,0 +1,197 @@
+/* Dual mortar integrals over the parts of faces that lie opposite to each other: M_ij = int psi_i N_j and D_i = int phi_i (Wohlmuth 2000;
+   Popp, Gee, Wall 2009), with dual functions on the covered part of each face (Cichosz, Bischoff 2011). */
+#include "segments.h"
+
+#define SINGULAR 1e-3 /* smallest pivot of the mass matrix of a face, scaled to a unit diagonal */
+
+/* Integrals over the covered part of one Dirichlet face */
+typedef struct {
+  PetscInt  n;
+  PetscReal corners[4][2];
+  PetscReal combine[4][4]; /* function of node k: sum_l combine[k][l] phi_l */
+  PetscReal lumped[4];     /* int phi_k */
+  PetscReal mass[4][4];    /* int phi_k phi_l */
+} Patch;
+
+/* Nodes beyond the end of the partner have no row: their neighbours on the face take over, so that the functions still sum to one */
+static void CombineFunctions(PetscInt n, const PetscInt nodes[], const PetscInt marks[], PetscReal combine[4][4])
+{
+  PetscInt all = 0;
+
+  for (PetscInt k = 0; k < n; k++) all += marks[nodes[k]];
+  for (PetscInt l = 0; l < n; l++) {
+    PetscInt heirs[4] = {0}, count = 0;
+
+    if (marks[nodes[l]]) {
+      heirs[l] = count = 1;
+    } else {
+      for (PetscInt k = 0; k < n; k++) heirs[k] = marks[nodes[k]] && (k == (l + 1) % n || l == (k + 1) % n);
+      for (PetscInt k = 0; k < n; k++) count += heirs[k];
+      for (PetscInt k = 0; k < n && !count; k++) heirs[k] = marks[nodes[k]];
+      if (!count) count = PetscMax(all, 1);
+    }
+    for (PetscInt k = 0; k < n; k++) combine[k][l] = (PetscReal)heirs[k] / count;
+  }
+}
+
+static void ShapesAt(const Patch *patch, const PetscReal s[], PetscReal shapes[])
+{
+  PetscReal phi[4];
+
+  FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, s, phi);
+  for (PetscInt k = 0; k < patch->n; k++) {
+    shapes[k] = 0;
+    for (PetscInt l = 0; l < patch->n; l++) shapes[k] += patch->combine[k][l] * phi[l];
+  }
+}
+
+/* Adds a segment to the patch, and finds int phi_k N_j over it */
+static void IntegrateSegment(Patch *patch, const Segment *segment, PetscInt n_partner, PetscReal cross[4][4])
+{
+  PetscReal      points[36][2], weights[36], shapes[4], partner[4];
+  const PetscInt n_points = PolygonQuadrature(segment->n, (const PetscReal(*)[2])segment->polygon, points, weights);
+
+  for (PetscInt k = 0; k < 4; k++)
+    for (PetscInt j = 0; j < 4; j++) cross[k][j] = 0;
+  for (PetscInt q = 0; q < n_points; q++) {
+    ShapesAt(patch, points[q], shapes);
+    FaceShapes(n_partner, (const PetscReal(*)[2])segment->partner_corners, points[q], partner);
+    for (PetscInt k = 0; k < patch->n; k++) {
+      patch->lumped[k] += weights[q] * shapes[k];
+      for (PetscInt l = 0; l < patch->n; l++) patch->mass[k][l] += weights[q] * shapes[k] * shapes[l];
+      for (PetscInt j = 0; j < n_partner; j++) cross[k][j] += weights[q] * shapes[k] * partner[j];
+    }
+  }
+}
+
+/* Dual functions psi_k = sum_l dual[k][l] phi_l with int psi_k phi_l = delta_kl int phi_k: dual = diag(lumped) mass^-1. The functions themselves
+   where that is nearly singular, which it is where only a small part in the middle of the face is covered. */
+static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
+{
+  PetscInt  which[4], n = 0;
+  PetscReal a[4][8], scale[4];
+
+  for (PetscInt k = 0; k < patch->n; k++) {
+    for (PetscInt l = 0; l < patch->n; l++) dual[k][l] = k == l;
+    if (patch->lumped[k] > 0 && patch->mass[k][k] > 0) which[n++] = k;
+  }
+  for (PetscInt i = 0; i < n; i++) scale[i] = 1 / PetscSqrtReal(patch->mass[which[i]][which[i]]);
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      a[i][j]     = patch->mass[which[i]][which[j]] * scale[i] * scale[j];
+      a[i][n + j] = i == j;
+    }
+  for (PetscInt i = 0; i < n; i++) { /* symmetric and positive: no pivoting */
+    const PetscReal pivot = a[i][i];
+
+    if (pivot < SINGULAR) return;
+    for (PetscInt j = 0; j < 2 * n; j++) a[i][j] /= pivot;
+    for (PetscInt r = 0; r < n; r++) {
+      const PetscReal factor = a[r][i];
+
+      if (r != i)
+        for (PetscInt j = 0; j < 2 * n; j++) a[r][j] -= factor * a[i][j];
+    }
+  }
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) dual[which[i]][which[j]] = patch->lumped[which[i]] * a[i][n + j] * scale[i] * scale[j];
+}
+
+static void SetUpPatch(const SurfaceData *data, PetscInt f, const PetscInt marks[], Patch *patch)
+{
+  const PetscInt n = data->face_nodes, *nodes = data->faces + f * n;
+  PetscReal      x[4][3];
+  Frame          frame;
+
+  *patch = (Patch){.n = n};
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt d = 0; d < 3; d++) x[k][d] = data->positions[3 * nodes[k] + d];
+  FrameOfFace(n, (const PetscReal(*)[3])x, data->face_normals + 3 * f, &frame);
+  for (PetscInt k = 0; k < n; k++) FrameProject(&frame, x[k], patch->corners[k]);
+  CombineFunctions(n, nodes, marks, patch->combine);
+}
+
+static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Face *partner, PetscReal values[4][4], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+{
+  const PetscInt n = surface->data.face_nodes;
+
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt node = surface->data.faces[f * n + k];
+
+    for (PetscInt j = 0; j < n_partner; j++) {
+      if (values[k][j] == 0) continue;
+      owners[*n_shares]     = surface->owner_rank[node];
+      shares[(*n_shares)++] = (Share){.row = surface->owner_index[node], .dof = partner->dofs[j], .owner_index = partner->owner_index[j], .owner_rank = partner->owner_rank[j], .value = values[k][j]};
+    }
+  }
+}
+
+/* The segments begin to end - 1 of one face */
+static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[], const PetscInt marks[], PetscReal lumped[], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+{
+  const PetscInt n = surface->data.face_nodes, f = segments->list[begin].face, n_partner = segments->face_nodes;
+  PetscReal(*cross)[4][4], dual[4][4];
+  Patch patch;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(end - begin, &cross));
+  if (n == 1) {
+    patch          = (Patch){.n = 1, .lumped = {1}};
+    cross[0][0][0] = dual[0][0] = 1;
+  } else {
+    SetUpPatch(&surface->data, f, marks, &patch);
+    for (PetscInt i = begin; i < end; i++) IntegrateSegment(&patch, &segments->list[i], n_partner, cross[i - begin]);
+    ComputeDual(&patch, dual);
+  }
+  for (PetscInt k = 0; k < n; k++) lumped[surface->data.faces[f * n + k]] += patch.lumped[k];
+  for (PetscInt i = begin; i < end; i++) {
+    PetscReal values[4][4] = {{0}};
+
+    for (PetscInt k = 0; k < n; k++)
+      for (PetscInt l = 0; l < n; l++)
+        for (PetscInt j = 0; j < n_partner; j++) values[k][j] += dual[k][l] * cross[i - begin][l][j];
+    AddShares(surface, f, n_partner, &faces[segments->list[i].partner], values, n_shares, shares, owners);
+  }
+  PetscCall(PetscFree(cross));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* lumped: D_i of the nodes that this rank has, summed on those it owns; shares: M_ij of the rows of this rank, in pieces, free with PetscFree() */
+PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscReal lumped[], PetscInt *n_shares, Share *shares[])
+{
+  Surface      dirichlet = transfer->dirichlet;
+  Segments     segments  = {.ahead = ahead, .behind = behind, .face_nodes = transfer->neumann->data.face_nodes};
+  PetscInt     n_faces, n_mine = 0, *marks;
+  Face        *faces;
+  Share       *mine;
+  PetscMPIInt *owners;
+  PetscInt64   counts[2];
+
+  PetscFunctionBegin;
+  PetscCall(ExchangeFaces(transfer->comm, dirichlet, transfer->neumann, ahead, behind, &n_faces, &faces));
+  PetscCall(PetscCalloc1(dirichlet->data.n_nodes, &marks));
+  PetscCall(SegmentsFind(&dirichlet->data, n_faces, faces, marks, &segments));
+  PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_INT, marks, marks, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_INT, marks, marks, MPI_MAX));
+  PetscCall(PetscSFBcastBegin(dirichlet->sf, MPIU_INT, marks, marks, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(dirichlet->sf, MPIU_INT, marks, marks, MPI_REPLACE));
+  PetscCall(PetscMalloc2(segments.n * 16, &mine, segments.n * 16, &owners));
+  PetscCall(PetscArrayzero(lumped, dirichlet->data.n_nodes));
+  for (PetscInt begin = 0, end; begin < segments.n; begin = end) {
+    for (end = begin + 1; end < segments.n && segments.list[end].face == segments.list[begin].face;) end++;
+    PetscCall(IntegrateFace(dirichlet, &segments, begin, end, faces, marks, lumped, &n_mine, mine, owners));
+  }
+  PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
+  PetscCall(ExchangeRecords(transfer->comm, sizeof(Share), n_mine, owners, mine, n_shares, (void **)shares));
+  counts[0] = segments.candidates;
+  counts[1] = segments.n;
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, counts, 2, MPIU_INT64, MPI_SUM, transfer->comm));
+  transfer->counts.candidates = counts[0];
+  transfer->counts.segments   = counts[1];
+  PetscCall(PetscFree2(mine, owners));
+  PetscCall(PetscFree(segments.list));
+  PetscCall(PetscFree(marks));
+  PetscCall(PetscFree(faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

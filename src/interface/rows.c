@@ -1,0 +1,279 @@
+/* From integrals to rows. */
+#include "interfaceimpl.h"
+
+#define COVERED 1e-6  /* a node of whose area less is covered has no row */
+#define SAME    1e-10 /* rows that differ by less stay as they were */
+#define PRUNE   1e-12 /* weights below are left out */
+
+PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSet *set)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(set, sizeof(*set)));
+  PetscCall(PetscCalloc6(n, &set->opposite, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1, &set->offsets));
+  PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RowSetDestroy(RowSet *set)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree6(set->opposite, set->changed, set->gap, set->area, set->normals, set->offsets));
+  PetscCall(PetscFree2(set->shares, set->columns));
+  PetscCall(PetscSFDestroy(&set->sf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By value last: then sums do not depend on the order in which ranks and faces contribute */
+static int CompareShares(const void *a, const void *b, void *context)
+{
+  const Share *left = (const Share *)a, *right = (const Share *)b;
+
+  (void)context;
+  if (left->row != right->row) return left->row < right->row ? -1 : 1;
+  if (left->dof != right->dof) return left->dof < right->dof ? -1 : 1;
+  return left->value < right->value ? -1 : left->value > right->value;
+}
+
+/* Sums the pieces of each weight and divides by D_i; rows of nodes without enough cover come out empty */
+static PetscErrorCode MergeShares(PetscInt n, const PetscReal lumped[], const PetscReal areas[], PetscInt n_shares, Share shares[], RowSet *set)
+{
+  PetscInt count = 0, share = 0;
+
+  PetscFunctionBegin;
+  if (n_shares > 1) PetscCall(PetscTimSort(n_shares, shares, sizeof(Share), CompareShares, NULL)); /* it reads the first of none */
+  for (PetscInt row = 0; row < n; row++) {
+    const PetscBool covered = (PetscBool)(lumped[row] > COVERED * areas[row]);
+
+    set->offsets[row] = count;
+    while (share < n_shares && shares[share].row == row) {
+      Share sum = shares[share];
+
+      sum.value = 0;
+      while (share < n_shares && shares[share].row == row && shares[share].dof == sum.dof) sum.value += shares[share++].value;
+      sum.value /= lumped[row];
+      if (covered && PetscAbsReal(sum.value) > PRUNE) set->shares[count++] = sum;
+    }
+    set->opposite[row] = (PetscBool)(count > set->offsets[row]);
+  }
+  set->offsets[n] = count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The distinct nodes of the partner that the shares speak of, and the way to them from their owners */
+static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n, RowSet *set)
+{
+  const PetscInt count = set->offsets[n];
+  PetscInt      *dofs;
+  PetscSFNode   *owners;
+
+  PetscFunctionBegin;
+  set->n_columns = count;
+  PetscCall(PetscMalloc1(count, &dofs));
+  for (PetscInt i = 0; i < count; i++) dofs[i] = set->shares[i].dof;
+  PetscCall(PetscSortRemoveDupsInt(&set->n_columns, dofs));
+  PetscCall(PetscMalloc1(set->n_columns, &owners));
+  for (PetscInt i = 0; i < count; i++) {
+    PetscCall(PetscFindInt(set->shares[i].dof, set->n_columns, dofs, &set->columns[i]));
+    owners[set->columns[i]].rank  = set->shares[i].owner_rank;
+    owners[set->columns[i]].index = set->shares[i].owner_index;
+  }
+  PetscCall(PetscFree(dofs));
+  PetscCall(PetscSFCreate(comm, &set->sf));
+  PetscCall(PetscSFSetGraph(set->sf, n_owned, set->n_columns, NULL, PETSC_OWN_POINTER, owners, PETSC_OWN_POINTER));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Smallest change of the weights, in proportion to their sizes, after which they sum to one and sum_j P_j x_j - x is along the normal: then
+   a force along the normal has the same resultant and moment on both sides. Directions in which the nodes do not differ stay as they are. */
+void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size, PetscReal weights[])
+{
+  PetscReal tangents[2][3] = {{0}}, gram[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
+  PetscInt  thinnest = 0;
+
+  if (dim == 1) return;
+  for (PetscInt d = 1; d < dim; d++)
+    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[thinnest])) thinnest = d;
+  if (dim == 2) {
+    tangents[0][0] = -normal[1];
+    tangents[0][1] = normal[0];
+  } else {
+    tangents[1][thinnest] = 1;
+    Cross(normal, tangents[1], tangents[0]);
+    (void)Normalize(tangents[0]);
+    Cross(normal, tangents[0], tangents[1]);
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal from[3]      = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
+    const PetscReal condition[3] = {1, Dot(from, tangents[0]) / size, Dot(from, tangents[1]) / size};
+
+    for (PetscInt a = 0; a < dim; a++) {
+      rest[a] -= weights[j] * condition[a];
+      for (PetscInt b = 0; b < dim; b++) gram[a][b] += PetscAbsReal(weights[j]) * condition[a] * condition[b];
+    }
+  }
+  for (PetscInt a = 0; a < dim; a++) { /* Gauss without the equations that say nothing new */
+    if (gram[a][a] < 1e-8) {
+      for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
+      rest[a] = 0;
+      continue;
+    }
+    for (PetscInt r = a + 1; r < dim; r++) {
+      const PetscReal factor = gram[r][a] / gram[a][a];
+
+      for (PetscInt b = a; b < dim; b++) gram[r][b] -= factor * gram[a][b];
+      rest[r] -= factor * rest[a];
+    }
+  }
+  for (PetscInt a = dim - 1; a >= 0; a--) {
+    factors[a] = rest[a];
+    for (PetscInt b = a + 1; b < dim; b++) factors[a] -= gram[a][b] * factors[b];
+    factors[a] /= gram[a][a];
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal from[3] = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
+
+    weights[j] += PetscAbsReal(weights[j]) * (factors[0] + factors[1] * Dot(from, tangents[0]) / size + factors[2] * Dot(from, tangents[1]) / size);
+  }
+}
+
+/* Corrects a row, and takes it if its gap is within the limits */
+static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal ahead, PetscReal behind, RowSet *set)
+{
+  const SurfaceData *data  = &transfer->dirichlet->data;
+  const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
+  const PetscReal   *normal = data->normals + 3 * row, **partners;
+  PetscReal         *weights, gap, present;
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
+  set->gap[row] = PETSC_MAX_REAL;
+  if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(n, &weights, n, &partners));
+  for (PetscInt j = 0; j < n; j++) {
+    weights[j]  = set->shares[first + j].value;
+    partners[j] = x + 3 * set->columns[first + j];
+  }
+  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
+  gap = present = 0;
+  for (PetscInt d = 0; d < dim; d++) {
+    PetscReal there = 0, now = 0;
+
+    for (PetscInt j = 0; j < n; j++) {
+      there += weights[j] * reference[3 * set->columns[first + j] + d];
+      now += weights[j] * partners[j][d];
+    }
+    gap += normal[d] * (there - data->reference[3 * row + d]);
+    present += normal[d] * (now - data->positions[3 * row + d]);
+  }
+  for (PetscInt j = 0; j < n; j++) set->shares[first + j].value = weights[j];
+  PetscCall(PetscFree2(weights, partners));
+  set->opposite[row] = (PetscBool)(present <= ahead && present >= -behind);
+  if (set->opposite[row]) set->gap[row] = gap;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a row says the same in both sets */
+static PetscBool SameRow(PetscInt dim, const RowSet *a, const RowSet *b, PetscInt row)
+{
+  const PetscInt n = a->offsets[row + 1] - a->offsets[row];
+
+  if (a->opposite[row] != b->opposite[row]) return PETSC_FALSE;
+  for (PetscInt d = 0; d < dim; d++)
+    if (PetscAbsReal(a->normals[dim * row + d] - b->normals[dim * row + d]) > SAME) return PETSC_FALSE;
+  if (!a->opposite[row]) return PETSC_TRUE;
+  if (n != b->offsets[row + 1] - b->offsets[row] || PetscAbsReal(a->area[row] - b->area[row]) > SAME * PetscAbsReal(a->area[row])) return PETSC_FALSE;
+  for (PetscInt j = 0; j < n; j++) {
+    const Share *left = &a->shares[a->offsets[row] + j], *right = &b->shares[b->offsets[row] + j];
+
+    if (left->dof != right->dof || PetscAbsReal(left->value - right->value) > SAME) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* Marks what has changed; rows that have not keep their numbers to the last bit */
+static void CompareRows(PetscInt dim, PetscInt n, PetscBool first, const RowSet *old, RowSet *set)
+{
+  for (PetscInt row = 0; row < n; row++) {
+    set->changed[row] = (PetscBool)(first || !SameRow(dim, old, set, row));
+    if (set->changed[row]) continue;
+    set->gap[row]  = old->gap[row];
+    set->area[row] = old->area[row];
+    for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = old->normals[dim * row + d];
+    for (PetscInt j = 0; set->opposite[row] && j < set->offsets[row + 1] - set->offsets[row]; j++) set->shares[set->offsets[row] + j].value = old->shares[old->offsets[row] + j].value;
+  }
+}
+
+/* How far behind its node a partner may be: as far as it was asked to look ahead; at any distance, as far as the bodies can overlap */
+static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscReal *behind)
+{
+  PetscFunctionBegin;
+  *behind = near;
+  if (near < PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SurfaceComputeOverlap(transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind));
+  if (transfer->dim > 1) *behind *= 2; /* gaps are along normals, which may be oblique to the shortest way out */
+  if (transfer->built && transfer->dim > 1) *behind = PetscMax(*behind, transfer->smallest_size / 2);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
+{
+  const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
+  PetscReal         *lumped, *x, *reference, behind;
+  PetscInt           n_shares;
+  Share             *shares;
+  RowSet             set;
+
+  PetscFunctionBegin;
+  PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, near, &behind));
+  PetscCall(PetscMalloc1(dirichlet->n_nodes, &lumped));
+  PetscCall(TransferIntegrate(transfer, near, behind, lumped, &n_shares, &shares));
+  PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
+  PetscCall(MergeShares(transfer->n, lumped, dirichlet->areas, n_shares, shares, &set));
+  PetscCall(PetscFree(shares));
+  PetscCall(ConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
+  PetscCall(PetscMalloc2(3 * set.n_columns, &x, 3 * set.n_columns, &reference));
+  PetscCall(PetscSFBcastBegin(set.sf, transfer->neumann->vector, neumann->positions, x, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set.sf, transfer->neumann->vector, neumann->positions, x, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(set.sf, transfer->neumann->vector, neumann->reference, reference, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set.sf, transfer->neumann->vector, neumann->reference, reference, MPI_REPLACE));
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    PetscCall(FinishRow(transfer, row, x, reference, near, behind, &set));
+    set.area[row] = set.opposite[row] ? lumped[row] : 0;
+  }
+  CompareRows(transfer->dim, transfer->n, (PetscBool)!transfer->built, &transfer->rows, &set);
+  PetscCall(RowSetDestroy(&transfer->rows));
+  transfer->rows = set;
+  PetscCall(PetscFree(transfer->column_x));
+  PetscCall(PetscMalloc1(3 * set.n_columns, &transfer->column_x));
+  PetscCall(PetscFree2(x, reference));
+  PetscCall(PetscFree(lumped));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows against an obstacle: its distance, linearised where the node is */
+PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
+{
+  const SurfaceData *data = &transfer->dirichlet->data;
+  const PetscInt     dim  = transfer->dim;
+  RowSet             set;
+
+  PetscFunctionBegin;
+  PetscCall(RowSetAllocate(dim, transfer->n, 0, &set));
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    const PetscReal *x = data->positions + 3 * row, *reference = data->reference + 3 * row;
+    PetscReal        gradient[3], distance;
+
+    PetscCall(ObstacleGetGap(transfer->obstacle, x, &distance, gradient));
+    set.opposite[row] = (PetscBool)(distance <= near && Dot(gradient, data->normals + 3 * row) < -0.1);
+    set.area[row]     = set.opposite[row] ? data->areas[row] : 0;
+    set.gap[row]      = set.opposite[row] ? distance : PETSC_MAX_REAL;
+    for (PetscInt d = 0; d < dim; d++) {
+      set.normals[dim * row + d] = -gradient[d];
+      if (set.opposite[row]) set.gap[row] -= gradient[d] * (x[d] - reference[d]);
+    }
+  }
+  CompareRows(dim, transfer->n, (PetscBool)!transfer->built, &transfer->rows, &set);
+  PetscCall(RowSetDestroy(&transfer->rows));
+  transfer->rows = set;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,88 @@
+/* Where a surface is now, with its normals and areas. */
+#include "interfaceimpl.h"
+
+static PetscErrorCode UpdatePositions(Surface surface, Vec u)
+{
+  SurfaceData       *data = &surface->data;
+  const PetscScalar *values;
+  PetscInt           start;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(data->positions, data->reference, 3 * data->n_nodes));
+  if (!u) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetOwnershipRange(u, &start, NULL));
+  PetscCall(VecGetArrayRead(u, &values));
+  for (PetscInt i = 0; i < data->n_owned; i++)
+    for (PetscInt d = 0; d < data->dim; d++) data->positions[3 * i + d] += PetscRealPart(values[data->dofs[i] - start + d]);
+  PetscCall(VecRestoreArrayRead(u, &values));
+  PetscCall(PetscSFBcastBegin(surface->sf, surface->vector, data->positions, data->positions, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(surface->sf, surface->vector, data->positions, data->positions, MPI_REPLACE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the faces of this rank give to its nodes */
+static void AddFaces(Surface surface)
+{
+  SurfaceData   *data = &surface->data;
+  const PetscInt n    = data->face_nodes;
+
+  for (PetscInt f = 0; f < data->n_faces; f++) {
+    const PetscInt *nodes = data->faces + f * n;
+    PetscReal       x[4][3], areas[4], *normal = data->face_normals + 3 * f;
+
+    for (PetscInt k = 0; k < n; k++)
+      for (PetscInt d = 0; d < 3; d++) x[k][d] = data->positions[3 * nodes[k] + d];
+    normal[0] = surface->signs[f];
+    normal[1] = normal[2] = 0;
+    FaceNormal(n, (const PetscReal(*)[3])x, normal, &data->face_areas[f]);
+    FaceNodeAreas(n, (const PetscReal(*)[3])x, normal, areas);
+    for (PetscInt k = 0; k < n; k++) {
+      data->areas[nodes[k]] += areas[k];
+      data->sizes[nodes[k]] = PetscMin(data->sizes[nodes[k]], FaceSize(n, data->face_areas[f]));
+      for (PetscInt d = 0; d < 3; d++) data->normals[3 * nodes[k] + d] += data->face_areas[f] * normal[d];
+    }
+  }
+}
+
+/*@
+  SurfaceUpdate - moves a surface to where its body is
+
+  Collective
+
+  Input Parameters:
++ surface - the `Surface`
+- u       - displacements of its body, a global vector of the mesh; `NULL` for the reference position
+
+  Level: developer
+
+  Note:
+  Updates the positions, normals, areas and sizes of `SurfaceData`; costs work in proportion to the number of faces.
+
+.seealso: `Surface`, `SurfaceData`, `TransferUpdate()`
+@*/
+PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
+{
+  SurfaceData *data = &surface->data;
+  PetscSF      sf   = surface->sf;
+
+  PetscFunctionBegin;
+  PetscCall(UpdatePositions(surface, u));
+  PetscCall(PetscArrayzero(data->normals, 3 * data->n_nodes));
+  PetscCall(PetscArrayzero(data->areas, data->n_nodes));
+  for (PetscInt i = 0; i < data->n_nodes; i++) data->sizes[i] = PETSC_MAX_REAL;
+  AddFaces(surface);
+  PetscCall(PetscSFReduceBegin(sf, surface->vector, data->normals, data->normals, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(sf, surface->vector, data->normals, data->normals, MPIU_SUM));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+  for (PetscInt i = 0; i < data->n_owned; i++) (void)Normalize(data->normals + 3 * i);
+  PetscCall(PetscSFBcastBegin(sf, surface->vector, data->normals, data->normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, surface->vector, data->normals, data->normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
