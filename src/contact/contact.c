@@ -87,8 +87,8 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscFunctionBegin;
   PetscCall(PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
-  (*contact)->slip_bound  = 0.05;
-  (*contact)->angle_bound = 0.02;
+  (*contact)->slip_bound  = 0.2;
+  (*contact)->angle_bound = 0.1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -35,14 +35,14 @@ static int CompareShares(const void *a, const void *b, void *context)
 }
 
 /* Sums the pieces of each weight and divides by D_i; rows of nodes without enough cover come out empty */
-static PetscErrorCode MergeShares(PetscInt n, const PetscReal lumped[], const PetscReal areas[], PetscInt n_shares, Share shares[], RowSet *set)
+static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const PetscReal lumped[], const PetscReal areas[], PetscInt n_shares, Share shares[], RowSet *set)
 {
   PetscInt count = 0, share = 0;
 
   PetscFunctionBegin;
   if (n_shares > 1) PetscCall(PetscTimSort(n_shares, shares, sizeof(Share), CompareShares, NULL)); /* it reads the first of none */
   for (PetscInt row = 0; row < n; row++) {
-    const PetscBool covered = (PetscBool)(lumped[row] > COVERED * areas[row]);
+    const PetscBool covered = (PetscBool)(lumped[row] > COVERED * areas[row] || (keep[row] && lumped[row] > 0));
 
     set->offsets[row] = count;
     while (share < n_shares && shares[share].row == row) {
@@ -172,6 +172,42 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes rows that are to stay as they are over from the last build, into the pieces that the new rows are made of */
+static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt *n_shares, Share *shares[])
+{
+  const RowSet *old  = &transfer->rows;
+  PetscInt      kept = 0, count = 0;
+  Share        *all;
+
+  PetscFunctionBegin;
+  for (PetscInt row = 0; row < transfer->n; row++)
+    if (transfer->keep[row]) kept += old->offsets[row + 1] - old->offsets[row];
+  if (!kept) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(*n_shares + kept, &all));
+  for (PetscInt i = 0; i < *n_shares; i++)
+    if (!transfer->keep[(*shares)[i].row]) all[count++] = (*shares)[i];
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    if (!transfer->keep[row]) continue;
+    lumped[row] = old->area[row];
+    for (PetscInt i = old->offsets[row]; i < old->offsets[row + 1]; i++) {
+      all[count] = old->shares[i];
+      all[count++].value *= lumped[row];
+    }
+  }
+  PetscCall(PetscFree(*shares));
+  *shares   = all;
+  *n_shares = count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A row that stays as it was; its shares come out of the merger but for round-off */
+static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
+{
+  set->opposite[row] = PETSC_TRUE;
+  set->gap[row]      = transfer->rows.gap[row];
+  for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
+}
+
 /* Whether a row says the same in both sets */
 static PetscBool SameRow(PetscInt dim, const RowSet *a, const RowSet *b, PetscInt row)
 {
@@ -227,8 +263,9 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, near, &behind));
   PetscCall(PetscMalloc1(dirichlet->n_nodes, &lumped));
   PetscCall(TransferIntegrate(transfer, near, behind, lumped, &n_shares, &shares));
+  PetscCall(KeepShares(transfer, lumped, &n_shares, &shares));
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
-  PetscCall(MergeShares(transfer->n, lumped, dirichlet->areas, n_shares, shares, &set));
+  PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
   PetscCall(PetscFree(shares));
   PetscCall(ConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
   PetscCall(PetscMalloc2(3 * set.n_columns, &x, 3 * set.n_columns, &reference));
@@ -237,7 +274,8 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(PetscSFBcastBegin(set.sf, transfer->neumann->vector, neumann->reference, reference, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.sf, transfer->neumann->vector, neumann->reference, reference, MPI_REPLACE));
   for (PetscInt row = 0; row < transfer->n; row++) {
-    PetscCall(FinishRow(transfer, row, x, reference, near, behind, &set));
+    if (transfer->keep[row]) KeepRow(transfer, row, &set);
+    else PetscCall(FinishRow(transfer, row, x, reference, near, behind, &set));
     set.area[row] = set.opposite[row] ? lumped[row] : 0;
   }
   CompareRows(transfer->dim, transfer->n, (PetscBool)!transfer->built, &transfer->rows, &set);
@@ -263,6 +301,11 @@ PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
     const PetscReal *x = data->positions + 3 * row, *reference = data->reference + 3 * row;
     PetscReal        gradient[3], distance;
 
+    if (transfer->keep[row]) {
+      KeepRow(transfer, row, &set);
+      set.area[row] = transfer->rows.area[row];
+      continue;
+    }
     PetscCall(ObstacleGetGap(transfer->obstacle, x, &distance, gradient));
     set.opposite[row] = (PetscBool)(distance <= near && Dot(gradient, data->normals + 3 * row) < -0.1);
     set.area[row]     = set.opposite[row] ? data->areas[row] : 0;

@@ -81,10 +81,12 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
   *slipped = PETSC_FALSE;
   if (dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (transfer->neumann) PetscCall(GetColumnPositions(transfer));
-  for (PetscInt row = 0; row < transfer->n && !any; row++) {
+  for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscReal *normal = transfer->rows.normals + dim * row, *present = data->normals + 3 * row, size = data->sizes[row];
     PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3];
+    PetscBool        within;
 
+    transfer->keep[row] = PETSC_FALSE;
     if (!transfer->rows.opposite[row]) continue;
     if (transfer->neumann) {
       GetOffset(transfer, row, offset);
@@ -95,7 +97,10 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
       PetscCall(ObstacleGetGap(transfer->obstacle, data->positions + 3 * row, &gap, gradient));
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(gradient[d] + normal[d]);
     }
-    if (PetscAbsReal(gap) < 2 * size && (slip > PetscSqr(transfer->slip_bound * size) || turned > turn * turn)) any = 1;
+    if (PetscAbsReal(gap) >= 2 * size) continue;
+    within              = (PetscBool)(slip <= PetscSqr(transfer->slip_bound * size) && turned <= turn * turn);
+    transfer->keep[row] = within;
+    if (!within) any = 1;
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, transfer->comm));
   *slipped = (PetscBool)(any > 0);
@@ -120,6 +125,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
     for (PetscInt row = 0; row < transfer->n; row++) {
       PetscReal gap;
 
+      if (transfer->keep[row]) continue; /* its slip goes on from where it was */
       GetOffset(transfer, row, transfer->built_slip + 3 * row);
       SplitOffset(transfer->dim, transfer->rows.normals + transfer->dim * row, transfer->built_slip + 3 * row, &gap);
     }
@@ -149,7 +155,8 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   Notes:
   The rows are built again when one with a gap of less than two face sizes has slipped by more than the bound, or its normal has turned by more
   than the bound; when the surfaces have moved by more than a quarter of the smallest face relative to each other, so that other faces may lie
-  opposite; and when `near` exceeds that of the last build. Between builds a normal stays as it was. In one dimension they are built once.
+  opposite; and when `near` exceeds that of the last build. Between builds a normal stays as it was, and in a build
+   rows near contact stay as they are that are within both bounds: each change of a row costs a little energy. In one dimension they are built once.
 
   Partners are looked for ahead of a node, and behind it as far too; at any distance, as far as the two bodies can overlap at all.
 
@@ -162,8 +169,14 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   *rebuilt = (PetscBool)(!transfer->built || near > transfer->built_near);
-  if (!*rebuilt) PetscCall(HasMoved(transfer, rebuilt));
-  if (!*rebuilt) PetscCall(HasSlipped(transfer, rebuilt));
+  PetscCall(PetscArrayzero(transfer->keep, transfer->n));
+  if (!*rebuilt) {
+    PetscBool moved, slipped;
+
+    PetscCall(HasMoved(transfer, &moved));
+    PetscCall(HasSlipped(transfer, &slipped));
+    *rebuilt = (PetscBool)(moved || slipped);
+  }
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, near));
   else PetscCall(TransferBuildObstacleRows(transfer, near));
