@@ -61,7 +61,7 @@ def draw(history, path):
     (force, error), (active, gap) = figure.subplots(2, 2, sharex=True)
     draw_pairs(force, time, {name: np.linalg.norm(pair["force_vector"], axis=1) for name, pair in pairs.items()}, "contact force", "force", "N")
     draw_pairs(active, time, {name: pair["active"] for name, pair in pairs.items()}, "nodes in contact", "nodes", "1")
-    draw_pairs(gap, time, {name: np.where(np.abs(pair["gap"]) < 1e300, pair["gap"], np.nan) for name, pair in pairs.items()}, "smallest gap", "gap", "m")
+    draw_pairs(gap, time, {name: np.where(np.abs(pair["gap"]) < 1e20, pair["gap"], np.nan) for name, pair in pairs.items()}, "smallest gap", "gap", "m")
     error.plot(time, energy_error(history["bodies"]), color=GREEN)
     error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
     error.set_title("error of the energy of all bodies")

@@ -7,7 +7,7 @@ typedef enum {
   CARRY_FORCE,
   CARRY_AREA,
   CARRY_ACTIVE_AREA,
-  CARRY_GAP_AREA, /* of rows that have a gap */
+  CARRY_GAP_AREA, /* of rows that have anything opposite, and so a gap */
   CARRY_GAP,
   N_CARRIED
 } Carried;
@@ -18,12 +18,6 @@ struct _n_ContactFields {
   Vec      *nodes;    /* per body: N_CARRIED vectors of its displacements' layout */
   PetscReal smallest; /* areas below are round-off [m^2] */
 };
-
-/* A row without anything opposite has a gap beyond all bounds */
-static PetscBool HasGap(PetscReal gap)
-{
-  return (PetscBool)(gap < 0.5 * PETSC_MAX_REAL);
-}
 
 /*@
   ContactFieldsCreate - what is needed to compute nodal fields of contact
@@ -78,9 +72,9 @@ static PetscReal RowValue(Contact contact, PetscInt i, Carried kind)
   case CARRY_ACTIVE_AREA:
     return contact->active[i] ? area : 0;
   case CARRY_GAP_AREA:
-    return HasGap(contact->gap[i]) ? area : 0;
+    return contact->opposite[i] ? area : 0;
   default:
-    return HasGap(contact->gap[i]) ? area * contact->gap[i] : 0;
+    return contact->opposite[i] ? area * contact->gap[i] : 0;
   }
 }
 
