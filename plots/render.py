@@ -2,8 +2,9 @@
 
     python plots/render.py fields.xdmf picture.png --frame last --field von_mises
     python plots/render.py fields.xdmf film.gif --field velocity --fps 15
+    python plots/render.py fields.xdmf --field contact_pressure --step 40 --cut y --output picture.png
 
-Colours mean the same in all frames. No display is needed.
+Colours mean the same in all frames; grey is where there are no numbers. No display is needed.
 """
 
 import argparse
@@ -25,7 +26,7 @@ if not os.environ.get("DISPLAY") and ctypes.util.find_library("OSMesa"):
 
 import pyvista
 
-NAMES = {"von_mises": "von Mises stress", "rank": "rank", "body": "body"}
+NAMES = {"von_mises": "von Mises stress", "contact_force": "contact force", "contact_pressure": "contact pressure", "contact_gap": "gap", "contact_active": "in contact", "rank": "rank", "body": "body"}
 AXES = "xyz"
 VIEWS = {"iso": ((-1, -1.5, 1), (0, 0, 1)), "xy": ((0, 0, 1), (0, 1, 0)), "xz": ((0, -1, 0), (0, 0, 1)), "yz": ((1, 0, 0), (0, 0, 1))}
 MOST_EDGES = 20_000  # cells with their edges drawn; in finer meshes there would be nothing but edges
@@ -47,6 +48,7 @@ class Fields:
         try:
             grids = ElementTree.parse(self.path).getroot().findall("./Domain/Grid/Grid")
             self.times = [float(grid.find("Time").get("Value")) for grid in grids]
+            self.on_cells = {item.get("Name") for item in grids[0].findall("Attribute") if item.get("Center") == "Cell"}
             self.datasets = [{item.get("Name"): item.find("DataItem").text.split(":")[1] for item in grid.findall("Attribute")} for grid in grids]
             where = grids[0].find("Geometry/DataItem").text.split(":")
             self.heavy = h5py.File(self.path.parent / where[0], "r")
@@ -88,9 +90,10 @@ class Fields:
         return units.decode() if isinstance(units, bytes) else units
 
     def limits(self, field):
-        """Smallest and largest number in all frames."""
+        """Smallest and largest number in all frames, but for not-a-numbers: the gap of nodes that are on no contact surface."""
         found = [self.colours(field, frame) for frame in (range(len(self)) if field[0] not in ("rank", "body") else [0])]
-        low, high = (float(choose([choose(values) for values in found])) for choose in (min, max))
+        found = [values[~np.isnan(values)] for values in found]
+        low, high = (float(choose([choose(values) for values in found if values.size], default=np.nan)) for choose in (min, max))
         if not np.isfinite([low, high]).all():
             raise CannotDraw(f"{field[0]} has numbers that are not finite")
         return low, high
@@ -109,6 +112,25 @@ class Fields:
         mesh.clear_data()
         (mesh.cell_data if on_cells else mesh.point_data)["colour"] = values
         return mesh
+
+
+def cut_plane(words, bounds, view):
+    """A point of the plane x, y or z = some number, and its normal, to the side that is cut off: where the camera is."""
+    axis, _, number = words.partition("=")
+    if axis not in tuple(AXES):
+        raise CannotDraw(f"--cut {words}: give x, y or z, or a number with it, as in y=0.01")
+    if flatness(bounds) < 3:
+        raise CannotDraw(f"--cut {words}: only what has three dimensions can be cut")
+    k = AXES.index(axis)
+    point, normal = (bounds[::2] + bounds[1::2]) / 2, np.zeros(3)
+    try:
+        point[k] = float(number) if number else point[k]
+    except ValueError:
+        raise CannotDraw(f"--cut {words}: {number} is not a number") from None
+    if not bounds[2 * k] < point[k] < bounds[2 * k + 1]:
+        raise CannotDraw(f"--cut {words}: the bodies lie between {axis} = {bounds[2 * k]:.6g} and {bounds[2 * k + 1]:.6g}")
+    normal[k] = 1 if VIEWS[view][0][k] > 0 else -1
+    return point, normal
 
 
 def flatness(bounds):
@@ -156,6 +178,7 @@ class Camera:
             self.label += ": " + ", ".join(f"{i} {each}" for i, each in enumerate(fields.data(name, 0).attrs["names"].split(",")))
         self.title, self.size = options.title, options.size
         self.view = options.view or ("iso" if flatness(self.bounds) == 3 else "xy")
+        self.cut = cut_plane(options.cut, self.bounds, self.view) if options.cut else None
         self.plotter = pyvista.Plotter(off_screen=True, window_size=options.size)
         self.plotter.set_background("white")
         self.text = int(max(8, options.size[1] / 45))
@@ -176,13 +199,17 @@ class Camera:
         """A picture of a frame: height, width, red-green-blue."""
         fields, plotter = self.fields, self.plotter
         values = fields.colours(self.field, frame) * self.unit_factor
-        mesh = fields.mesh(frame, self.factor, values, self.field[0] not in ("displacement", "velocity"))
+        mesh = fields.mesh(frame, self.factor, values, self.field[0] in fields.on_cells)
         if not np.isfinite(mesh.points).all():
             raise CannotDraw(f"displacements of frame {frame} are not finite")
         flat = flatness(self.bounds) < 3
         lines = flatness(self.bounds) == 1
         if lines:
             mesh = ribbon(mesh, np.ptp(self.bounds[:2]) / 40)
+        if self.cut:
+            mesh = mesh.clip(origin=self.cut[0], normal=self.cut[1])
+            if not mesh.n_cells:
+                raise CannotDraw(f"--cut leaves nothing of frame {frame}")
         whole = self.field[0] in ("rank", "body")
         plotter.clear()
         plotter.add_mesh(
@@ -191,8 +218,9 @@ class Camera:
             clim=self.limits,
             cmap="tab10" if whole else "viridis",
             n_colors=int(self.limits[1] - self.limits[0]) + 1 if whole else 256,
-            show_edges=not lines and mesh.n_cells <= MOST_EDGES,
+            show_edges=not lines and not self.cut and mesh.n_cells <= MOST_EDGES,
             edge_color="#333333",
+            nan_color="#bbbbbb",
             lighting=not flat,
             scalar_bar_args={
                 "title": self.label + "\n",  # the empty line keeps it off the numbers
@@ -285,15 +313,21 @@ def rate(text):
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="plots/render.py", description="Draws the fields of a run, deformed and coloured.")
     parser.add_argument("fields", metavar="FILE.xdmf", help="what -output_fields has written")
-    parser.add_argument("picture", metavar="OUT", type=Path, help="a .png of one frame; a .gif or .mp4 of all")
-    parser.add_argument("--frame", default="last", help="of a .png: a number from 0, or last (default)")
-    parser.add_argument("--field", default="von_mises", help="von_mises (default), displacement, velocity, displacement_x, stress_xx, ..., body, rank")
+    parser.add_argument("picture", metavar="OUT", type=Path, nargs="?", help="a .png of one frame; a .gif or .mp4 of all")
+    parser.add_argument("--output", type=Path, metavar="OUT", help="the same, by name")
+    parser.add_argument("--frame", "--step", default="last", help="of a .png: a number from 0, the initial state, or last (default)")
+    parser.add_argument("--field", default="von_mises", help="von_mises (default), displacement, velocity, displacement_x, stress_xx, ..., contact_pressure, contact_gap, body, rank")
     parser.add_argument("--scale", type=float, default=1, help="factor for displacements, default 1")
     parser.add_argument("--view", choices=list(VIEWS), help="default iso, xy for bodies in one or two dimensions")
+    parser.add_argument("--cut", metavar="AXIS[=X]", help="cut away what is before the plane x, y or z = X [m], default through the middle; solids only")
     parser.add_argument("--fps", type=rate, default=15, help="frames per second, default 15")
     parser.add_argument("--size", type=size, default=(1000, 700), metavar="WxH", help="in pixels, default 1000x700")
     parser.add_argument("--title", default="", help="words before the time")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if (options.picture is None) == (options.output is None):
+        parser.error("give the name of the picture, once")
+    options.picture = options.picture or options.output
+    return options
 
 
 def main(arguments):

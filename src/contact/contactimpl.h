@@ -5,9 +5,9 @@
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
   PetscErrorCode (*setup)(Contact);
-  PetscErrorCode (*step)(Contact);   /* advances all bodies from their saved states through one controller step */
+  PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
   PetscErrorCode (*rowschanged)(Contact); /* some rows of the bodies' interfaces, contact->changed, have new entries */
-  PetscErrorCode (*accept)(Contact); /* corrects the states at the end of the step, before they become the next one's start */
+  PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of the step, before they become the next one's start */
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -46,16 +46,16 @@ struct _p_Contact {
   Obstacle    *obstacles;
   ContactLaw   law;
   PetscReal    slip_bound, angle_bound; /* beyond which rows are built again: parts of a face, rad */
-  PetscInt    *order; /* sweep order: Dirichlet sides before their Neumann sides */
+  PetscInt    *order;                   /* sweep order: Dirichlet sides before their Neumann sides */
   /* rows of this rank */
   PetscInt             n_rows, row_begin, n_all_rows;
   PetscInt            *row_pair;
   PetscReal           *initial_gap, *area;
-  PetscInt            *row_dof;             /* first displacement of its node in the pair's first body, rank numbering */
-  PetscReal           *row_normal;          /* its direction, 3 numbers, 0 beyond the dimension */
-  PetscBool           *opposite;            /* it has anything to touch */
-  PetscBool           *tied;                /* it is held whatever its force and gap */
-  PetscBool           *changed;             /* it has new entries */
+  PetscInt            *row_dof;                 /* first displacement of its node in the pair's first body, rank numbering */
+  PetscReal           *row_normal;              /* its direction, 3 numbers, 0 beyond the dimension */
+  PetscBool           *opposite;                /* it has anything to touch */
+  PetscBool           *tied;                    /* it is held whatever its force and gap */
+  PetscBool           *changed;                 /* it has new entries */
   PetscReal           *force, *gap;             /* at the end of the controller step */
   PetscReal           *saved_force, *saved_gap; /* at its start */
   PetscBool           *active, *saved_active;

@@ -93,8 +93,8 @@ static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
       contact->area[i]        = rows.area[node];
       contact->changed[i]     = rows.changed[node];
       if (contact->law == CONTACT_LAW_TIED) {
-        contact->tied[i]                = (PetscBool)(rows.opposite[node] && PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * rows.size[node]);
-        contact->initial_gap[i]         = contact->tied[i] ? 0 : NO_GAP;
+        contact->tied[i]               = (PetscBool)(rows.opposite[node] && PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * rows.size[node]);
+        contact->initial_gap[i]        = contact->tied[i] ? 0 : NO_GAP;
         contact->row_normal[3 * i + k] = 1;
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];

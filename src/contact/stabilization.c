@@ -12,7 +12,7 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
   PetscFunctionBegin;
   if (contact->stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side < 2; side++) {
+    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++) {
       PetscBool massless;
 
       PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[side]], &massless));

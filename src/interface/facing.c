@@ -262,7 +262,7 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
     }
   }
   for (PetscInt side = 0; side < 2; side++) {
-    if (keep[side]) PetscCall(KeepFaces(surfaces[side], keep[side]));
+    if (surfaces[side] && wanted[side]) PetscCall(KeepFaces(surfaces[side], keep[side]));
     PetscCall(PetscFree(keep[side]));
   }
   PetscCall(PetscFree(directions));

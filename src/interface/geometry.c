@@ -169,6 +169,7 @@ PetscInt PolygonClip(PetscInt n, const PetscReal p[][2], PetscInt n_clip, const 
     which = 1 - which;
     count = PetscMin(kept, 8);
   }
+  if (count < 3) return 0; /* an edge or a corner in common */
   for (PetscInt k = 0; k < count; k++)
     for (PetscInt d = 0; d < 2; d++) out[k][d] = work[which][k][d];
   return count;

@@ -66,13 +66,16 @@ def read_meshio(path):
     return np.array(times), points, cells, on_points, [{name: np.concatenate(blocks) for name, blocks in each.items()} for each in on_cells]
 
 
-def same(path):
-    """Both libraries read the same; what vtk has read."""
+CONTACT = {"contact_force": "N", "contact_pressure": "Pa", "contact_gap": "m", "contact_active": "1"}
+
+
+def same(path, contact=True):
+    """Both libraries read the same, not-a-numbers too; what vtk has read."""
     times, grids = read_vtk(path)
     times_of_meshio, points, cells, on_points, on_cells = read_meshio(path)
     np.testing.assert_array_equal(times, times_of_meshio)
     for grid, point_data, cell_data in zip(grids, on_points, on_cells):
-        assert set(grid.point_data) == set(point_data) == {"displacement", "velocity"}
+        assert set(grid.point_data) == set(point_data) == {"displacement", "velocity", *(CONTACT if contact else ())}
         assert set(grid.cell_data) == set(cell_data) == {"stress", "von_mises", "body", "rank"}
         np.testing.assert_array_equal(grid.points, points)
         for name, values in {**point_data, **cell_data}.items():
@@ -121,7 +124,7 @@ def test_bars(ranks, precision, impakt):
 def test_solids(names, ranks, impakt):
     """Stress of a uniform deformation, component by component; several shapes in one file."""
     run = impakt(f"{solids(*names)} -output_fields fields.h5 -output_fields_precision double -output_fields_interval 1", ranks=ranks)
-    times, grids = same(run.folder / "fields.xdmf")
+    times, grids = same(run.folder / "fields.xdmf", contact=len(names) > 1)
     np.testing.assert_allclose(times, [0, 1e-7, 2e-7, 3e-7], rtol=0, atol=1e-20)
     first = grids[0]
     kinds = {"hex": pyvista.CellType.HEXAHEDRON, "tet": pyvista.CellType.TETRA}
@@ -148,7 +151,7 @@ def test_units_and_options(impakt):
     run = impakt(f"{BARS} -time_end -1.99e-4 -output_fields fields.h5 -output_fields_interval 5")
     with h5py.File(run.folder / "fields.h5", "r") as file:
         assert {**dict(file.attrs), "-output_history": 0, "-output_summary": 0} == {**dict(run.history.attrs), "-output_history": 0, "-output_summary": 0}
-        wanted = {"displacement": "m", "velocity": "m/s", "stress": "Pa", "von_mises": "Pa"}
+        wanted = {"displacement": "m", "velocity": "m/s", "stress": "Pa", "von_mises": "Pa", **CONTACT}
         assert file.keys() == {*wanted, "mesh", "time"}
         for name, units in wanted.items():
             assert list(file[name]) == ["0000", "0001", "0002"]
@@ -185,8 +188,8 @@ def test_refused(options, message, ranks, launch, tmp_path):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_disk_too_small(ranks, launch, tmp_path):
-    """Refused before anything is computed: 9999 frames with 16 numbers of 8 bytes for each of 300200 elements."""
-    if not os.path.isdir("/dev/shm") or shutil.disk_usage("/dev/shm").free > 380e9:
+    """Refused before anything is computed: 9999 frames with 22 numbers of 8 bytes for each of 300200 elements."""
+    if not os.path.isdir("/dev/shm") or shutil.disk_usage("/dev/shm").free > 520e9:
         pytest.skip("no small file system to be found")
     (tmp_path / "options").symlink_to(ROOT / "options")
     folder = f"/dev/shm/impakt-{os.getpid()}-{ranks}"
@@ -194,7 +197,7 @@ def test_disk_too_small(ranks, launch, tmp_path):
     try:
         run = launch([IMPAKT, *BARS.split(), *options.split()], ranks, cwd=tmp_path)
         assert run.returncode > 0
-        assert re.search(r"will have 9999 frames, 384 GB in all, and there is room for .* GB; write fewer of them with -output_fields_interval", run.stderr), run.stderr
+        assert re.search(r"will have 9999 frames, 528 GB in all, and there is room for .* GB; write fewer of them with -output_fields_interval", run.stderr), run.stderr
         assert os.listdir(folder) == []
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -290,6 +293,34 @@ def test_png(pictured, launch, tmp_path):
     assert min(shares["solids"], shares["fields"], shares["moved"]) > 0.06
 
 
+def test_contact_fields_drawn(pictured, launch, tmp_path):
+    """Pressure comes with contact; the gap is drawn though most nodes have none."""
+    pictures = {}
+    for name, options in {"before": "--field contact_pressure --step 0", "during": "--field contact_pressure --step 2", "gap": "--field contact_gap --step 2"}.items():
+        run = launch([*RENDER, pictured / "bars.xdmf", "--output", tmp_path / f"{name}.png", "--size", "600x400", *options.split()], env=ENVIRONMENT)
+        assert run.returncode == 0, run.stderr
+        pictures[name] = np.asarray(Image.open(tmp_path / f"{name}.png").convert("RGB")).astype(int)
+    middle = slice(100, 250)  # rows with the bars, without time and colour bar
+    colours = {name: {tuple(pixel) for pixel in picture[middle].reshape(-1, 3) if np.ptp(pixel) > 30} for name, picture in pictures.items()}
+    assert len(colours["before"]) >= 1
+    assert len(colours["during"] - colours["before"]) >= 1
+    assert (np.ptp(pictures["gap"][middle], axis=2) == 0).mean() > 0.9  # grey and white
+    assert ((pictures["gap"][middle] == 0xBB).all(axis=2)).sum() > 1000  # the bars, but for their contact nodes
+
+
+def test_cut(pictured, launch, tmp_path):
+    """What is before the plane is gone: two thirds of the larger body; the upper half of both."""
+    shares = {}
+    for name, options in {"whole": "", "near": "--cut x=2", "middle": "--cut z"}.items():
+        run = launch([*RENDER, pictured / "solids.xdmf", tmp_path / f"{name}.png", "--field", "body", *options.split()], env=ENVIRONMENT)
+        assert run.returncode == 0, run.stderr
+        shares[name] = coloured(Image.open(tmp_path / f"{name}.png"))
+    bar = 0.026  # of the colours
+    assert shares["near"] - bar < 0.8 * (shares["whole"] - bar)
+    assert shares["middle"] - bar < 0.9 * (shares["whole"] - bar)
+    assert shares["near"] > bar + 0.01
+
+
 def test_gif(pictured, launch, tmp_path):
     run = launch([*RENDER, pictured / "bars.xdmf", tmp_path / "film.gif", "--field", "velocity_x", "--size", "500x300", "--fps", "5"], env=ENVIRONMENT)
     assert run.returncode == 0, run.stderr
@@ -321,10 +352,15 @@ def test_gif(pictured, launch, tmp_path):
         ("bars.xdmf p.jpg", "give the name of a .png, .gif or .mp4"),
         ("bars.xdmf p.png --size 3x4", "--size"),
         ("bars.xdmf", "usage"),
+        ("bars.xdmf p.png --output q.png", "give the name of the picture, once"),
+        ("bars.xdmf p.png --cut x", "only what has three dimensions can be cut"),
+        ("solids.xdmf p.png --cut r", "--cut r: give x, y or z"),
+        ("solids.xdmf p.png --cut x=two", "--cut x=two: two is not a number"),
+        ("solids.xdmf p.png --cut x=7", "--cut x=7: the bodies lie between x = 0 and 5"),
     ],
 )
 def test_cannot_be_drawn(arguments, message, pictured, launch, tmp_path):
-    for name in ("bars.h5", "bars.xdmf"):
+    for name in ("bars.h5", "bars.xdmf", "solids.h5", "solids.xdmf"):
         (tmp_path / name).symlink_to(pictured / name)
     (tmp_path / "text.xdmf").write_text("no XML\n")
     (tmp_path / "lost.xdmf").write_text((pictured / "bars.xdmf").read_text().replace("bars.h5", "gone.h5"))

@@ -31,11 +31,24 @@ CONTACT = {
     "tension_max": float,
     "impulse": float,
     "max_penetration": float,
+    "area_max": float,
+    "active_max": int,
 }
+PAIR = {**CONTACT, "impulse_vector": list}
 SUMMARY = {
     "version": str,
     "contact": {"type": str, **CONTACT},
-    "schwarz": {"max": int, "mean_all_steps": float, "mean_contact_steps": float, "unconverged_steps": int, "set_changes": int, "set_cycles": int},
+    "pairs": {"left:right": PAIR},
+    "schwarz": {
+        "max": int,
+        "mean_all_steps": float,
+        "mean_contact_steps": float,
+        "unconverged_steps": int,
+        "set_changes": int,
+        "set_cycles": int,
+        "inner_iterations": int,
+        "rebuilds": int,
+    },
     "bodies": {
         name: {
             "dofs": int,
@@ -71,6 +84,10 @@ UNITS = {
     "contact/{}/force": "N",
     "contact/{}/gap": "m",
     "contact/{}/active": "1",
+    "contact/{}/area": "m^2",
+    "contact/{}/force_vector": "N",
+    "contact/{}/moment": "N m",
+    "contact/{}/impulse": "N s",
     "body/{}/kinetic": "J",
     "body/{}/potential": "J",
     "body/{}/contact_position": "m",
@@ -117,10 +134,10 @@ def test_summary_without_exact(shared_run):
 
 
 def test_summary_of_three(shared_run):
-    """With several pairs there is one object for each, beside that for all."""
+    """There is one object for each pair, beside that for all."""
     summary = shared_run(THREE_BARS).summary
-    assert summary.keys() == (SUMMARY.keys() - {"errors"}) | {"pairs"}
-    check_shape(summary["pairs"], {"a:b": CONTACT, "b:c": CONTACT})
+    assert summary.keys() == SUMMARY.keys() - {"errors"}
+    check_shape(summary["pairs"], {"a:b": PAIR, "b:c": PAIR})
     check_shape(summary["contact"], SUMMARY["contact"])
     assert list(summary["bodies"]) == ["a", "b", "c"]
 
@@ -131,7 +148,7 @@ def test_history(options, bodies, pairs, shared_run):
     found = datasets(history)
     assert {name: data.attrs.get("units") for name, data in found.items()} == expected_units(bodies, pairs)
     for name, data in found.items():
-        assert data.shape == (10001,), name
+        assert data.shape == ((10001, 3) if name.rpartition("/")[2] in ("force_vector", "moment", "impulse") else (10001,)), name
         assert data.dtype.kind == ("i" if name.endswith(("iterations", "active")) else "f"), name
         assert np.isfinite(data[()]).all(), name
     start, end = (-2e-4, 8e-4) if bodies[0] == "left" else (0, 1e-3)
@@ -168,6 +185,16 @@ def test_history_and_summary_agree(shared_run):
     assert contact["force_peak"] == force.max()
     assert contact["impulse"] == pytest.approx(np.trapezoid(force, time), rel=1e-12)
     assert contact["max_penetration"] == max(0, -gap[1:].min())
+    pair, more = summary["pairs"]["left:right"], history["contact/left:right"]
+    assert {key: pair[key] for key in CONTACT} == {key: contact[key] for key in CONTACT}
+    assert pair["impulse_vector"] == list(more["impulse"][-1])
+    assert pair["impulse_vector"][0] == pytest.approx(contact["impulse"], rel=1e-12)
+    assert pair["area_max"] == more["area"][()].max() == 1e-6  # -cross_section
+    assert pair["active_max"] == active.max() == 1
+    np.testing.assert_array_equal(more["force_vector"][()], np.outer(force, (1, 0, 0)))
+    np.testing.assert_array_equal(more["moment"][()], 0)
+    steps = np.concatenate(([0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))))
+    np.testing.assert_allclose(more["impulse"][:, 0], steps, rtol=0, atol=1e-12 * steps[-1])
     duration = contact["release_time"] - contact["first_contact_time"]
     middle = np.abs(time - contact["first_contact_time"] - 0.5 * duration) <= 0.3 * duration * (1 + 1e-9)
     assert contact["force_mean"] == pytest.approx(force[middle].mean(), rel=1e-12)

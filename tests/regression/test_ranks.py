@@ -32,6 +32,8 @@ RUNS_ON_TWO = {
 
 def flat(summary, prefix=""):
     for key, value in summary.items():
+        if isinstance(value, list):
+            value = dict(enumerate(value))
         if isinstance(value, dict):
             yield from flat(value, f"{prefix}{key}.")
         else:

@@ -40,8 +40,8 @@ static void CheckText(hid_t object, const char name[], const char expected[])
   H5Aclose(attribute);
 }
 
-/* A dataset of one number for each record, with its units; the numbers */
-static void CheckSeries(hid_t file, const char name[], const char units[], PetscBool integer, hsize_t length, double values[])
+/* A dataset of one number for each record, or of three, with its units; the numbers */
+static void CheckDataset(hid_t file, const char name[], const char units[], PetscBool integer, hsize_t length, hsize_t components, double values[])
 {
   hid_t   dataset = H5Dopen2(file, name, H5P_DEFAULT), space, type;
   hsize_t size[2];
@@ -50,14 +50,20 @@ static void CheckSeries(hid_t file, const char name[], const char units[], Petsc
   assert_true(dataset >= 0);
   space = H5Dget_space(dataset);
   type  = H5Dget_type(dataset);
-  assert_int_equal(H5Sget_simple_extent_dims(space, size, NULL), 1);
+  assert_int_equal(H5Sget_simple_extent_dims(space, size, NULL), components > 1 ? 2 : 1);
   assert_int_equal(size[0], length);
+  if (components > 1) assert_int_equal(size[1], components);
   assert_int_equal(H5Tget_class(type), integer ? H5T_INTEGER : H5T_FLOAT);
   CheckText(dataset, "units", units);
   assert_true(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
   H5Tclose(type);
   H5Sclose(space);
   H5Dclose(dataset);
+}
+
+static void CheckSeries(hid_t file, const char name[], const char units[], PetscBool integer, hsize_t length, double values[])
+{
+  CheckDataset(file, name, units, integer, length, 1, values);
 }
 
 /* What the file should say */
@@ -119,7 +125,8 @@ static void CheckFile(const Record *record)
 {
   const hsize_t n    = (hsize_t)record->steps + 1;
   hid_t         file = H5Fopen(PATH, H5F_ACC_RDONLY, H5P_DEFAULT);
-  double        time[STEPS + 1], iterations[STEPS + 1], force[STEPS + 1], gap[STEPS + 1], active[STEPS + 1];
+  double        time[STEPS + 1], iterations[STEPS + 1], force[STEPS + 1], gap[STEPS + 1], active[STEPS + 1], area[STEPS + 1];
+  double        vector[STEPS + 1][3], moment[STEPS + 1][3], impulse[STEPS + 1][3];
 
   assert_true(file >= 0);
   CheckSeries(file, "/time", "s", PETSC_FALSE, n, time);
@@ -127,12 +134,22 @@ static void CheckFile(const Record *record)
   CheckSeries(file, "/contact/left:right/force", "N", PETSC_FALSE, n, force);
   CheckSeries(file, "/contact/left:right/gap", "m", PETSC_FALSE, n, gap);
   CheckSeries(file, "/contact/left:right/active", "1", PETSC_TRUE, n, active);
+  CheckSeries(file, "/contact/left:right/area", "m^2", PETSC_FALSE, n, area);
+  CheckDataset(file, "/contact/left:right/force_vector", "N", PETSC_FALSE, n, 3, &vector[0][0]);
+  CheckDataset(file, "/contact/left:right/moment", "N m", PETSC_FALSE, n, 3, &moment[0][0]);
+  CheckDataset(file, "/contact/left:right/impulse", "N s", PETSC_FALSE, n, 3, &impulse[0][0]);
   for (PetscInt i = 0; i <= record->steps; i++) {
     near(time[i], record->times[i], 0);
     near(iterations[i], record->sweeps[i], 0);
     near(force[i], record->pairs[i].force, 0);
     near(gap[i], record->pairs[i].gap, 0);
     near(active[i], record->pairs[i].active, 0);
+    near(area[i], record->pairs[i].area, 0);
+    for (PetscInt d = 0; d < 3; d++) {
+      near(vector[i][d], record->pairs[i].force_vector[d], 0);
+      near(moment[i][d], record->pairs[i].moment[d], 0);
+      near(impulse[i][d], record->pairs[i].impulse[d], 0);
+    }
   }
   CheckBody(file, record, 0, "left");
   CheckBody(file, record, 1, "right");

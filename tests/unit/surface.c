@@ -13,18 +13,26 @@ static PetscReal TotalArea(const SurfaceData *data)
 {
   PetscReal sum = 0;
 
-  for (PetscInt i = 0; i < data->n_nodes; i++) sum += data->areas[i];
+  for (PetscInt i = 0; i < data->n_owned; i++) sum += data->areas[i];
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD), 0);
   return sum;
+}
+
+/* Of all ranks */
+static PetscInt Total(PetscInt mine)
+{
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+  return mine;
 }
 
 /* Each end of a line is a node and a face of area 1 with its normal away from the other end */
 static void CheckEnd(const SurfaceData *data, PetscInt node, PetscReal position, PetscReal normal)
 {
-  near(data->positions[node], position, 1e-15); /* a corner of the box, but for one rounding */
+  near(data->positions[3 * node], position, 1e-15); /* a corner of the box, but for one rounding */
   near(data->areas[node], 1, 0);
-  near(data->normals[node], normal, 0);
-  near(data->face_normals[node], normal, 0);
-  assert_int_equal(data->faces[node], node);
+  near(data->normals[3 * node], normal, 0);
+  for (PetscInt f = 0; f < data->n_faces; f++)
+    if (data->faces[f] == node) near(data->face_normals[3 * f], normal, 0);
 }
 
 static void line_ends_by_name(void **state)
@@ -41,11 +49,9 @@ static void line_ends_by_name(void **state)
     ok(SurfaceGetData(surface, &data));
     assert_int_equal(data->dim, 1);
     assert_int_equal(data->face_nodes, 1);
-    assert_int_equal(data->n_nodes, 1);
-    assert_int_equal(data->n_faces, 1);
-    CheckEnd(data, 0, positions[i], normals[i]);
-    near(data->lower[0], 0, 0);
-    near(data->upper[0], 1, 0);
+    assert_int_equal(Total(data->n_owned), 1);
+    assert_int_equal(Total(data->n_faces), 1);
+    for (PetscInt node = 0; node < data->n_nodes; node++) CheckEnd(data, node, positions[i], normals[i]);
     ok(SurfaceDestroy(&surface));
     assert_null(surface);
   }
@@ -54,7 +60,7 @@ static void line_ends_by_name(void **state)
 
 static void whole_boundary_of_a_line(void **state)
 {
-  const char *const  names[] = {NULL, "", "marker"}; /* PETSc labels the whole boundary of its boxes "marker" */
+  const char *const  names[] = {NULL, "all", "marker"}; /* PETSc labels the whole boundary of its boxes "marker" */
   const SurfaceData *data;
   Surface            surface;
   DM                 dm = CreateBox(1, "5", PETSC_TRUE);
@@ -63,15 +69,13 @@ static void whole_boundary_of_a_line(void **state)
   for (PetscInt i = 0; i < 3; i++) {
     ok(SurfaceCreate(dm, names[i], &surface));
     ok(SurfaceGetData(surface, &data));
-    assert_int_equal(data->n_nodes, 2);
-    assert_int_equal(data->n_faces, 2);
-    assert_true(data->dofs[0] < data->dofs[1]);
-    for (PetscInt node = 0; node < 2; node++) {
-      const PetscBool left = (PetscBool)(data->positions[node] < 0.5);
+    assert_int_equal(Total(data->n_owned), 2);
+    assert_int_equal(Total(data->n_faces), 2);
+    for (PetscInt node = 0; node < data->n_nodes; node++) {
+      const PetscBool left = (PetscBool)(data->positions[3 * node] < 0.5);
 
       CheckEnd(data, node, left ? 0 : 1, left ? -1 : 1);
     }
-    near(data->positions[0] + data->positions[1], 1, 1e-15);
     ok(SurfaceDestroy(&surface));
   }
   ok(DMDestroy(&dm));
@@ -95,8 +99,8 @@ static void faces_of_a_label(void **state)
   ok(ISDestroy(&points));
   ok(SurfaceCreate(dm, "nose", &surface));
   ok(SurfaceGetData(surface, &data));
-  assert_int_equal(data->n_nodes, 1);
-  CheckEnd(data, 0, 1, 1);
+  assert_int_equal(Total(data->n_owned), 1);
+  for (PetscInt node = 0; node < data->n_nodes; node++) CheckEnd(data, node, 1, 1);
   ok(SurfaceDestroy(&surface));
   ok(DMDestroy(&dm));
 }
@@ -117,18 +121,14 @@ static void CheckSides(DM dm, PetscInt dim, PetscInt face_nodes, const PetscInt 
     ok(SurfaceCreate(dm, names[side], &surface));
     ok(SurfaceGetData(surface, &data));
     assert_int_equal(data->face_nodes, face_nodes);
-    assert_int_equal(data->n_faces, faces[axis]);
+    assert_int_equal(Total(data->n_faces), faces[axis]);
     near(TotalArea(data), area, 1e-14); /* round-off of a few additions of numbers of size 1 */
     for (PetscInt i = 0; i < data->n_nodes; i++) {
-      near(data->positions[i * dim + axis], sign > 0 ? axis + 1 : 0, 1e-14);
-      for (PetscInt d = 0; d < dim; d++) near(data->normals[i * dim + d], d == axis ? sign : 0, 1e-14);
+      near(data->positions[3 * i + axis], sign > 0 ? axis + 1 : 0, 1e-14);
+      for (PetscInt d = 0; d < dim; d++) near(data->normals[3 * i + d], d == axis ? sign : 0, 1e-14);
     }
     for (PetscInt f = 0; f < data->n_faces; f++)
-      for (PetscInt d = 0; d < dim; d++) near(data->face_normals[f * dim + d], d == axis ? sign : 0, 1e-14);
-    for (PetscInt d = 0; d < dim; d++) {
-      near(data->lower[d], 0, 0);
-      near(data->upper[d], d + 1, 0);
-    }
+      for (PetscInt d = 0; d < dim; d++) near(data->face_normals[3 * f + d], d == axis ? sign : 0, 1e-14);
     ok(SurfaceDestroy(&surface));
   }
 }
@@ -141,13 +141,13 @@ static void CheckWholeBoundary(DM dm, PetscInt dim, PetscReal area, PetscInt nod
 
   ok(SurfaceCreate(dm, NULL, &surface));
   ok(SurfaceGetData(surface, &data));
-  assert_int_equal(data->n_nodes, nodes);
+  assert_int_equal(Total(data->n_owned), nodes);
   near(TotalArea(data), area, 1e-13);
   for (PetscInt i = 0; i < data->n_nodes; i++) {
     PetscReal length = 0;
 
     for (PetscInt d = 0; d < dim; d++) {
-      const PetscReal x = data->positions[i * dim + d], n = data->normals[i * dim + d];
+      const PetscReal x = data->positions[3 * i + d], n = data->normals[3 * i + d];
 
       length += n * n;
       /* outward: away from the sides that the node lies on, and along none of the others */
@@ -156,7 +156,7 @@ static void CheckWholeBoundary(DM dm, PetscInt dim, PetscReal area, PetscInt nod
       else near(n, 0, 1e-14);
     }
     near(length, 1, 1e-14);
-    if (i) assert_true(data->dofs[i] > data->dofs[i - 1]);
+    if (i && i < data->n_owned) assert_true(data->dofs[i] > data->dofs[i - 1]);
   }
   ok(SurfaceDestroy(&surface));
 }
@@ -189,17 +189,15 @@ static void sides_of_a_hexahedral_box(void **state)
 /* A node's vertex is on the ranks that have it, and on one at least */
 static void vertices_of_nodes(void **state)
 {
-  const PetscInt     nodes[] = {0, 1};
-  PetscInt           n, *vertices;
-  const SurfaceData *data;
-  Surface            surface;
-  int                found = 0;
-  DM                 dm    = CreateBox(1, "5", PETSC_TRUE);
+  PetscInt        n;
+  const PetscInt *vertices;
+  Surface         surface;
+  int             found = 0;
+  DM              dm    = CreateBox(1, "5", PETSC_TRUE);
 
   (void)state;
   ok(SurfaceCreate(dm, NULL, &surface));
-  ok(SurfaceGetData(surface, &data));
-  ok(SurfaceGetVertices(surface, 2, nodes, &n, &vertices));
+  ok(SurfaceGetVertices(surface, &n, &vertices));
   for (PetscInt i = 0; i < n; i++) {
     PetscInt supports;
 
@@ -207,7 +205,6 @@ static void vertices_of_nodes(void **state)
     assert_int_equal(supports, 1); /* an end of the line */
   }
   found = (int)n;
-  ok(PetscFree(vertices));
   MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
   assert_int_equal(found, 2); /* with one element to each rank at least, no rank but its own has an end */
   ok(SurfaceDestroy(&surface));
@@ -243,6 +240,31 @@ static void empty_surfaces_are_refused(void **state)
   ok(DMDestroy(&dm));
 }
 
+/* Squares side by side, apart or touching: the ends that face each other, and nothing else */
+static void ends_that_face_each_other(void **state)
+{
+  const char *const lower[] = {"1.5,0", "1,0"};
+
+  (void)state;
+  for (PetscInt i = 0; i < 2; i++) {
+    DM      dm[] = {CreateBoxMesh("left", 2, "3,4", "0,0", "1,1", PETSC_FALSE), CreateBoxMesh("right", 2, "3,5", lower[i], "2.5,1", PETSC_FALSE)};
+    Surface surface[2];
+
+    for (PetscInt side = 0; side < 2; side++) ok(SurfaceCreate(dm[side], NULL, &surface[side]));
+    ok(SurfaceKeepFacing(surface[0], surface[1], NULL, PETSC_TRUE, PETSC_TRUE));
+    for (PetscInt side = 0; side < 2; side++) {
+      const SurfaceData *data;
+
+      ok(SurfaceGetData(surface[side], &data));
+      assert_int_equal(Total(data->n_faces), 4 + side);
+      assert_int_equal(Total(data->n_owned), 5 + side);
+      for (PetscInt f = 0; f < data->n_faces; f++) near(data->face_normals[3 * f], side ? -1 : 1, 1e-14);
+      ok(SurfaceDestroy(&surface[side]));
+      ok(DMDestroy(&dm[side]));
+    }
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -252,6 +274,7 @@ int main(int argc, char **argv)
       simulation_test(sides_of_a_rectangle),
       simulation_test(sides_of_a_hexahedral_box),
       simulation_test(vertices_of_nodes),
+      simulation_test(ends_that_face_each_other),
       simulation_test(unknown_names_are_refused),
       simulation_test(empty_surfaces_are_refused),
   };

@@ -66,7 +66,7 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt *levels, PetscBool *
     for (PetscInt side = 0; side < 2; side++) {
       PetscInt substeps;
 
-      if (contact->pairs[p].body[side] < 0) continue;
+      if (contact->pairs[p].obstacle && side == 1) continue;
       PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[side]], &substeps));
       if (!first) first = substeps;
       if (substeps != first) equal = PETSC_FALSE;

@@ -148,8 +148,9 @@ static PetscErrorCode SetColumn(Contact contact, PetscInt j, PetscInt level, Mat
   PetscFunctionBegin;
   for (PetscInt local = 0; local < contact->n_rows; local++) {
     const PetscInt i = contact->row_begin + local, p = contact->all_row_pair[i], levels = schwarz->levels[p];
-    Trace          from = schwarz->body_exchange[NeumannBody(&contact->pairs[p])];
-    PetscInt       from_levels;
+    const PetscInt body = NeumannBody(&contact->pairs[p]);
+    Trace          from = body < contact->n_bodies ? schwarz->body_exchange[body] : contact->traces[body].displacement;
+    PetscInt       from_levels, at = contact->pairs[p].obstacle ? 0 : i; /* an obstacle answers with zeros */
     PetscScalar   *out;
 
     PetscCall(TraceGetSizes(from, NULL, &from_levels));
@@ -157,7 +158,7 @@ static PetscErrorCode SetColumn(Contact contact, PetscInt j, PetscInt level, Mat
       const PetscBool both = (PetscBool)(k <= levels && level <= used && contact->all_active[i] && contact->all_active[j]);
 
       PetscCall(TraceGetLevel(from, levels == 1 || k > from_levels ? from_levels : k, &out));
-      PetscCall(MatSetValue(J, schwarz->all_offset[i] + k - 1, column, (i == j && k == level ? 1 : 0) - (both ? out[i] : 0), INSERT_VALUES));
+      PetscCall(MatSetValue(J, schwarz->all_offset[i] + k - 1, column, (i == j && k == level ? 1 : 0) - (both ? out[at] : 0), INSERT_VALUES));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

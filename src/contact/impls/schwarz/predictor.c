@@ -32,6 +32,7 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   PetscCall(TraceGetLevel(neumann->velocity, 0, &v));
   PetscCall(TraceGetLevel(dirichlet->velocity, 0, &other));
   *displacement = u[i];
+  if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
   if (schwarz->predictor == PREDICTOR_EXTRAPOLATE) *displacement += time * v[i];
   if (schwarz->predictor == PREDICTOR_INELASTIC) {
     const PetscReal m_d = schwarz->mass[pair->dirichlet][i], m_n = schwarz->mass[1 - pair->dirichlet][i];

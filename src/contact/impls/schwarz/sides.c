@@ -9,7 +9,9 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
   PetscInt           substeps[2];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[k]], &substeps[k]));
+  PetscCall(BodyGetSubsteps(contact->bodies[pair->body[0]], &substeps[0]));
+  substeps[1] = substeps[0]; /* of an obstacle */
+  if (!pair->obstacle) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1]], &substeps[1]));
   *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -48,12 +50,12 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
 {
   Schwarz           *schwarz   = (Schwarz *)contact->data;
   const ContactPair *pair      = &contact->pairs[p];
-  const Body         dirichlet = contact->bodies[pair->body[side]], neumann = contact->bodies[pair->body[1 - side]];
+  const Body         dirichlet = contact->bodies[pair->body[side]], neumann = pair->obstacle ? NULL : contact->bodies[pair->body[1 - side]];
   PetscBool          massless, is_explicit;
   PetscInt           substeps;
 
   PetscFunctionBegin;
-  if (schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->obstacle || schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIsRedistributed(dirichlet, &massless));
   if (massless) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIsExplicit(neumann, &is_explicit));
@@ -71,6 +73,7 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCheck(!contact->pairs[p].obstacle || (!schwarz->swap && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: an obstacle has no other side, neither for -contact_swap_sides nor for -schwarz_transmission robin or impedance", contact->pairs[p].name);
   PetscCall(PetscCalloc5(contact->n_pairs, &schwarz->side_levels[0], contact->n_pairs, &schwarz->side_levels[1], 2 * contact->n_pairs, &schwarz->trace, contact->n_pairs, &schwarz->room, 2 * contact->n_pairs, &schwarz->kinematic));
   for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)
     for (PetscInt p = 0; p < contact->n_pairs; p++) {

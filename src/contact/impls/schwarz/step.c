@@ -86,7 +86,7 @@ static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscBool leaves = (PetscBool)(contact->active[i] && schwarz->recheck && contact->force[i] < 0);
+    const PetscBool leaves = (PetscBool)(contact->active[i] && schwarz->recheck && contact->force[i] < 0 && !contact->tied[i]);
     const PetscBool joins  = (PetscBool)(!contact->active[i] && contact->gap[i] < -contact->tolerance && (!schwarz->responding || schwarz->known[i]));
 
     if (!leaves && !joins) continue;
@@ -106,7 +106,7 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
   PetscFunctionBegin;
   schwarz->responding = PETSC_FALSE;
   PetscCall(ContactIntegrateFree(contact, in_contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->gap[i] < -contact->tolerance);
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || contact->gap[i] < -contact->tolerance);
   if (!schwarz->condensed || !*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetBase(contact->bodies[b]));
   schwarz->have_base = PETSC_TRUE;
@@ -167,7 +167,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || (contact->saved_active[i] && contact->saved_force[i] > 0));
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
   while (in_contact) {

@@ -1,0 +1,95 @@
+"""Draws the history of a run with contact: contact forces, error of the energy, nodes in contact and gaps over time.
+
+    python plots/history.py history.h5 figure.png
+
+Works for any number of bodies and pairs; nothing is compared with exact solutions, as plots/impact.py does for two bars.
+"""
+
+import sys
+from pathlib import Path
+
+import h5py
+import matplotlib
+import numpy as np
+from impact import COLOURS, GREEN, NoHistory, scale
+from matplotlib.figure import Figure
+
+MOST_NAMED = 8  # pairs; more would fill the figure with their names
+
+
+def read(path):
+    """Time, and of each pair and each body what is drawn."""
+    if not Path(path).is_file():
+        raise NoHistory(f"there is no file {path}")
+    try:
+        with h5py.File(path, "r") as file:
+            pairs = {name: {key: pair[key][()] for key in ("force_vector", "gap", "active")} for name, pair in file["contact"].items()}
+            energies = {name: {key: body[key][()] for key in ("kinetic", "potential", "external_work")} for name, body in file["body"].items()}
+            return {"time": file["time"][()], "pairs": pairs, "bodies": energies}
+    except KeyError as error:
+        raise NoHistory(f"{path} is not the history of an Impakt run with contact: {error}") from error
+    except OSError as error:
+        raise NoHistory(f"{path} cannot be read as HDF5: {error}") from error
+
+
+def energy_error(bodies):
+    """Kinetic and potential energy less the work of loads, relative to its start, or to the largest energy of what starts at rest."""
+    kinetic, potential, work = (sum(body[key] for body in bodies.values()) for key in ("kinetic", "potential", "external_work"))
+    total = kinetic + potential - work
+    largest = (kinetic + potential + np.abs(work)).max()
+    start = abs(total[0]) if abs(total[0]) > 1e-9 * largest else largest
+    return (total - total[0]) / (start or 1.0)
+
+
+def draw_pairs(axes, time, series, title, quantity, unit):
+    """One line for each pair."""
+    finite = [np.abs(values[np.isfinite(values)]) for values in series.values()]
+    factor, unit = scale(max((values.max() for values in finite if values.size), default=0), unit) if unit != "1" else (1, unit)
+    for i, (name, values) in enumerate(series.items()):
+        axes.plot(time, factor * values, color=COLOURS[i % len(COLOURS)], label=name.replace(":", " : ") if i < MOST_NAMED else None)
+    axes.set_title(title)
+    axes.set_ylabel(f"{quantity} [{unit}]")
+
+
+def draw(history, path):
+    matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.2, "axes.axisbelow": True})
+    span = np.ptp(history["time"])
+    factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
+    time, pairs = factor * history["time"], history["pairs"]
+
+    figure = Figure(figsize=(10, 7), layout="constrained")
+    (force, error), (active, gap) = figure.subplots(2, 2, sharex=True)
+    draw_pairs(force, time, {name: np.linalg.norm(pair["force_vector"], axis=1) for name, pair in pairs.items()}, "contact force", "force", "N")
+    draw_pairs(active, time, {name: pair["active"] for name, pair in pairs.items()}, "nodes in contact", "nodes", "1")
+    draw_pairs(gap, time, {name: np.where(np.abs(pair["gap"]) < 1e300, pair["gap"], np.nan) for name, pair in pairs.items()}, "smallest gap", "gap", "m")
+    error.plot(time, energy_error(history["bodies"]), color=GREEN)
+    error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
+    error.set_title("error of the energy of all bodies")
+    error.set_ylabel("rel. error [1]")
+    active.yaxis.get_major_locator().set_params(integer=True)
+    for axes in (force, error, active, gap):
+        axes.grid(color="0.9", linewidth=0.6)
+        axes.margins(x=0.01)
+    for axes in (active, gap):
+        axes.set_xlabel(f"time [{unit}]")
+    force.legend(frameon=True, framealpha=0.9, edgecolor="0.8")
+    figure.savefig(path, dpi=150)
+
+
+def main(arguments):
+    if len(arguments) != 2:
+        print("usage: python plots/history.py history.h5 figure.png", file=sys.stderr)
+        return 1
+    try:
+        history = read(arguments[0])
+        Path(arguments[1]).parent.mkdir(parents=True, exist_ok=True)
+        draw(history, arguments[1])
+    except (NoHistory, OSError, ValueError) as error:
+        print(f"plots/history.py: {error}", file=sys.stderr)
+        return 1
+    print(arguments[1])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,218 @@
+/* Rows between non-matching surfaces in two and three dimensions: what they reproduce and conserve, and when they are built. */
+#include "interfaces.h"
+
+#define QUADS     PETSC_FALSE
+#define SIMPLICES PETSC_TRUE
+#define PAIRS     5
+static const PetscInt    pair_dim[PAIRS]      = {2, 2, 3, 3, 3};
+static const char *const pair_faces[PAIRS][2] = {
+    {"2,1", "4,1"}, {"3,1", "5,1"}, {"2,2,1", "4,4,1"}, {"3,3,1", "2,2,1"}, {"3,2,1", "2,2,1"}};
+static const PetscBool pair_simplex[PAIRS][2] = {
+    {QUADS, QUADS}, {QUADS, SIMPLICES}, {QUADS, QUADS}, {QUADS, QUADS}, {QUADS, SIMPLICES}};
+
+static const PetscReal nowhere[3] = {0, 0, 0};
+
+static Map straight_map(PetscInt dim, PetscInt which)
+{
+  return !which ? map_nothing : dim == 2 ? map_oblique_2d
+                                         : map_oblique;
+}
+
+static void open_pair(Interface *interface, PetscInt pair, PetscBool flip, Map map)
+{
+  interface_create(interface, pair_dim[pair], pair_faces[pair], pair_simplex[pair], flip);
+  for (PetscInt side = 0; side < 2; side++) move_mesh(interface->dm[side], map, nowhere, interface->u[side]);
+  assert_true(interface_update(interface, PETSC_MAX_REAL, 1));
+}
+
+/* Patch test: a uniform pressure on the Dirichlet side is one on the Neumann side, whose nodes get the integrals of their functions. To the
+   round-off of about a hundred terms of size 1; Dunavant's weights have 15 digits. */
+static void uniform_pressure_stays_uniform(void **state)
+{
+  (void)state;
+  for (PetscInt pair = 0; pair < PAIRS; pair++)
+    for (PetscInt variant = 0; variant < 4; variant++) {
+      const SurfaceData *data;
+      const PetscScalar *f;
+      PetscInt           start;
+      Interface          interface;
+      Vec                force;
+
+      open_pair(&interface, pair, (PetscBool)(variant % 2), straight_map(pair_dim[pair], variant / 2));
+      force = interface_force(&interface, 1, PETSC_TRUE);
+      ok(SurfaceGetData(interface.surface[1], &data));
+      ok(VecGetOwnershipRange(force, &start, NULL));
+      ok(VecGetArrayRead(force, &f));
+      for (PetscInt i = 0; i < data->n_owned; i++)
+        for (PetscInt d = 0; d < interface.dim; d++) near(f[data->dofs[i] - start + d], -data->areas[i] * data->normals[3 * i + d], 1e-13);
+      ok(VecRestoreArrayRead(force, &f));
+      ok(VecDestroy(&force));
+      interface_destroy(&interface);
+    }
+}
+
+/* Every node has something opposite, at no distance; the areas are those of the surface */
+static void flat_rows(void **state)
+{
+  (void)state;
+  for (PetscInt pair = 0; pair < PAIRS; pair++)
+    for (PetscInt variant = 0; variant < 4; variant++) {
+      const SurfaceData *data;
+      Interface          interface;
+
+      open_pair(&interface, pair, (PetscBool)(variant % 2), straight_map(pair_dim[pair], variant / 2));
+      ok(SurfaceGetData(interface.surface[0], &data));
+      assert_int_equal(interface.rows.n, data->n_owned);
+      for (PetscInt i = 0; i < interface.rows.n; i++) {
+        assert_true(interface.rows.opposite[i]);
+        assert_true(interface.rows.changed[i]);
+        near(interface.rows.area[i], data->areas[i], 1e-14);
+        if (variant < 2) near(interface.rows.gap[i], 0, 1e-14);
+      }
+      interface_destroy(&interface);
+    }
+}
+
+/* All components of sum_j P_ij u_j - u_i of a field linear in x are zero, since the surfaces are in the same place: the tied rows */
+static void linear_fields_are_reproduced(void **state)
+{
+  (void)state;
+  for (PetscInt pair = 0; pair < PAIRS; pair++) {
+    Interface interface;
+    Vec       field[2], moved[2];
+    PetscReal difference, size;
+
+    open_pair(&interface, pair, PETSC_FALSE, map_nothing);
+    (void)interface_update(&interface, PETSC_MAX_REAL, interface.dim);
+    for (PetscInt side = 0; side < 2; side++) {
+      const SurfaceData *data;
+
+      ok(MatCreateVecs(interface.matrix[side], &field[side], &moved[side]));
+      ok(SurfaceGetData(interface.surface[side], &data));
+      for (PetscInt i = 0; i < data->n_owned; i++)
+        for (PetscInt d = 0; d < interface.dim; d++) {
+          const PetscReal *x = data->reference + 3 * i;
+
+          ok(VecSetValue(field[side], data->dofs[i] + d, 0.3 + (d + 1) * (0.7 * x[0] - 0.4 * x[1] + 0.2 * x[2]), INSERT_VALUES));
+        }
+      ok(VecAssemblyBegin(field[side]));
+      ok(VecAssemblyEnd(field[side]));
+      ok(MatMult(interface.matrix[side], field[side], moved[side]));
+    }
+    ok(VecNorm(moved[0], NORM_INFINITY, &size));
+    assert_true(size > 0.5);
+    ok(VecAXPY(moved[1], -1, moved[0]));
+    ok(VecNorm(moved[1], NORM_INFINITY, &difference));
+    near(difference, 0, 1e-13);
+    for (PetscInt side = 0; side < 2; side++) {
+      ok(VecDestroy(&field[side]));
+      ok(VecDestroy(&moved[side]));
+    }
+    interface_destroy(&interface);
+  }
+}
+
+/* Any pressure on a curved interface whose two sides do not fit: the same force and moment on both sides */
+static void force_and_moment_are_conserved(void **state)
+{
+  (void)state;
+  for (PetscInt pair = 0; pair < PAIRS; pair++)
+    for (PetscInt flip = 0; flip < 2; flip++) {
+      PetscReal sums[2][6];
+      Interface interface;
+
+      open_pair(&interface, pair, (PetscBool)flip, pair_dim[pair] == 2 ? map_curved_2d : map_curved);
+      assert_true(interface.n_opposite > 2);
+      for (PetscInt side = 0; side < 2; side++) {
+        Vec force = interface_force(&interface, side, PETSC_FALSE);
+
+        interface_resultant(&interface, side, force, sums[side]);
+        ok(VecDestroy(&force));
+      }
+      assert_true(PetscAbsReal(sums[0][interface.dim - 1]) > 0.1);
+      for (PetscInt i = 0; i < 6; i++) near(sums[1][i], sums[0][i], 1e-13);
+      interface_destroy(&interface);
+    }
+}
+
+/* Moved together or by less than the bounds: nothing is built. Beyond them: all is, and only rows that differ are said to have changed */
+static void rows_are_built_when_needed(void **state)
+{
+  const PetscReal small[3] = {0.01, 0, 0}, slip[3] = {0.03, 0, 0}, far[3] = {7, 8, 9};
+  TransferCounts  counts;
+  PetscInt        changed = 0;
+  Interface       interface;
+
+  (void)state;
+  open_pair(&interface, 2, PETSC_FALSE, map_nothing);
+  for (PetscInt side = 0; side < 2; side++) move_mesh(interface.dm[side], map_nothing, far, interface.u[side]);
+  assert_false(interface_update(&interface, PETSC_MAX_REAL, 1));
+  move_mesh(interface.dm[0], map_nothing, nowhere, interface.u[0]);
+  move_mesh(interface.dm[1], map_nothing, small, interface.u[1]);
+  assert_false(interface_update(&interface, PETSC_MAX_REAL, 1)); /* faces of size 1/2: the bound is 0.025 */
+  move_mesh(interface.dm[1], map_nothing, slip, interface.u[1]);
+  assert_true(interface_update(&interface, PETSC_MAX_REAL, 1));
+  for (PetscInt i = 0; i < interface.rows.n; i++) changed += interface.rows.changed[i];
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+  assert_int_equal(changed, 9);
+  assert_false(interface_update(&interface, PETSC_MAX_REAL, 1));
+  ok(TransferSetBounds(interface.transfer, 0, 0));
+  move_mesh(interface.dm[1], map_nothing, small, interface.u[1]);
+  assert_true(interface_update(&interface, PETSC_MAX_REAL, 1));
+  ok(TransferGetCounts(interface.transfer, &counts));
+  assert_int_equal(counts.builds, 3);
+  interface_destroy(&interface);
+}
+
+/* Half of the partner gone to the side: the rows beyond its end are empty, and the areas sum up to what is covered */
+static void ends_are_covered_in_part(void **state)
+{
+  const PetscReal aside[3] = {0.6, 0, 0};
+  PetscReal       area     = 0;
+  Interface       interface;
+
+  (void)state;
+  interface_create(&interface, 3, pair_faces[3], pair_simplex[3], PETSC_FALSE);
+  move_mesh(interface.dm[1], map_nothing, aside, interface.u[1]);
+  (void)interface_update(&interface, 0.1, 1);
+  assert_int_equal(interface.n_opposite, 8); /* of the nodes at x = 0, 1/3, 2/3, 1 those at 2/3 and 1 */
+  for (PetscInt i = 0; i < interface.rows.n; i++) area += interface.rows.area[i];
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD), 0);
+  near(area, 0.4, 1e-13);
+  interface_destroy(&interface);
+}
+
+/* Twice as many faces in each direction, four times as many pairs that are compared, but for the edges */
+static void search_costs_in_proportion(void **state)
+{
+  const char *const coarse[2] = {"8,8,1", "9,9,1"}, *const fine[2] = {"16,16,1", "18,18,1"};
+  TransferCounts counts[2];
+
+  (void)state;
+  for (PetscInt i = 0; i < 2; i++) {
+    Interface interface;
+
+    interface_create(&interface, 3, i ? fine : coarse, pair_simplex[2], PETSC_FALSE);
+    (void)interface_update(&interface, 0.1, 1);
+    ok(TransferGetCounts(interface.transfer, &counts[i]));
+    interface_destroy(&interface);
+  }
+  between((PetscReal)counts[1].segments / (PetscReal)counts[0].segments, 3.5, 4.5);
+  between((PetscReal)counts[1].candidates / (PetscReal)counts[0].candidates, 3.2, 5.5);
+  assert_true(counts[1].candidates < 20 * 16 * 16);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      simulation_test(uniform_pressure_stays_uniform),
+      simulation_test(flat_rows),
+      simulation_test(linear_fields_are_reproduced),
+      simulation_test(force_and_moment_are_conserved),
+      simulation_test(rows_are_built_when_needed),
+      simulation_test(ends_are_covered_in_part),
+      simulation_test(search_costs_in_proportion),
+  };
+
+  return impakt_main(argc, argv, tests);
+}
