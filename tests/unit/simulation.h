@@ -142,5 +142,5 @@ static inline void AddCollision(PetscInt left_elements, PetscInt right_elements,
 {
   AddBar("left", -1, -COLLISION_GAP / 2, left_elements, frame + COLLISION_SPEED);
   AddBar("right", COLLISION_GAP / 2, 1, right_elements, frame - COLLISION_SPEED);
-  AddOptions("-bodies left,right -time_step 0.02 -time_end 0.2");
+  AddOptions("-bodies left,right -contact_pairs left:right -time_step 0.02 -time_end 0.2");
 }
