@@ -58,6 +58,7 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   PetscCall(FindObstacle(contact, &why, &newton));
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
   schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || schwarz->condense == CONDENSE_ALWAYS));
+  schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && why);
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

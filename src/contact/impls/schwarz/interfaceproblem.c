@@ -368,18 +368,14 @@ static PetscErrorCode SolveIteratively(Contact contact, Vec F, Vec Y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Y = F'^{-1} F; rows that are not active stay where they are */
-static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
+/* Y = F'^{-1} F by the compliance alone; rows that are not active stay where they are */
+static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
 {
-  Contact           contact;
-  Schwarz          *schwarz;
-  InterfaceProblem *problem;
+  Schwarz          *schwarz = (Schwarz *)contact->data;
+  InterfaceProblem *problem = &schwarz->problem;
   PetscScalar      *y;
 
   PetscFunctionBegin;
-  PetscCall(PCShellGetContext(pc, &contact));
-  schwarz = (Schwarz *)contact->data;
-  problem = &schwarz->problem;
   if (!problem->dense) {
     PetscCall(SolveIteratively(contact, F, Y));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -396,6 +392,27 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
       if (local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]) y[schwarz->offset[local] + k] = problem->change[k * problem->n + i];
     }
   PetscCall(VecRestoreArray(Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
+{
+  Contact     contact;
+  Schwarz    *schwarz;
+  Vec         rest;
+  PetscInt    n, which[SCHWARZ_MAX_SECANTS];
+  PetscScalar c[SCHWARZ_MAX_SECANTS];
+
+  PetscFunctionBegin;
+  PetscCall(PCShellGetContext(pc, &contact));
+  schwarz = (Schwarz *)contact->data;
+  if (!schwarz->uses_secants) {
+    PetscCall(ApplyCompliance(contact, F, Y));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SchwarzApplySecants(contact, F, &rest, &n, which, c));
+  PetscCall(ApplyCompliance(contact, rest, Y));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecAXPY(Y, c[i], schwarz->secants.dx[which[i]]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -98,6 +98,7 @@ static PetscErrorCode SetUpNewton(Contact contact)
   schwarz->stale = PETSC_TRUE;
   if (schwarz->by_compliance) {
     PetscCall(SchwarzSetUpInterfaceProblem(contact));
+    if (schwarz->uses_secants) PetscCall(SchwarzSetUpSecants(contact));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &newton));
@@ -173,6 +174,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(SchwarzDestroyNewton(contact));
   PetscCall(SchwarzDestroyInterfaceProblem(contact));
+  PetscCall(SchwarzDestroySecants(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->jacobian_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
