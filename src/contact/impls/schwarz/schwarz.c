@@ -225,6 +225,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   schwarz->predictor           = PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
   schwarz->condense            = CONDENSE_AUTO;
+  contact->prescribes          = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
   contact->ops->setup          = ContactSetUp_Schwarz;
