@@ -5,11 +5,15 @@ Each case has an exact solution, linear in space, that both meshes hold, so that
 stops at 1e-12 m. The issue wants 1e-8.
 """
 
+import os
+import sys
+
 import h5py
 import meshio
 import numpy as np
 import pytest
 import solidmeshes
+from conftest import ROOT
 from test_solids_wave import rotation
 
 pytest_plugins = "shared_runs"
@@ -155,6 +159,18 @@ def test_options_file(law, shared_run):
     assert run.summary["contact"]["active_max"] == 63
     assert run.summary["contact"]["force_mean"] == pytest.approx(0.09 * pressure, rel=1e-10)
     assert run.summary["bodies"]["upper"]["external_work"] == pytest.approx(0.5 * 0.09 * pressure * 2e-4, rel=1e-10)
+
+
+def test_picture(shared_run, launch, tmp_path):
+    """And a message where there is nothing to draw."""
+    run = shared_run(f"-options_file options/contact-patch.opts {FIELDS}")
+    command = [sys.executable, ROOT / "plots/contact_patch.py"]
+    env = {**os.environ, "MPLBACKEND": "Agg"}
+    done = launch([*command, run.folder / "fields.xdmf", tmp_path / "patch.png"], env=env)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "patch.png").stat().st_size > 10_000
+    failed = launch([*command, tmp_path / "none.xdmf", tmp_path / "none.png"], env=env)
+    assert failed.returncode == 1 and "there is no file" in failed.stderr
 
 
 def write_oblique(path, shape, faces, low, high, slope):
