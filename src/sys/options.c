@@ -39,6 +39,7 @@ static const KnownOption global_options[] = {
     {"schwarz_predictor", "last|trial|extrapolate|inelastic", "where the first sweep of a step starts from, default inelastic"},
     {"schwarz_convergence", "auto|position|contact_position|mismatch", "what change of position is tested, default auto"},
     {"schwarz_condense", "0|1|auto", "whether sweeps run on the interface compliance of linear bodies, default auto: in two and three dimensions"},
+    {"schwarz_dense_limit", "n", "interface unknowns up to which its matrices are dense, conjugate gradients beyond, default 2000"},
     {"schwarz_recheck", "true|false", "let tensile nodes leave contact within the step, default true"},
     {"schwarz_unconverged", "error|accept", "what to do with a step that does not converge, default error"},
     {"penalty_snes_type", "newtonls|...", "outer iteration of the penalty method, default newtonls"},

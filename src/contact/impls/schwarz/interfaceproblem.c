@@ -11,18 +11,16 @@
 #include "schwarzimpl.h"
 #include <petscblaslapack.h>
 
-/* Above so many unknowns forces come from conjugate gradients */
-#define MAX_DENSE_UNKNOWNS 2000
 /* of the residual: a step of Newton's method that leaves so much takes one more sweep at most */
 #define FORCE_TOLERANCE 1e-9
 
-static PetscErrorCode MakeRoom(InterfaceProblem *problem, PetscInt size)
+static PetscErrorCode MakeRoom(InterfaceProblem *problem, PetscInt size, PetscInt most)
 {
   PetscFunctionBegin;
   if (size <= problem->capacity) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree4(problem->matrices, problem->dirichlet, problem->factor, problem->pivots));
   PetscCall(PetscFree5(problem->rows, problem->body_rows, problem->residual, problem->force, problem->change));
-  problem->capacity = PetscMax(size, PetscMin(2 * problem->capacity, MAX_DENSE_UNKNOWNS));
+  problem->capacity = PetscMax(size, PetscMin(2 * problem->capacity, most));
   size              = problem->capacity;
   PetscCall(PetscMalloc4(size * size, &problem->matrices, size * size, &problem->dirichlet, size * size, &problem->factor, size, &problem->pivots));
   PetscCall(PetscMalloc5(size, &problem->rows, size, &problem->body_rows, size, &problem->residual, size, &problem->force, size, &problem->change));
@@ -190,9 +188,9 @@ PetscErrorCode SchwarzUpdateInterfaceProblem(Contact contact)
   PetscCall(CountLevels(contact, &problem->levels, &problem->chain));
   problem->n        = n;
   problem->factored = PETSC_FALSE;
-  problem->dense    = (PetscBool)(n * problem->levels <= MAX_DENSE_UNKNOWNS);
+  problem->dense    = (PetscBool)(n * problem->levels <= schwarz->dense_limit);
   if (!problem->dense) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MakeRoom(problem, n * problem->levels));
+  PetscCall(MakeRoom(problem, n * problem->levels, schwarz->dense_limit));
   n = 0;
   for (PetscInt i = 0; i < contact->n_all_rows; i++)
     if (contact->all_active[i]) problem->rows[n++] = i;
