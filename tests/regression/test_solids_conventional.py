@@ -132,3 +132,15 @@ def test_tied_is_refused(impakt):
     run = impakt(f"{TIED} -contact_type lagrange", expect_failure=True)
     for word in ("-contact_law tied", "-contact_type lagrange", "schwarz"):
         assert word in run.stderr
+
+
+def test_many_multipliers(shared_run):
+    """21 x 21 contact nodes, more than a factor is made for: conjugate gradients close the gaps as well."""
+    plate = "-{b}_dm_plex_dim 3 -{b}_dm_plex_box_faces {faces} -{b}_dm_plex_box_lower {low},0,0 -{b}_dm_plex_box_upper {high},1,1 -{b}_density 1000 -{b}_youngs_modulus 1e9 -{b}_initial_velocity {v},0,0 -{b}_ts_type centraldifference -{b}_mass_type lumped -{b}_mass_redistribute false"
+    plates = plate.format(b="l", faces="2,20,20", low=-0.1005, high=-0.0005, v=50) + " " + plate.format(b="r", faces="2,15,15", low=0.0005, high=0.1005, v=-50)
+    run = shared_run(f"-bodies l,r -contact_pairs l.xmax:r.xmin -contact_type lagrange -time_end 1.5e-4 -time_step 5e-6 {plates}")
+    assert run.summary["schwarz"]["inner_iterations"] > 0
+    assert run.summary["contact"]["max_penetration"] <= 1e-13  # 1e-14 of gaps of 5e-4 m in a free step, and round-off between positions of 1 m
+    assert run.summary["contact"]["onsets"] == 1
+    assert run.summary["system"]["momentum_error_max"] <= 1e-10
+    assert run.summary["system"]["energy_error_max"] <= 1e-12
