@@ -10,19 +10,6 @@
 #define WORST_GAP     1e-9
 #define MAX_ROUNDS    100
 
-PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
-{
-  const PetscInt n = contact->n_rows;
-
-  PetscFunctionBegin;
-  problem->contact = contact;
-  PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->factored, contact->n_all_rows, &problem->place));
-  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
-  PetscCall(VecDuplicate(problem->force_vec, &problem->gap_vec));
-  PetscCall(VecDuplicate(problem->force_vec, &problem->rhs_vec));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ComplementarityDestroy(Complementarity *problem)
 {
   PetscFunctionBegin;
@@ -220,6 +207,20 @@ static PetscErrorCode CreateIterative(Contact contact, Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
+{
+  const PetscInt n = contact->n_rows;
+
+  PetscFunctionBegin;
+  problem->contact = contact;
+  PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->factored, contact->n_all_rows, &problem->place));
+  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
+  PetscCall(VecDuplicate(problem->force_vec, &problem->gap_vec));
+  PetscCall(VecDuplicate(problem->force_vec, &problem->rhs_vec));
+  if (contact->n_all_rows > MAX_DENSE_ROWS) PetscCall(CreateIterative(contact, problem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* From the forces of the last time on */
 static PetscErrorCode SolveIteratively(Contact contact, Complementarity *problem)
 {
@@ -229,7 +230,6 @@ static PetscErrorCode SolveIteratively(Contact contact, Complementarity *problem
   PetscInt           iterations;
 
   PetscFunctionBegin;
-  if (!problem->iterative) PetscCall(CreateIterative(contact, problem));
   PetscCall(VecGetArrayWrite(problem->rhs_vec, &rhs));
   PetscCall(VecGetArray(problem->force_vec, &force));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
