@@ -133,6 +133,7 @@ PETSC_EXTERN PetscErrorCode BodyGetSolution(Body, Vec *, Vec *, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);
 PETSC_EXTERN PetscErrorCode BodyIsExplicit(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsRedistributed(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyGetHeldDofs(Body, PetscInt *, const PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyGetMeasures(Body, BodyMeasures *);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);

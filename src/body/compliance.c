@@ -395,7 +395,9 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
   if (body->solver) PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
   else PetscCall(VecZeroEntries(displacement));
+  PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -273,6 +273,7 @@ static PetscErrorCode CreateIterative(ConstrainedSolver s)
   PetscCall(KSPGetPC(s->iterative, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetTolerances(s->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 500));
+  PetscCall(KSPSetInitialGuessNonzero(s->iterative, PETSC_TRUE)); /* the forces of the last solve */
   PetscCall(KSPSetErrorIfNotConverged(s->iterative, PETSC_TRUE));
   PetscCall(VecDuplicate(s->row, &s->force_vec));
   PetscCall(VecDuplicate(s->row, &s->gap_vec));

@@ -151,6 +151,7 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange, augmented_lagrangian", type);
   PetscTryTypeMethod(contact, destroy);
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
+  contact->prescribes = PETSC_FALSE;
   PetscCall((*create)(contact));
   PetscCall(PetscObjectChangeTypeName((PetscObject)contact, type));
   PetscFunctionReturn(PETSC_SUCCESS);

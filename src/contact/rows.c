@@ -5,6 +5,8 @@
 #define NO_GAP 1e30
 /* Rows whose bodies lie closer than this part of a face are tied */
 #define TIE_DISTANCE 0.5
+/* Directions along which a row moves less than this part of the displacement do not count */
+#define DIRECTION 1e-9
 
 /* All nodes of both surfaces: they may slide, and any of them may come to lie opposite to the partner */
 static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
@@ -71,7 +73,26 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the rows of a pair are, as its transfer has them now. Tied rows keep the bodies together as they are. */
+/* Whether row i asks for a displacement of its Dirichlet node that the user prescribes already */
+static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
+{
+  const PetscInt *dofs;
+  PetscInt        n;
+
+  PetscFunctionBegin;
+  *held = contact->prescribes;
+  PetscCall(BodyGetHeldDofs(contact->bodies[pair->body[0]], &n, &dofs));
+  for (PetscInt d = 0; d < contact->dim && *held; d++) {
+    PetscInt place;
+
+    if (PetscAbsReal(contact->row_normal[3 * i + d]) < DIRECTION) continue;
+    PetscCall(PetscFindInt(contact->row_dof[i] + d, n, dofs, &place));
+    if (place < 0) *held = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the rows of a pair are, as its transfer has them now. Tied rows keep the bodies together as they are; what is held already is not. */
 static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
 {
   const PetscInt dim = contact->dim;
@@ -86,6 +107,7 @@ static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
   for (PetscInt node = 0; node < rows.n; node++)
     for (PetscInt k = 0; k < pair->components; k++) {
       const PetscInt i = pair->begin + node * pair->components + k;
+      PetscBool      held;
 
       contact->row_dof[i]     = rows.dofs[node] - first;
       contact->opposite[i]    = rows.opposite[node];
@@ -98,7 +120,27 @@ static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
         contact->row_normal[3 * i + k] = 1;
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
+      PetscCall(IsHeld(contact, pair, i, &held));
+      if (!held) continue;
+      contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
+      contact->initial_gap[i]                 = NO_GAP;
     }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends with an error where nothing of the Dirichlet side can follow its partner, which might follow it */
+static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
+{
+  TransferRows rows;
+  int          any[2] = {0, 0};
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  for (PetscInt i = 0; i < rows.n; i++) any[0] |= rows.opposite[i];
+  for (PetscInt i = pair->begin; i < pair->end; i++) any[1] |= contact->opposite[i];
+  PetscCall(ContactOr(contact, &any[0]));
+  PetscCall(ContactOr(contact, &any[1]));
+  PetscCheck(!any[0] || any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they cannot follow the other side; name that body second, or prescribe less in -%s_boundary_displacement", pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,7 +248,10 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   }
   PetscCall(CountRows(contact));
   PetscCall(AllocateRows(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(DescribeRows(contact, &contact->pairs[p]));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscCall(DescribeRows(contact, &contact->pairs[p]));
+    PetscCall(CheckHeld(contact, &contact->pairs[p]));
+  }
   PetscCall(FillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
   /* what a converged outer iteration leaves of the gap must not count as penetration in the next trial */

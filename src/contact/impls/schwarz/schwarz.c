@@ -227,6 +227,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   schwarz->recheck             = PETSC_TRUE;
   schwarz->condense            = CONDENSE_AUTO;
   schwarz->dense_limit         = 2000;
+  contact->prescribes          = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
   contact->ops->setup          = ContactSetUp_Schwarz;
