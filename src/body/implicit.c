@@ -9,7 +9,11 @@ static PetscErrorCode NoteScale(Body body, Vec U, Vec inertia)
 
   PetscFunctionBegin;
   PetscCall(VecNorm(body->internal_force, NORM_2, &force));
-  if (!body->is_static) {
+  if (body->is_static) { /* forces that vanish in an unstrained body which has been moved are sums of these */
+    PetscCall(MatGetDiagonal(body->shifted, body->work[2]));
+    PetscCall(VecPointwiseMult(body->work[2], body->work[2], U));
+    PetscCall(VecNorm(body->work[2], NORM_2, &position));
+  } else {
     PetscCall(VecNorm(inertia, NORM_2, &mass));
     /* the acceleration is a difference of displacements over dt^2 */
     PetscCall(VecPointwiseMult(body->work[2], body->mass_row_sum, U));
