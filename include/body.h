@@ -170,8 +170,12 @@ PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, Petsc
 PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetCrossSection(Body, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, PetscScalar *[]);
-PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, PetscScalar *[]);
+PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);
+PETSC_EXTERN PetscErrorCode BodyBoundForwardCompliance(Body, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, Mat *);
+PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyAddEndForce(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyAddVelocity(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyAddAcceleration(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, const PetscBool[]);

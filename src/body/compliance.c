@@ -186,6 +186,8 @@ static PetscErrorCode ProbeAll(Body body, PetscInt first)
     body->n_prescribed = body->n_robin = 0;
     body->n_forced                     = 1;
     PetscCall(BodySetConstraints(body));
+    PetscCall(BodyPrepareLinearized(body));
+    body->linearized = (PetscBool)!body->linear;
   }
   for (PetscInt j = first; j < c->n; j++) {
     if (body->is_explicit) PetscCall(ProbeExplicit(body, c->rows[j]));
@@ -199,6 +201,7 @@ static PetscErrorCode ProbeAll(Body body, PetscInt first)
     }
   }
   if (integrates) {
+    body->linearized = PETSC_FALSE;
     PetscCall(BodyEndProbe(body));
     PetscCall(PetscArraycpy(body->conditions, kept, body->rows.local));
     body->n_prescribed = counts[0];

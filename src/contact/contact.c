@@ -2,7 +2,7 @@
 #include "contactimpl.h"
 
 PetscClassId  CONTACT_CLASSID = 0;
-PetscLogEvent CONTACT_Step, CONTACT_Sweep;
+PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 
 const char *const ContactLaws[]        = {"frictionless", "tied", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
@@ -44,6 +44,7 @@ PetscErrorCode ContactRegisterAll(void)
   PetscCall(PetscClassIdRegister("Contact", &CONTACT_CLASSID));
   PetscCall(PetscLogEventRegister("ContactStep", CONTACT_CLASSID, &CONTACT_Step));
   PetscCall(PetscLogEventRegister("ContactSweep", CONTACT_CLASSID, &CONTACT_Sweep));
+  PetscCall(PetscLogEventRegister("ContactUpdate", CONTACT_CLASSID, &CONTACT_Update));
   PetscCall(ContactRegister(CONTACT_SCHWARZ, ContactCreate_Schwarz));
   PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
   PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
@@ -255,7 +256,9 @@ PetscErrorCode ContactStep(Contact contact)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
   contact->counts_made.sweeps = 0;
+  PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactUpdateRows(contact));
+  PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->n_all_rows) PetscUseTypeMethod(contact, step);
   else { /* nothing can touch */
     PetscBool penetrating;

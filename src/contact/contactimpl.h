@@ -80,7 +80,7 @@ struct _p_Contact {
   void      *data;
 };
 
-PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep;
+PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 
 PETSC_INTERN PetscErrorCode ContactReadObstacles(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);

@@ -11,18 +11,16 @@
 #include "schwarzimpl.h"
 #include <petscblaslapack.h>
 
-/* Above so many unknowns forces come from conjugate gradients */
-#define MAX_DENSE_UNKNOWNS 2000
 /* of the residual: a step of Newton's method that leaves so much takes one more sweep at most */
 #define FORCE_TOLERANCE 1e-9
 
-static PetscErrorCode MakeRoom(InterfaceProblem *problem, PetscInt size)
+static PetscErrorCode MakeRoom(InterfaceProblem *problem, PetscInt size, PetscInt most)
 {
   PetscFunctionBegin;
   if (size <= problem->capacity) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree4(problem->matrices, problem->dirichlet, problem->factor, problem->pivots));
   PetscCall(PetscFree5(problem->rows, problem->body_rows, problem->residual, problem->force, problem->change));
-  problem->capacity = PetscMax(size, PetscMin(2 * problem->capacity, MAX_DENSE_UNKNOWNS));
+  problem->capacity = PetscMax(size, PetscMin(2 * problem->capacity, most));
   size              = problem->capacity;
   PetscCall(PetscMalloc4(size * size, &problem->matrices, size * size, &problem->dirichlet, size * size, &problem->factor, size, &problem->pivots));
   PetscCall(PetscMalloc5(size, &problem->rows, size, &problem->body_rows, size, &problem->residual, size, &problem->force, size, &problem->change));
@@ -190,9 +188,9 @@ PetscErrorCode SchwarzUpdateInterfaceProblem(Contact contact)
   PetscCall(CountLevels(contact, &problem->levels, &problem->chain));
   problem->n        = n;
   problem->factored = PETSC_FALSE;
-  problem->dense    = (PetscBool)(n * problem->levels <= MAX_DENSE_UNKNOWNS);
+  problem->dense    = (PetscBool)(n * problem->levels <= schwarz->dense_limit);
   if (!problem->dense) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MakeRoom(problem, n * problem->levels));
+  PetscCall(MakeRoom(problem, n * problem->levels, schwarz->dense_limit));
   n = 0;
   for (PetscInt i = 0; i < contact->n_all_rows; i++)
     if (contact->all_active[i]) problem->rows[n++] = i;
@@ -368,18 +366,14 @@ static PetscErrorCode SolveIteratively(Contact contact, Vec F, Vec Y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Y = F'^{-1} F; rows that are not active stay where they are */
-static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
+/* Y = F'^{-1} F by the compliance alone; rows that are not active stay where they are */
+static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
 {
-  Contact           contact;
-  Schwarz          *schwarz;
-  InterfaceProblem *problem;
+  Schwarz          *schwarz = (Schwarz *)contact->data;
+  InterfaceProblem *problem = &schwarz->problem;
   PetscScalar      *y;
 
   PetscFunctionBegin;
-  PetscCall(PCShellGetContext(pc, &contact));
-  schwarz = (Schwarz *)contact->data;
-  problem = &schwarz->problem;
   if (!problem->dense) {
     PetscCall(SolveIteratively(contact, F, Y));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -396,6 +390,27 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
       if (local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]) y[schwarz->offset[local] + k] = problem->change[k * problem->n + i];
     }
   PetscCall(VecRestoreArray(Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
+{
+  Contact     contact;
+  Schwarz    *schwarz;
+  Vec         rest;
+  PetscInt    n, which[SCHWARZ_MAX_SECANTS];
+  PetscScalar c[SCHWARZ_MAX_SECANTS];
+
+  PetscFunctionBegin;
+  PetscCall(PCShellGetContext(pc, &contact));
+  schwarz = (Schwarz *)contact->data;
+  if (!schwarz->uses_secants) {
+    PetscCall(ApplyCompliance(contact, F, Y));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SchwarzApplySecants(contact, F, &rest, &n, which, c));
+  PetscCall(ApplyCompliance(contact, rest, Y));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecAXPY(Y, c[i], schwarz->secants.dx[which[i]]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
