@@ -173,6 +173,7 @@ PETSC_INTERN PetscErrorCode SchwarzDestroyNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzSetUpInterfaceProblem(Contact);
 PETSC_INTERN PetscErrorCode SchwarzUpdateInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSolveIteratively(Contact, Vec, Vec);
 PETSC_INTERN PetscErrorCode SchwarzDestroyInterfaceProblem(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSecants(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroySecants(Contact);
