@@ -45,6 +45,7 @@ struct _p_Contact {
   PetscInt     n_obstacles;
   Obstacle    *obstacles;
   ContactLaw   law;
+  PetscBool    facing;                  /* whole bodies come with the faces alone that see each other at the start */
   PetscReal    slip_bound, angle_bound; /* beyond which rows are built again: parts of a face, rad */
   PetscInt    *order;                   /* sweep order: Dirichlet sides before their Neumann sides */
   /* rows of this rank */
