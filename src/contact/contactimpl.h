@@ -46,6 +46,7 @@ struct _p_Contact {
   Obstacle    *obstacles;
   ContactLaw   law;
   PetscBool    prescribes;              /* the method prescribes displacements on Dirichlet sides */
+  PetscBool    facing;                  /* whole bodies come with the faces alone that see each other at the start */
   PetscReal    slip_bound, angle_bound; /* beyond which rows are built again: parts of a face, rad */
   PetscInt    *order;                   /* sweep order: Dirichlet sides before their Neumann sides */
   /* rows of this rank */

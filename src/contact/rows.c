@@ -226,7 +226,7 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }
   PetscCheck(dims[0] == dims[1] && dims[0] == contact->dim, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT ", and another body has %" PetscInt_FMT, pair->name, dims[0], dims[1], contact->dim);
-  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)!pair->surface[0], (PetscBool)!pair->surface[1]));
+  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)(contact->facing && !pair->surface[0]), (PetscBool)(contact->facing && !pair->surface[1])));
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->slip_bound, contact->angle_bound));
