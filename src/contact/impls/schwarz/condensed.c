@@ -62,6 +62,7 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || schwarz->condense == CONDENSE_ALWAYS));
   schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && why);
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
+  contact->fades         = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,6 +131,7 @@ PetscErrorCode SchwarzFinishCondensed(Contact contact)
       for (PetscInt i = 0; i < contact->n_rows; i++)
         if (DirichletBody(&contact->pairs[contact->row_pair[i]]) == b) force[i] = reaction[i];
     }
+    PetscCall(ContactLoadReleased(contact, b));
     PetscCall(BodyIntegrate(contact->bodies[b]));
   }
   PetscCall(ContactComputeGaps(contact));
