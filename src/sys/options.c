@@ -12,6 +12,7 @@ static const KnownOption global_options[] = {
     {"contact_pairs", "a:b,b:c|auto|none", "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; auto: all with all"},
     {"obstacles", "o,p", "names of rigid obstacles; options of obstacle o begin with -o_"},
     {"contact_law", "frictionless|tied", "what surfaces do to each other, default frictionless"},
+    {"contact_facing", "true|false", "pairs of whole bodies keep only the faces that see each other at the start, default true; false where bodies roll or turn"},
     {"contact_slip_bound", "s", "slip after which contact rows are built again, in parts of a face, default 0.2"},
     {"contact_angle_bound", "a", "turn of a normal after which they are [rad], default 0.1"},
     {"contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method"},
