@@ -189,8 +189,23 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
     sums[3] += 1;
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, comm));
-  PetscCheck(sums[3] > 0 || pair->chosen, comm, PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
   for (PetscInt d = 0; d < 3; d++) pair->normal[d] = sums[3] > 0 ? sums[d] / sums[3] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Surfaces of a pair that the user wants must have faces that see each other, though they may lie beside each other at the start */
+static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
+{
+  const SurfaceData *data;
+  int                any[2] = {0, 1};
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    PetscCall(SurfaceGetData(pair->surfaces[side], &data));
+    any[side] = data->n_faces > 0;
+    PetscCall(ContactOr(contact, &any[side]));
+  }
+  PetscCheck(pair->chosen || (any[0] && any[1]), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,10 +226,11 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }
   PetscCheck(dims[0] == dims[1] && dims[0] == contact->dim, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT ", and another body has %" PetscInt_FMT, pair->name, dims[0], dims[1], contact->dim);
-  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)!pair->surface[0], (PetscBool)!pair->surface[1]));
+  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)(contact->facing && !pair->surface[0]), (PetscBool)(contact->facing && !pair->surface[1])));
+  PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->slip_bound, contact->angle_bound));
-  PetscCall(TransferUpdate(pair->transfer, NULL, NULL, PETSC_MAX_REAL, &rebuilt));
+  PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -296,14 +312,36 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Surfaces further apart than this do not touch in the next controller step: twice the way that the fastest nodes of all bodies make towards each
+   other */
+static PetscErrorCode GetReach(Contact contact, PetscReal *near)
+{
+  PetscReal first = 0, second = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    Vec       velocity;
+    PetscReal speed;
+
+    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
+    PetscCall(VecNorm(velocity, NORM_INFINITY, &speed));
+    second = PetscMax(second, PetscMin(first, speed));
+    first  = PetscMax(first, speed);
+  }
+  *near = 2 * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Looks at the start of a controller step whether surfaces have slid or turned so far that their rows are to be built again, and does so. Rows in
    contact that have nothing opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
-  PetscBool any = PETSC_FALSE;
+  PetscReal near = 0;
+  PetscBool any  = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetReach(contact, &near));
   PetscCall(PetscArrayzero(contact->changed, contact->n_rows));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -311,7 +349,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     PetscBool    rebuilt;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
-    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], PETSC_MAX_REAL, &rebuilt));
+    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, &rebuilt));
     if (!rebuilt) continue;
     any = PETSC_TRUE;
     PetscCall(DescribeRows(contact, pair));

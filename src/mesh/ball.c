@@ -310,6 +310,32 @@ static PetscErrorCode AddFaces(const Grid *grid, const Block *block, PetscInt ax
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Faces of the sphere's run that are opposite to the pole, where a body that is pressed onto something can be held: none of
+   their nodes is on the pole's side of the centre, but for round-off */
+static PetscErrorCode AddBack(MeshFile *file, const Ball *ball, PetscInt sphere)
+{
+  const MeshRun run = file->runs[sphere]; /* as adding may move it */
+
+  PetscFunctionBegin;
+  PetscCall(AddSurface(file, ball, 4, "back"));
+  for (PetscInt e = 0; e < run.n; e++) {
+    PetscReal nearest = -PETSC_MAX_REAL;
+    PetscInt *nodes;
+
+    for (PetscInt k = 0; k < run.corners; k++) {
+      const PetscReal *x     = file->coordinates + 3 * file->element_nodes[run.first_node + e * run.corners + k];
+      PetscReal        along = 0;
+
+      for (PetscInt d = 0; d < ball->dim; d++) along += (x[d] - ball->centre[d]) * ball->pole[d];
+      nearest = PetscMax(nearest, along);
+    }
+    if (nearest > 1e-12 * ball->radius) continue;
+    PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
+    PetscCall(PetscArraycpy(nodes, file->element_nodes + run.first_node + e * run.corners, run.corners));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode FillBall(void *ctx)
 {
   static const char *const cut_names[] = {"cut_x", "cut_y"};
@@ -318,7 +344,7 @@ static PetscErrorCode FillBall(void *ctx)
   const PetscInt           all[3] = {0, 1, 2}, begin[3] = {0};
   const DMPolytopeType     shapes[2][2] = {{DM_POLYTOPE_QUADRILATERAL, DM_POLYTOPE_TRIANGLE}, {DM_POLYTOPE_HEXAHEDRON, DM_POLYTOPE_TETRAHEDRON}};
   Block                    blocks[7]    = {{-1, 0}};
-  PetscInt                 n_blocks     = 1;
+  PetscInt                 n_blocks     = 1, sphere;
 
   PetscFunctionBegin;
   for (PetscInt d = 0; d < ball->dim; d++)
@@ -332,12 +358,14 @@ static PetscErrorCode FillBall(void *ctx)
     PetscCall(AddRange(grid, &blocks[b], ball->dim, all, begin, end));
   }
   PetscCall(AddSurface(grid->file, ball, 1, "surface"));
+  sphere = grid->file->n_runs - 1;
   for (PetscInt b = 1; b < n_blocks; b++) PetscCall(AddFaces(grid, &blocks[b], blocks[b].axis, ball->layers));
   for (PetscInt cut = 0; cut < ball->n_cuts; cut++) {
     PetscCall(AddSurface(grid->file, ball, cut + 2, cut_names[cut]));
     for (PetscInt b = 0; b < n_blocks; b++)
       if (blocks[b].axis != cut) PetscCall(AddFaces(grid, &blocks[b], cut, 0));
   }
+  PetscCall(AddBack(grid->file, ball, sphere));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

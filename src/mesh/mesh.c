@@ -130,7 +130,8 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
   Notes:
   Groups of a file (Gmsh's physical groups; Exodus' blocks, side sets and node sets) become labels: their numbers in "Cell
   Sets", "Face Sets" and "Vertex Sets", their names as labels with the value 1. The sides of a box have labels xmin, xmax, ...
-  which a rotation takes along. Those of a ball are surface (the sphere), and cut_x and cut_y of its parts.
+  which a rotation takes along. Those of a ball are surface (the sphere), back (faces of it that
+  are not on the pole's side of the centre), and cut_x and cut_y of its parts.
 
   A graded ball has elements of size sqrt(g) h opposite to the pole, where h = pi R / (2 n) is their size without grading, and
   h / sqrt(g) at the pole; where the former are not small beside the radius, the ball is a coarse polyhedron there.

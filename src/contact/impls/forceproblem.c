@@ -251,6 +251,7 @@ static PetscErrorCode CreateIterative(Contact contact, ForceProblem *problem)
   PetscCall(KSPGetPC(problem->iterative, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetTolerances(problem->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
+  PetscCall(KSPSetFromOptions(problem->iterative));
   PetscCall(MatDestroy(&shell));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -262,7 +263,6 @@ static PetscErrorCode SolveIteratively(Contact contact, ForceProblem *problem, V
   PetscInt           iterations;
 
   PetscFunctionBegin;
-  if (!problem->iterative) PetscCall(CreateIterative(contact, problem));
   PetscCall(VecGetArrayRead(F, &f));
   PetscCall(VecGetArrayWrite(problem->work[2], &rest));
   for (PetscInt i = 0; i < contact->n_rows; i++) rest[i] = Root(problem, i) > 0 ? 0 : f[i];
@@ -310,6 +310,7 @@ PetscErrorCode ForceProblemCreate(Contact contact, PetscReal stiffness[], ForceP
   }
   PetscCall(PetscCalloc2(contact->n_rows, &problem->listed, contact->n_rows, &problem->pushing));
   problem->stale = PETSC_TRUE;
+  if (!problem->rigid && contact->n_all_rows > MAX_DENSE_ROWS) PetscCall(CreateIterative(contact, problem));
   if (problem->rigid || contact->n_all_rows > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->n_rows; i++) problem->listed[i] = PETSC_TRUE;
   PetscCall(ListRows(contact, problem));

@@ -302,6 +302,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, "lagrange"));
   PetscCall(ForcesCheckDense(contact, "lagrange"));
+  PetscCheck(contact->law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
   PetscCall(PetscNew(&lagrange));
   contact->data             = lagrange;
   contact->ops->step        = ContactStep_ImplicitLagrange;

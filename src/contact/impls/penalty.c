@@ -269,7 +269,7 @@ PetscErrorCode PenaltyDestroy(Contact contact)
    Options Database Keys:
 +  -contact_penalty tau                                          - penalty parameter [N/m^3; N/m in one dimension]
 .  -contact_penalty_scale s                                      - where tau is not given: as many times the stiffness of an element of each
-                                                                   side, one behind the other
+                                                                   side, one behind the other; 10 for massless contact nodes, 1 for others
 .  -contact_constraint (gap|gap_rate|both)                       - springs, dampers in their place, or both
 .  -contact_penalty_damping c                                    - damping [N s/m^3; N s/m in one dimension], required by dampers
 .  -penalty_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration on the contact forces

@@ -9,7 +9,7 @@ typedef struct {
   OuterSolver   outer;
   PetscBool     springs;    /* there are any */
   PetscReal     penalty;    /* N/m for each unit of area [N/m in one dimension]; 0: from materials and elements */
-  PetscReal     scale;      /* of the latter */
+  PetscReal     scale;      /* of the latter; 0: by the mass of the contact nodes */
   PetscReal     damping;    /* N s/m for each unit of area */
   PetscReal    *spring;     /* per row of this rank [N/m] */
   PetscReal    *damper;     /* per row of this rank [N s/m] */

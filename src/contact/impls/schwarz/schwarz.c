@@ -205,6 +205,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
                                                                   of the contact nodes, or the change of the contact nodes that a plain
                                                                   sweep would bring
 .  -schwarz_condense (0|1|auto)                                 - whether sweeps run on the interface compliance of the bodies
+.  -schwarz_dense_limit n                                       - interface unknowns up to which its matrices are dense, 2000
 .  -schwarz_recheck (true|false)                                - whether tensile nodes leave contact within the step
 -  -schwarz_unconverged (error|accept)                          - what to do with a step that does not converge
 
@@ -225,6 +226,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   schwarz->predictor           = PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
   schwarz->condense            = CONDENSE_AUTO;
+  schwarz->dense_limit         = 2000;
   contact->prescribes          = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;

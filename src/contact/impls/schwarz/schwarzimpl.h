@@ -88,6 +88,7 @@ typedef struct {
   PetscReal           controller_step; /* [s] */
   PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
   Condense            condense;
+  PetscInt            dense_limit;   /* unknowns of the interface up to which its matrices are dense */
   PetscBool           by_compliance; /* Newton's method by the bodies' compliance; else by probing them under each set of conditions */
   PetscBool           condensed;     /* sweeps on the compliance alone */
   PetscBool           responding;    /* sweeps are, just now */
@@ -172,6 +173,7 @@ PETSC_INTERN PetscErrorCode SchwarzDestroyNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzSetUpInterfaceProblem(Contact);
 PETSC_INTERN PetscErrorCode SchwarzUpdateInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSolveIteratively(Contact, Vec, Vec);
 PETSC_INTERN PetscErrorCode SchwarzDestroyInterfaceProblem(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSecants(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroySecants(Contact);

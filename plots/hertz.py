@@ -1,0 +1,172 @@
+"""Draws what presses or falls on a rigid plane beside Hertz's theory: a panel for each history.
+
+    python plots/hertz.py out/hertz-cylinder.h5 out/hertz-sphere.h5 out/hertz-impact.h5 figure.png
+
+Of static runs the contact pressure at the end over the distance from the axis, from the fields that the run wrote too; of others
+the contact force over time. Bodies are discs or balls from options (-<body>_dm_plex_shape ball), or parts of them.
+
+Hertz: K. L. Johnson, Contact mechanics (1985), eqs. 4.22 to 4.24 (spheres), 4.43 and 4.45 (cylinders), 11.21 to 11.24 (impact).
+"""
+
+import sys
+from pathlib import Path
+
+import h5py
+import matplotlib
+import numpy as np
+from impact import BLUE, DASHED, NoHistory, scale
+from matplotlib.figure import Figure
+
+PARTS = {"full": 1, "half": 2, "quarter": 4}
+
+
+class Ball:
+    """A disc (of unit thickness) or ball as the options of a run describe it, and what Hertz says of it on a rigid plane."""
+
+    def __init__(self, options, name):
+        def option(key, default=None):
+            value = options.get(f"-{name}_{key}", default)
+            if value is None:
+                raise NoHistory(f"the run has no option -{name}_{key}: no disc or ball from options")
+            return value
+
+        self.name, self.dim = name, int(option("dm_plex_dim"))
+        if option("dm_plex_shape", "box") != "ball":
+            raise NoHistory(f"body {name} is no disc or ball from options")
+        self.parts = PARTS[option("ball_part", "full")]
+        self.radius = float(option("ball_radius", "1"))
+        self.centre = np.array([float(x) for x in option("ball_centre", "0,0,0").split(",")])[: self.dim]
+        self.modulus = float(option("youngs_modulus")) / (1 - float(option("poissons_ratio", "0")) ** 2)
+        self.static = option("ts_type", "alpha2") == "static"
+
+    def contact(self, load):
+        """Radius of the contact (of a disc: half its width) and largest pressure."""
+        if self.dim == 2:
+            radius = np.sqrt(4 * load * self.radius / (np.pi * self.modulus))
+            return radius, 2 * load / (np.pi * radius)
+        radius = (3 * load * self.radius / (4 * self.modulus)) ** (1 / 3)
+        return radius, 3 * load / (2 * np.pi * radius**2)
+
+    def impact(self, mass, speed):
+        """Approach, duration and largest force of a ball's impact."""
+        approach = (15 * mass * speed**2 / (16 * self.modulus * np.sqrt(self.radius))) ** 0.4
+        return approach, 2.943 * approach / speed, 4 / 3 * self.modulus * np.sqrt(self.radius) * approach**1.5
+
+    def force_over_time(self, mass, speed, n=400):
+        """With sin(phi) = (approach / largest)^(5/4), dt = largest / speed (phi / sin phi)^(1/5) du, u = phi^(4/5)."""
+        approach, _, force = self.impact(mass, speed)
+        phi = np.linspace(0, (np.pi / 2) ** 0.8, n) ** 1.25
+        rate = np.r_[1, phi[1:] / np.sin(phi[1:])] ** 0.2
+        time = approach / speed * np.r_[0, np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(phi**0.8))]
+        force = force * np.sin(phi) ** 1.2
+        return np.r_[time, 2 * time[-1] - time[-2::-1]], np.r_[force, force[-2::-1]]
+
+
+def hertz_pressure(distance):
+    """By the largest, at distances by the radius of the contact."""
+    return np.sqrt(np.maximum(0, 1 - distance**2))
+
+
+def read(path):
+    """The ball, and what is drawn of it: loads and momenta are those of the whole ball."""
+    path = Path(path)
+    if not path.is_file():
+        raise NoHistory(f"there is no file {path}")
+    try:
+        with h5py.File(path, "r") as file:
+            options = {name: str(value) for name, value in file.attrs.items()}
+            ball = Ball(options, next(iter(file["body"])))
+            pair = file["contact"][next(iter(file["contact"]))]
+            body = file["body"][ball.name]
+            series = {"force": ball.parts * pair["force"][()], "area": ball.parts * pair["area"][()], "active": pair["active"][()]}
+            series |= {"time": file["time"][()], "velocity": body["mean_velocity"][:, -1], "momentum": ball.parts * body["momentum"][:, ball.dim - 1]}
+    except (KeyError, StopIteration) as error:
+        raise NoHistory(f"{path} is not the history of an Impakt run with contact: {error}") from error
+    except OSError as error:
+        raise NoHistory(f"{path} cannot be read as HDF5: {error}") from error
+    if ball.static:
+        series |= pressures(ball, find_fields(path, options))
+    return ball, series
+
+
+def find_fields(history, options):
+    if "-output_fields" not in options:
+        raise NoHistory(f"the run of {history} wrote no fields: give it -output_fields")
+    name = Path(options["-output_fields"])
+    found = [path for path in (history.parent / name, name) if path.is_file()]  # the run may have been in another folder
+    if not found:
+        raise NoHistory(f"the fields of {history}, {name}, are not there")
+    return found[0]
+
+
+def pressures(ball, path):
+    """Of the nodes of the surface by their distance from the axis, which is that before they moved, as in theory."""
+    with h5py.File(path, "r") as file:
+        positions = file["mesh/positions"][:, : ball.dim] - ball.centre
+        last = sorted(file["contact_pressure"])[-1]
+        pressure, active = (file[f"{name}/{last}"][()].ravel() for name in ("contact_pressure", "contact_active"))
+    surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, -1] < 0)
+    distance = np.linalg.norm(positions[:, :-1], axis=1)
+    order = np.flatnonzero(surface)[np.argsort(distance[surface])]
+    return {"distance": distance[order], "pressure": pressure[order], "touches": active[order] > 0}
+
+
+def fit(distance, pressure):
+    """Radius of the contact and largest pressure, from squares of pressures, which should be p0^2 (1 - (r/a)^2)."""
+    square, slope = np.linalg.lstsq(np.column_stack((np.ones_like(distance), -(distance**2))), pressure**2, rcond=None)[0]
+    return np.sqrt(square / slope), np.sqrt(square)
+
+
+def draw_pressure(axes, ball, series):
+    radius, peak = ball.contact(series["force"][-1])
+    factor, unit = scale(peak, "Pa")
+    distance = np.linspace(0, 1.2, 600)
+    shown = series["distance"] < 1.2 * radius
+    axes.plot(series["distance"][shown] / radius, factor * series["pressure"][shown], "o", color=BLUE, markersize=3, label="nodes")
+    axes.plot(distance, factor * peak * hertz_pressure(distance), **DASHED, label="Hertz")
+    axes.set_title(f"{ball.name} pressed on a plane, a = {radius / ball.radius:.3f} R")
+    axes.set_xlabel("distance from the axis / a")
+    axes.set_ylabel(f"contact pressure [{unit}]")
+
+
+def draw_force(axes, ball, series):
+    speed = abs(series["velocity"][0])
+    time, force = ball.force_over_time(series["momentum"][0] / series["velocity"][0], speed)
+    factor, unit = scale(force.max(), "N")
+    late, time_unit = scale(series["time"][-1], "s")
+    start = series["time"][np.argmax(series["force"] > 0) - 1]
+    axes.plot(late * series["time"], factor * series["force"], color=BLUE, label="Impakt")
+    axes.plot(late * (start + time), factor * force, **DASHED, label="Hertz")
+    axes.set_title(f"{ball.name} falls on a plane, leaves with {series['velocity'][-1] / speed:.4f} of its velocity")
+    axes.set_xlabel(f"time [{time_unit}]")
+    axes.set_ylabel(f"contact force [{unit}]")
+
+
+def draw(runs, path):
+    matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 9, "lines.linewidth": 1.2, "axes.axisbelow": True})
+    figure = Figure(figsize=(4.2 * len(runs), 3.4), layout="constrained")
+    for axes, (ball, series) in zip(figure.subplots(1, len(runs), squeeze=False)[0], runs, strict=True):
+        (draw_pressure if ball.static else draw_force)(axes, ball, series)
+        axes.grid(color="0.9", linewidth=0.6)
+        axes.set_ylim(bottom=0)
+        axes.legend(frameon=True, framealpha=0.9, edgecolor="0.8")
+    figure.savefig(path, dpi=110)
+
+
+def main(arguments):
+    if len(arguments) < 2:
+        print("usage: python plots/hertz.py history.h5 [history.h5 ...] figure.png", file=sys.stderr)
+        return 1
+    try:
+        runs = [read(path) for path in arguments[:-1]]
+        Path(arguments[-1]).parent.mkdir(parents=True, exist_ok=True)
+        draw(runs, arguments[-1])
+    except (NoHistory, OSError, ValueError) as error:
+        print(f"plots/hertz.py: {error}", file=sys.stderr)
+        return 1
+    print(arguments[-1])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
