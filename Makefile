@@ -99,6 +99,7 @@ test: $(BUILD)/impakt $(units) ## unit tests on 1 to 3 ranks and regression test
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time, memory and scaling, beside plain C yardsticks
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD)
 	$(PYTHON) tests/scaling/solids.py --build $(BUILD)
+	$(PYTHON) tests/scaling/contact.py --build $(BUILD)
 
 format: ## clang-format over all C
 	$(bin)clang-format -i $(c_files)

@@ -260,6 +260,31 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@C
+  BodyGetHeldDofs - degrees of freedom whose displacement is prescribed
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetFromOptions()`
+
+  Output Parameters:
++ n    - how many of this rank's
+- dofs - their numbers among those of this rank, ascending; owned by the body
+
+  Level: developer
+
+.seealso: `Body`, `BodySetFromOptions()`
+@*/
+PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *n    = body->n_held;
+  *dofs = body->held_dofs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyGetNewmark - velocity and acceleration at the end of a substep as linear functions of the displacement in it
 

@@ -1,4 +1,4 @@
-/* Displacements of a body's rows under contact forces on them. Private to compliance.c, which makes it, and respond.c, which applies it. */
+/* Displacements of a body's rows under contact forces on them. Private to compliance.c and complianceprobe.c, which make it, and respond.c, which applies it. */
 #pragma once
 #include "probe.h"
 
@@ -27,4 +27,5 @@ struct _BodyCompliance {
 };
 
 PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
+PETSC_INTERN PetscErrorCode BodyProbeCompliance(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyGatherKnown(Body, const PetscScalar[], PetscScalar[]);

@@ -30,7 +30,8 @@ struct _n_ConstrainedSolver {
   PetscScalar  *gathered, *force;
   Vec          *active_columns; /* those of the constrained rows */
   Vec           row, rhs;
-  PetscBool     dense;     /* the factor is there */
+  PetscBool     dense; /* the factor is there */
+  PetscInt      dense_limit;
   KSP           iterative; /* for the constraint forces, where they are many */
   Vec           force_vec, gap_vec, product;
 };
@@ -102,7 +103,8 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
   PetscCall(KSPSetOperators(s->ksp, A, A));
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  s->size = size;
+  s->size        = size;
+  s->dense_limit = MAX_DENSE_CONSTRAINTS;
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
   PetscCall(ChooseSolver(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
@@ -160,6 +162,14 @@ PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver solver, KSP *ksp)
 {
   PetscFunctionBegin;
   *ksp = solver->ksp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How many constraint forces are found by a dense matrix; more come from conjugate gradients */
+PetscErrorCode ConstrainedSolverSetDenseLimit(ConstrainedSolver s, PetscInt limit)
+{
+  PetscFunctionBegin;
+  s->dense_limit = limit;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -263,6 +273,7 @@ static PetscErrorCode CreateIterative(ConstrainedSolver s)
   PetscCall(KSPGetPC(s->iterative, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetTolerances(s->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 500));
+  PetscCall(KSPSetInitialGuessNonzero(s->iterative, PETSC_TRUE)); /* the forces of the last solve */
   PetscCall(KSPSetErrorIfNotConverged(s->iterative, PETSC_TRUE));
   PetscCall(VecDuplicate(s->row, &s->force_vec));
   PetscCall(VecDuplicate(s->row, &s->gap_vec));
@@ -305,7 +316,7 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
     if (s->constrained[j] >= 0) s->rows[s->n++] = j;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetSize(s->rhs, &size));
-  if (s->n > MAX_DENSE_CONSTRAINTS || (PetscReal)s->n * size > MAX_COLUMN_NUMBERS) {
+  if (s->n > s->dense_limit || (PetscReal)s->n * size > MAX_COLUMN_NUMBERS) {
     if (!s->iterative) PetscCall(CreateIterative(s));
     PetscCall(VecZeroEntries(s->force_vec));
     s->dense = PETSC_FALSE;

@@ -9,6 +9,7 @@ PETSC_INTERN PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
 PETSC_INTERN PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);
+PETSC_INTERN PetscErrorCode ConstrainedSolverSetDenseLimit(ConstrainedSolver, PetscInt);
 PETSC_INTERN PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver, Mat, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ConstrainedSolverApplyUnit(ConstrainedSolver, PetscInt, Vec, PetscScalar[]);
 PETSC_INTERN PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver, Vec, Vec);

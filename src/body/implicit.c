@@ -5,10 +5,14 @@
 /* What a nonlinear residual is measured against: its terms, and the round-off of the largest numbers in it */
 static PetscErrorCode NoteScale(Body body, Vec U, Vec inertia)
 {
-  PetscReal force, mass = 0, position = 0;
+  PetscReal force, stiffness, mass = 0, position = 0;
 
   PetscFunctionBegin;
   PetscCall(VecNorm(body->internal_force, NORM_2, &force));
+  /* the internal force is a sum of displacements times stiffnesses, which may cancel: a body that moves as a whole has none */
+  PetscCall(MatGetDiagonal(body->shifted, body->work[2]));
+  PetscCall(VecPointwiseMult(body->work[2], body->work[2], U));
+  PetscCall(VecNorm(body->work[2], NORM_2, &stiffness));
   if (!body->is_static) {
     PetscCall(VecNorm(inertia, NORM_2, &mass));
     /* the acceleration is a difference of displacements over dt^2 */
@@ -17,7 +21,7 @@ static PetscErrorCode NoteScale(Body body, Vec U, Vec inertia)
     position *= body->shift;
   }
   body->force_scale = force + mass;
-  body->force_floor = 8 * PETSC_MACHINE_EPSILON * (position + force);
+  body->force_floor = 8 * PETSC_MACHINE_EPSILON * (position + force + stiffness);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -141,6 +141,7 @@ static PetscErrorCode RespondSubstep(Body body, PetscInt k)
   PetscBLASInt            n, leading, one                                                = 1, m, info;
 
   PetscFunctionBegin;
+  if (!c->n) PetscFunctionReturn(PETSC_SUCCESS); /* BLAS refuses matrices without rows */
   PetscCall(PetscBLASIntCast(c->n, &n));
   PetscCall(PetscBLASIntCast(c->capacity, &leading));
   PetscCall(PetscBLASIntCast(c->n_prescribed, &m));

@@ -1,6 +1,34 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
 #include "contactimpl.h"
 
+/* Whether a row that is let go in this controller step has a force at its start, which falls to zero until its end. Bodies of one step
+   take it so, by the force that their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and
+   momentum with it. */
+static PetscBool RowFades(Contact contact, PetscInt i)
+{
+  return (PetscBool)(contact->fades && !contact->active[i] && contact->saved_active[i] && contact->saved_force[i] > 0);
+}
+
+/* Forces of rows that are let go, over the substeps of a body */
+PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
+{
+  Trace        trace = contact->traces[b].force_in;
+  PetscScalar *force;
+  PetscInt     levels;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetSizes(trace, NULL, &levels));
+  for (PetscInt level = 0; level <= levels && contact->fades; level++) {
+    PetscCall(TraceGetLevel(trace, level, &force));
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+
+      if (RowFades(contact, i)) force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * contact->saved_force[i] * (1 - (PetscReal)level / levels);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What the rows mean to a body */
 void ContactGetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
 {
@@ -11,6 +39,7 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
     rows[i] = BODY_FREE;
     if (!takes || conditions == CONDITIONS_FREE) continue;
     if (conditions == CONDITIONS_FORCES) rows[i] = BODY_FORCED;
+    if (RowFades(contact, i) && (conditions == CONDITIONS_SCHWARZ || conditions == CONDITIONS_ACTIVE_FORCES)) rows[i] = BODY_FORCED;
     if (!contact->active[i]) continue;
     if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
     if (conditions == CONDITIONS_SCHWARZ) rows[i] = pair->body[pair->dirichlet] == b ? BODY_PRESCRIBED : BODY_FORCED;
@@ -104,8 +133,11 @@ PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(contact->active, contact->n_rows));
   PetscCall(PetscArrayzero(contact->force, contact->n_rows));
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyIntegrate(contact->bodies[b]));
+  PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES)); /* of rows that are let go, as none is active */
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(ContactLoadReleased(contact, b));
+    PetscCall(BodyIntegrate(contact->bodies[b]));
+  }
   PetscCall(ContactComputeGaps(contact));
   PetscCall(ContactAny(contact, PETSC_TRUE, penetrating));
   PetscFunctionReturn(PETSC_SUCCESS);

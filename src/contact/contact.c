@@ -88,6 +88,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscFunctionBegin;
   PetscCall(PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
+  (*contact)->facing      = PETSC_TRUE;
   (*contact)->slip_bound  = 0.2;
   (*contact)->angle_bound = 0.1;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -151,6 +152,7 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange, augmented_lagrangian", type);
   PetscTryTypeMethod(contact, destroy);
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
+  contact->prescribes = PETSC_FALSE;
   PetscCall((*create)(contact));
   PetscCall(PetscObjectChangeTypeName((PetscObject)contact, type));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -193,6 +195,8 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
+. -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the start (default);
+                                                                  false where bodies move round each other, as balls do
 - -contact_tolerance g                                          - depth that does not yet count as penetration [m]
 
   Level: beginner
@@ -215,6 +219,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations, (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
   PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "", ContactLaws, (PetscEnum)contact->law, (PetscEnum *)&contact->law, NULL));
+  PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start", "", contact->facing, &contact->facing, NULL));
   PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "", contact->slip_bound, &contact->slip_bound, NULL));
   PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "", contact->angle_bound, &contact->angle_bound, NULL));
   PetscOptionsEnd();

@@ -60,7 +60,9 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal RowValue(Contact contact, PetscInt i, Carried kind)
+/* `along`: component of the normal of its node along the row. Tied nodes have a row for each axis, and what they carry of areas is to point along
+   the normal as that of others does. */
+static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried kind)
 {
   const PetscReal area = contact->area[i] * contact->cross_section[contact->row_pair[i]];
 
@@ -68,11 +70,11 @@ static PetscReal RowValue(Contact contact, PetscInt i, Carried kind)
   case CARRY_FORCE:
     return contact->force[i];
   case CARRY_AREA:
-    return area;
+    return along * area;
   case CARRY_ACTIVE_AREA:
-    return contact->active[i] ? area : 0;
+    return contact->active[i] ? along * area : 0;
   case CARRY_GAP_AREA:
-    return contact->opposite[i] ? area : 0;
+    return contact->opposite[i] ? along * area : 0;
   default:
     return contact->opposite[i] ? area * contact->gap[i] : 0;
   }
@@ -86,11 +88,18 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(fields->rows, &values));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
     const PetscInt     sign = (pair->body[1] == b) - (pair->body[0] == b);
+    TransferRows       rows;
 
-    values[i] = sign ? sign * RowValue(contact, i, kind) : 0;
+    PetscCall(TransferGetRows(pair->transfer, &rows));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+      const PetscReal along = contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+
+      values[i] = sign ? sign * RowValue(contact, i, along, kind) : 0;
+    }
   }
   PetscCall(VecRestoreArrayWrite(fields->rows, &values));
   PetscCall(MatMultTranspose(contact->interfaces[b], fields->rows, fields->nodes[N_CARRIED * b + kind]));

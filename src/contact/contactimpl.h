@@ -45,6 +45,8 @@ struct _p_Contact {
   PetscInt     n_obstacles;
   Obstacle    *obstacles;
   ContactLaw   law;
+  PetscBool    prescribes;              /* the method prescribes displacements on Dirichlet sides */
+  PetscBool    facing;                  /* whole bodies come with the faces alone that see each other at the start */
   PetscReal    slip_bound, angle_bound; /* beyond which rows are built again: parts of a face, rad */
   PetscInt    *order;                   /* sweep order: Dirichlet sides before their Neumann sides */
   /* rows of this rank */
@@ -59,6 +61,7 @@ struct _p_Contact {
   PetscReal           *force, *gap;             /* at the end of the controller step */
   PetscReal           *saved_force, *saved_gap; /* at its start */
   PetscBool           *active, *saved_active;
+  PetscBool            fades;        /* forces of rows that are let go fall to zero over the controller step */
   BodyCondition       *conditions;   /* work space */
   PetscInt            *all_row_pair; /* of all rows, on every rank */
   int                 *mine_active, *all_active;
@@ -92,6 +95,7 @@ PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
+PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactOr(Contact, int *);

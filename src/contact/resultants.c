@@ -99,19 +99,23 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
 static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
 {
   const ContactPair *pair    = &contact->pairs[p];
-  PetscInt           counted = -1; /* node whose area has been counted last: it may have several rows, side by side */
+  PetscInt           counted = -1; /* node that has been counted last: a tied one has several rows, side by side */
+  TransferRows       rows;
 
   PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
   PetscCall(PetscArrayzero(sums, N_SUMS));
   maxima[MAX_PENETRATION] = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]     = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++) {
-    sums[SUM_FORCE] += contact->force[i];
+    const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+
+    sums[SUM_FORCE] += (contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1) * contact->force[i];
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->gap[i]);
     if (!contact->tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
-    if (!contact->active[i]) continue;
+    if (!contact->active[i] || contact->row_dof[i] == counted) continue;
     sums[SUM_ACTIVE] += 1;
-    if (contact->row_dof[i] != counted) sums[SUM_AREA] += contact->area[i] * contact->cross_section[p];
+    sums[SUM_AREA] += contact->area[i] * contact->cross_section[p];
     counted = contact->row_dof[i];
   }
   SumForces(contact, pair, sums + SUM_VECTOR);

@@ -5,6 +5,8 @@
 #define NO_GAP 1e30
 /* Rows whose bodies lie closer than this part of a face are tied */
 #define TIE_DISTANCE 0.5
+/* Directions along which a row moves less than this part of the displacement do not count */
+#define DIRECTION 1e-9
 
 /* All nodes of both surfaces: they may slide, and any of them may come to lie opposite to the partner */
 static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
@@ -71,7 +73,26 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the rows of a pair are, as its transfer has them now. Tied rows keep the bodies together as they are. */
+/* Whether row i asks for a displacement of its Dirichlet node that the user prescribes already */
+static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
+{
+  const PetscInt *dofs;
+  PetscInt        n;
+
+  PetscFunctionBegin;
+  *held = contact->prescribes;
+  PetscCall(BodyGetHeldDofs(contact->bodies[pair->body[0]], &n, &dofs));
+  for (PetscInt d = 0; d < contact->dim && *held; d++) {
+    PetscInt place;
+
+    if (PetscAbsReal(contact->row_normal[3 * i + d]) < DIRECTION) continue;
+    PetscCall(PetscFindInt(contact->row_dof[i] + d, n, dofs, &place));
+    if (place < 0) *held = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the rows of a pair are, as its transfer has them now. Tied rows keep the bodies together as they are; what is held already is not. */
 static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
 {
   const PetscInt dim = contact->dim;
@@ -86,6 +107,7 @@ static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
   for (PetscInt node = 0; node < rows.n; node++)
     for (PetscInt k = 0; k < pair->components; k++) {
       const PetscInt i = pair->begin + node * pair->components + k;
+      PetscBool      held;
 
       contact->row_dof[i]     = rows.dofs[node] - first;
       contact->opposite[i]    = rows.opposite[node];
@@ -98,7 +120,27 @@ static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
         contact->row_normal[3 * i + k] = 1;
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
+      PetscCall(IsHeld(contact, pair, i, &held));
+      if (!held) continue;
+      contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
+      contact->initial_gap[i]                 = NO_GAP;
     }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends with an error where nothing of the Dirichlet side can follow its partner, which might follow it */
+static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
+{
+  TransferRows rows;
+  int          any[2] = {0, 0};
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  for (PetscInt i = 0; i < rows.n; i++) any[0] |= rows.opposite[i];
+  for (PetscInt i = pair->begin; i < pair->end; i++) any[1] |= contact->opposite[i];
+  PetscCall(ContactOr(contact, &any[0]));
+  PetscCall(ContactOr(contact, &any[1]));
+  PetscCheck(!any[0] || any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they cannot follow the other side; name that body second, or prescribe less in -%s_boundary_displacement", pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,8 +189,23 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
     sums[3] += 1;
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, comm));
-  PetscCheck(sums[3] > 0 || pair->chosen, comm, PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
   for (PetscInt d = 0; d < 3; d++) pair->normal[d] = sums[3] > 0 ? sums[d] / sums[3] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Surfaces of a pair that the user wants must have faces that see each other, though they may lie beside each other at the start */
+static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
+{
+  const SurfaceData *data;
+  int                any[2] = {0, 1};
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    PetscCall(SurfaceGetData(pair->surfaces[side], &data));
+    any[side] = data->n_faces > 0;
+    PetscCall(ContactOr(contact, &any[side]));
+  }
+  PetscCheck(pair->chosen || (any[0] && any[1]), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,10 +226,11 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }
   PetscCheck(dims[0] == dims[1] && dims[0] == contact->dim, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT ", and another body has %" PetscInt_FMT, pair->name, dims[0], dims[1], contact->dim);
-  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)!pair->surface[0], (PetscBool)!pair->surface[1]));
+  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)(contact->facing && !pair->surface[0]), (PetscBool)(contact->facing && !pair->surface[1])));
+  PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->slip_bound, contact->angle_bound));
-  PetscCall(TransferUpdate(pair->transfer, NULL, NULL, PETSC_MAX_REAL, &rebuilt));
+  PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -206,7 +264,10 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   }
   PetscCall(CountRows(contact));
   PetscCall(AllocateRows(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(DescribeRows(contact, &contact->pairs[p]));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscCall(DescribeRows(contact, &contact->pairs[p]));
+    PetscCall(CheckHeld(contact, &contact->pairs[p]));
+  }
   PetscCall(FillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
   /* what a converged outer iteration leaves of the gap must not count as penetration in the next trial */
@@ -251,14 +312,36 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Surfaces further apart than this do not touch in the next controller step: twice the way that the fastest nodes of all bodies make towards each
+   other */
+static PetscErrorCode GetReach(Contact contact, PetscReal *near)
+{
+  PetscReal first = 0, second = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    Vec       velocity;
+    PetscReal speed;
+
+    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
+    PetscCall(VecNorm(velocity, NORM_INFINITY, &speed));
+    second = PetscMax(second, PetscMin(first, speed));
+    first  = PetscMax(first, speed);
+  }
+  *near = 2 * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Looks at the start of a controller step whether surfaces have slid or turned so far that their rows are to be built again, and does so. Rows in
    contact that have nothing opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
-  PetscBool any = PETSC_FALSE;
+  PetscReal near = 0;
+  PetscBool any  = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetReach(contact, &near));
   PetscCall(PetscArrayzero(contact->changed, contact->n_rows));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -266,7 +349,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     PetscBool    rebuilt;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
-    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], PETSC_MAX_REAL, &rebuilt));
+    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, &rebuilt));
     if (!rebuilt) continue;
     any = PETSC_TRUE;
     PetscCall(DescribeRows(contact, pair));

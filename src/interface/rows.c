@@ -239,12 +239,10 @@ static void CompareRows(PetscInt dim, PetscInt n, PetscBool first, const RowSet 
   }
 }
 
-/* How far behind its node a partner may be: as far as it was asked to look ahead; at any distance, as far as the bodies can overlap */
-static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscReal *behind)
+/* How far behind its node a partner may be: as far as the bodies can overlap */
+static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
 {
   PetscFunctionBegin;
-  *behind = near;
-  if (near < PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SurfaceComputeOverlap(transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind));
   if (transfer->dim > 1) *behind *= 2; /* gaps are along normals, which may be oblique to the shortest way out */
   if (transfer->built && transfer->dim > 1) *behind = PetscMax(*behind, transfer->smallest_size / 2);
@@ -260,7 +258,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   RowSet             set;
 
   PetscFunctionBegin;
-  PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, near, &behind));
+  PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, &behind));
   PetscCall(PetscMalloc1(dirichlet->n_nodes, &lumped));
   PetscCall(TransferIntegrate(transfer, near, behind, lumped, &n_shares, &shares));
   PetscCall(KeepShares(transfer, lumped, &n_shares, &shares));

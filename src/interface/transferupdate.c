@@ -1,6 +1,9 @@
 /* When the rows of a transfer are built again. */
 #include "interfaceimpl.h"
 
+/* Partners are known up to this number of face sizes beyond the closest one */
+#define FACES_AHEAD 4
+
 /* How far apart the positions at the last build and now are at most, and their sum: of the nodes that this rank owns */
 static void SumMotion(const SurfaceData *data, const PetscReal built[], PetscReal sums[])
 {
@@ -136,6 +139,31 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How far to look ahead: at least as far as is wanted, and as far as the boxes about both surfaces are apart and some faces more, so that what is
+   closest is known at all times; faces further away need not be sent to other ranks */
+static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *reach)
+{
+  const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
+  PetscReal          corners[13], square = 0; /* for each side the upper corner and the negative of the lower one; the largest face */
+
+  PetscFunctionBegin;
+  *reach = near;
+  if (near == PETSC_MAX_REAL || !data[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 13; k++) corners[k] = -PETSC_MAX_REAL;
+  for (PetscInt side = 0; side < 2; side++)
+    for (PetscInt i = 0; i < data[side]->n_owned; i++) {
+      for (PetscInt d = 0; d < 3; d++) {
+        corners[6 * side + d]     = PetscMax(corners[6 * side + d], data[side]->positions[3 * i + d]);
+        corners[6 * side + 3 + d] = PetscMax(corners[6 * side + 3 + d], -data[side]->positions[3 * i + d]);
+      }
+      corners[12] = PetscMax(corners[12], data[side]->sizes[i]);
+    }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, corners, 13, MPIU_REAL, MPIU_MAX, transfer->comm));
+  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(-corners[3 + d] - corners[6 + d], -corners[9 + d] - corners[d])));
+  *reach = PetscMax(near, PetscSqrtReal(square) + FACES_AHEAD * corners[12]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   TransferUpdate - moves both surfaces to where they are, and builds the rows again where that is needed
 
@@ -145,7 +173,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
 + transfer    - the `Transfer`
 . u_dirichlet - displacements of the body of the Dirichlet side; `NULL`: none
 . u_neumann   - of the Neumann side; `NULL`: none, or an obstacle
-- near        - partners further away than this are no partners; `PETSC_MAX_REAL`: at any distance [m]
+- near        - partners at least this close must be known; `PETSC_MAX_REAL`: at any distance [m]
 
   Output Parameter:
 . rebuilt - whether the rows have been built, which the first call always does
@@ -158,12 +186,15 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   opposite; and when `near` exceeds that of the last build. Between builds a normal stays as it was, and in a build
    rows near contact stay as they are that are within both bounds: each change of a row costs a little energy. In one dimension they are built once.
 
-  Partners are looked for ahead of a node, and behind it as far too; at any distance, as far as the two bodies can overlap at all.
+  A build looks ahead of a node as far as is wanted, and as far as the boxes about both surfaces are apart and four faces more; behind it, as far as
+  the two bodies can overlap at all.
 
 .seealso: `Transfer`, `TransferSetBounds()`, `TransferGetRows()`
 @*/
 PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscBool *rebuilt)
 {
+  PetscReal reach;
+
   PetscFunctionBegin;
   PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative", (double)near);
   PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
@@ -178,8 +209,9 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
     *rebuilt = (PetscBool)(moved || slipped);
   }
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
-  if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, near));
-  else PetscCall(TransferBuildObstacleRows(transfer, near));
-  PetscCall(Remember(transfer, near));
+  PetscCall(GetReach(transfer, near, &reach));
+  if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
+  else PetscCall(TransferBuildObstacleRows(transfer, reach));
+  PetscCall(Remember(transfer, reach));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* Writes displacement, velocity, stress and contact of all bodies, every so many controller steps. */
 #define _POSIX_C_SOURCE 200809L
+#include "freespace.h"
 #include "fields.h"
 #include "hdf5file.h"
 #include "outputfile.h"
@@ -7,8 +8,6 @@
 #include <petsctime.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/statvfs.h>
 
 /* Frames in a run that does not say how often */
 #define DEFAULT_FRAMES 100
@@ -56,22 +55,6 @@ static PetscErrorCode SetInterval(Fields fields, PetscInt steps, PetscInt interv
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room where `path` will be, with that of the file that is replaced; huge where the file system does not tell [bytes] */
-static double FreeSpace(const char path[])
-{
-  char           folder[PETSC_MAX_PATH_LEN];
-  char          *slash;
-  struct statvfs system;
-  struct stat    old;
-
-  snprintf(folder, sizeof(folder), "%s", path);
-  slash = strrchr(folder, '/');
-  if (slash) slash[1] = '\0';
-  else snprintf(folder, sizeof(folder), ".");
-  if (statvfs(folder, &system) || !system.f_blocks) return PETSC_MAX_REAL;
-  return (double)system.f_bavail * (double)system.f_frsize + (stat(path, &old) ? 0 : 512. * (double)old.st_blocks);
-}
-
 /* Refuses at once what would fill the disk in the end */
 static PetscErrorCode CheckSpace(Fields fields)
 {
@@ -79,7 +62,7 @@ static PetscErrorCode CheckSpace(Fields fields)
   double       space  = 0;
 
   PetscFunctionBegin;
-  if (fields->first_rank) space = FreeSpace(fields->path);
+  if (fields->first_rank) space = OutputFreeSpace(fields->path);
   PetscCallMPI(MPI_Bcast(&space, 1, MPI_DOUBLE, 0, fields->comm));
   PetscCheck(needed <= space, fields->comm, PETSC_ERR_USER_INPUT, "-output_fields %s will have %" PetscInt_FMT " frames, %.3g GB in all, and there is room for %.3g GB; write fewer of them with -output_fields_interval", fields->path, fields->n_frames, 1e-9 * needed, 1e-9 * space);
   PetscFunctionReturn(PETSC_SUCCESS);

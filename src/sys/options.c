@@ -9,12 +9,18 @@ typedef struct {
 
 static const KnownOption global_options[] = {
     {"bodies", "a,b", "names of the bodies; options of body a begin with -a_"},
-    {"contact_pairs", "a:b,b:c|none", "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces"},
+    {"contact_pairs", "a:b,b:c|auto|none", "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; auto: all with all"},
+    {"obstacles", "o,p", "names of rigid obstacles; options of obstacle o begin with -o_"},
+    {"contact_law", "frictionless|tied", "what surfaces do to each other, default frictionless"},
+    {"contact_facing", "true|false", "pairs of whole bodies keep only the faces that see each other at the start, default true; false where bodies roll or turn"},
+    {"contact_slip_bound", "s", "slip after which contact rows are built again, in parts of a face, default 0.2"},
+    {"contact_angle_bound", "a", "turn of a normal after which they are [rad], default 0.1"},
     {"contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method"},
     {"contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},
     {"contact_stabilization", "none|naive|contact_stabilized", "against chatter of contact nodes with mass, default none"},
-    {"contact_penalty", "tau", "penalty parameter [N/m in 1-D]"},
-    {"contact_penalty_damping", "c", "damping of the gap rate with penalty [N s/m in 1-D]"},
+    {"contact_penalty", "tau", "penalty parameter [N/m^3; N/m in 1-D], default from material and element size"},
+    {"contact_penalty_scale", "s", "of that default, relative to an element of each side in series; default 10 with massless contact nodes, else 1"},
+    {"contact_penalty_damping", "c", "damping of the gap rate with penalty [N s/m^3; N s/m in 1-D]"},
     {"contact_augmentation_tolerance", "g", "gap that the augmented Lagrangian leaves [m], default 1e-10"},
     {"contact_augmentation_max_it", "n", "limit of its rounds in a step, default 200"},
     {"contact_swap_sides", "true|false", "Schwarz: sides change with every controller step, default false"},
@@ -35,6 +41,7 @@ static const KnownOption global_options[] = {
     {"schwarz_predictor", "last|trial|extrapolate|inelastic", "where the first sweep of a step starts from, default inelastic"},
     {"schwarz_convergence", "auto|position|contact_position|mismatch", "what change of position is tested, default auto"},
     {"schwarz_condense", "0|1|auto", "whether sweeps run on the interface compliance of linear bodies, default auto: in two and three dimensions"},
+    {"schwarz_dense_limit", "n", "interface unknowns up to which its matrices are dense, conjugate gradients beyond, default 2000"},
     {"schwarz_recheck", "true|false", "let tensile nodes leave contact within the step, default true"},
     {"schwarz_unconverged", "error|accept", "what to do with a step that does not converge, default error"},
     {"penalty_snes_type", "newtonls|...", "outer iteration of the penalty method, default newtonls"},
@@ -56,12 +63,28 @@ static const KnownOption global_options[] = {
     {"options_file", "file", "more options from a file"},
 };
 
+static const KnownOption obstacle_options[] = {
+    {"obstacle_type", "plane|sphere|cylinder", "shape of the obstacle"},
+    {"point", "x,y,z", "point of the plane or of the axis, or the centre [m]"},
+    {"normal", "x,y,z", "of the plane, away from what is solid"},
+    {"axis", "x,y,z", "of the cylinder, default 0,0,1: a disc in 2-D"},
+    {"radius", "r", "of the sphere or cylinder [m]"},
+};
+
 static const KnownOption body_options[] = {
     {"dm_plex_dim", "1|2|3", "space dimension of the mesh"},
+    {"dm_plex_shape", "box|ball", "shape of the mesh, default box; ball: a disc in 2-D"},
     {"dm_plex_box_faces", "n[,n,n]", "elements along the axes of a box"},
     {"dm_plex_box_lower", "x[,y,z]", "its lower corner [m]"},
     {"dm_plex_box_upper", "x[,y,z]", "its upper corner [m]"},
-    {"dm_plex_simplex", "true|false", "box of triangles or tetrahedra, default false"},
+    {"dm_plex_simplex", "true|false", "box or ball of triangles or tetrahedra, default false"},
+    {"ball_radius", "r", "of a ball [m], default 1"},
+    {"ball_centre", "x,y[,z]", "its centre [m], default the origin"},
+    {"ball_divisions", "n", "elements along an edge of its central block, default 4; even for a half or quarter"},
+    {"ball_layers", "m", "elements from the central block to the surface, default n/2 rounded up"},
+    {"ball_pole", "x,y[,z]", "direction in which its elements are small, default 0,0,-1 (0,-1 in 2-D)"},
+    {"ball_grading", "g", "ratio of the largest to the smallest element, default 1"},
+    {"ball_part", "full|half|quarter", "all of it, x >= centre, or y >= centre too, default full; surfaces: surface, cut_x, cut_y"},
     {"dm_plex_filename", "file", "mesh from a file: Gmsh .msh, Exodus II .g .e .exo"},
     {"mesh_blocks", "a,b", "only these blocks of the file"},
     {"scale", "s", "factor on the coordinates of the mesh, default 1"},
@@ -120,30 +143,37 @@ static PetscInt EditDistance(const char a[], const char b[])
   return row[m];
 }
 
+/* The options of one table, each behind a prefix, if one is nearer than what there is */
+static PetscErrorCode FindNearestOf(const char name[], const char prefix[], size_t n, const KnownOption options[], PetscInt *best, char nearest[], size_t size)
+{
+  PetscFunctionBegin;
+  for (size_t i = 0; i < n; i++) {
+    char     full[128];
+    PetscInt distance;
+
+    PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s%s", prefix, prefix[0] ? "_" : "", options[i].name));
+    distance = EditDistance(name, full);
+    if (distance >= *best) continue;
+    *best = distance;
+    PetscCall(PetscStrncpy(nearest, full, size));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode FindNearest(const char name[], PetscInt n_bodies, const char *const bodies[], char nearest[], size_t size)
 {
-  PetscInt best = 1000;
+  char    *obstacles[64];
+  PetscInt best = 1000, n = 64;
 
   PetscFunctionBegin;
   nearest[0] = 0;
-  for (size_t i = 0; i < sizeof(global_options) / sizeof(global_options[0]); i++) {
-    const PetscInt distance = EditDistance(name, global_options[i].name);
-
-    if (distance >= best) continue;
-    best = distance;
-    PetscCall(PetscStrncpy(nearest, global_options[i].name, size));
+  PetscCall(FindNearestOf(name, "", PETSC_STATIC_ARRAY_LENGTH(global_options), global_options, &best, nearest, size));
+  for (PetscInt b = 0; b < n_bodies; b++) PetscCall(FindNearestOf(name, bodies[b], PETSC_STATIC_ARRAY_LENGTH(body_options), body_options, &best, nearest, size));
+  PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-obstacles", obstacles, &n, NULL));
+  for (PetscInt o = 0; o < n; o++) {
+    PetscCall(FindNearestOf(name, obstacles[o], PETSC_STATIC_ARRAY_LENGTH(obstacle_options), obstacle_options, &best, nearest, size));
+    PetscCall(PetscFree(obstacles[o]));
   }
-  for (PetscInt b = 0; b < n_bodies; b++)
-    for (size_t i = 0; i < sizeof(body_options) / sizeof(body_options[0]); i++) {
-      char     full[128];
-      PetscInt distance;
-
-      PetscCall(PetscSNPrintf(full, sizeof(full), "%s_%s", bodies[b], body_options[i].name));
-      distance = EditDistance(name, full);
-      if (distance >= best) continue;
-      best = distance;
-      PetscCall(PetscStrncpy(nearest, full, size));
-    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,6 +220,13 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode PrintTable(const char prefix[], size_t n, const KnownOption options[])
+{
+  PetscFunctionBegin;
+  for (size_t i = 0; i < n; i++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s%s %s\n      %s\n", prefix, options[i].name, options[i].value, options[i].text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ImpaktPrintOptions - prints a table of all options that Impakt has beside those of PETSc
 
@@ -203,7 +240,8 @@ PetscErrorCode ImpaktPrintOptions(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "Options of Impakt (PETSc's own options work too; -help lists those that apply)\n\n"));
-  for (size_t i = 0; i < sizeof(global_options) / sizeof(global_options[0]); i++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s %s\n      %s\n", global_options[i].name, global_options[i].value, global_options[i].text));
-  for (size_t i = 0; i < sizeof(body_options) / sizeof(body_options[0]); i++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -<body>_%s %s\n      %s\n", body_options[i].name, body_options[i].value, body_options[i].text));
+  PetscCall(PrintTable("", PETSC_STATIC_ARRAY_LENGTH(global_options), global_options));
+  PetscCall(PrintTable("<body>_", PETSC_STATIC_ARRAY_LENGTH(body_options), body_options));
+  PetscCall(PrintTable("<obstacle>_", PETSC_STATIC_ARRAY_LENGTH(obstacle_options), obstacle_options));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

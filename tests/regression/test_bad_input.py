@@ -48,7 +48,7 @@ CASES = {
     "pair-of-one": (f"{BASE} -contact_pairs left", ["-contact_pairs", "left"]),
     "pair-with-itself": (f"{BASE} -contact_pairs left:left", ["-contact_pairs", "itself"]),
     "three-without-pairs": ("-options_file options/three-bars.opts -contact_pairs", ["-contact_pairs"]),
-    "penalty-missing": ("-options_file options/bars-high-speed.opts -contact_type penalty", ["-contact_penalty"]),
+    "penalty-scale": ("-options_file options/bars-high-speed.opts -contact_type penalty -contact_penalty_scale -1", ["-contact_penalty_scale -1", "positive"]),
     "penalty-negative": (f"{PENALTY} -contact_penalty -1", ["-contact_penalty", "positive"]),
     "lagrange-substeps": ("-options_file options/impact-lagrange.opts -left_ts_time_step 1e-8", ["lagrange", "'left' (10 substeps)", "-left_mass_redistribute true"]),
     "lagrange-snes-type": (f"{BASE} -contact_type lagrange -lagrange_snes_type newtonls", ["-lagrange_snes_type", "vinewtonrsls", "vinewtonssls"]),

@@ -1,35 +1,145 @@
-"""Two bars of one element across meet head on: quadrilaterals and hexahedra give the figures of bars in one dimension.
+"""Two bars meet head on: of quadrilaterals or hexahedra they do what bars in one dimension do, whichever way they lie in space.
 
-Poisson's ratio is 0, the surfaces are named, and their nodes match. Other contact of solids is not tested yet.
+Poisson's ratio is 0, so that the solution is plane, and all methods find the same forces per area, whether the nodes across the bars match or not.
+The bars move as a pair, and meet after 0.18 of a controller step: nothing is so symmetric that the first sweep would have it right.
 """
 
+import h5py
+import numpy as np
 import pytest
+from test_solids_wave import rotation
 
 pytest_plugins = "shared_runs"
 
-TIMES = "-time_start -2e-4 -time_end 8e-4 -time_step 2e-6"
+WIDTH = 0.01  # of the square cross-section [m]
+ENDS = {"l": (-0.2700737, -0.0200737), "r": (0.02, 0.27)}  # a gap of 0.0400737 m, closed at 200 m/s: after 2.003685e-4 s, 0.18 of a step
+SPEEDS = {"l": 150, "r": -50}
+ELEMENTS = 25
+# per shape: dimension, axis and angle, elements across the left and the right bar
 SHAPES = {
-    "bar2": "-{b}_dm_plex_dim 1 -{b}_dm_plex_box_faces 25 -{b}_dm_plex_box_lower {low} -{b}_dm_plex_box_upper {high} -{b}_cross_section 1e-4 -{b}_initial_velocity {v}",
-    "quad4": "-{b}_dm_plex_dim 2 -{b}_dm_plex_box_faces 25,1 -{b}_dm_plex_box_lower {low},0 -{b}_dm_plex_box_upper {high},0.01 -{b}_thickness 0.01 -{b}_initial_velocity {v},0",
-    "hex8": "-{b}_dm_plex_dim 3 -{b}_dm_plex_box_faces 25,1,1 -{b}_dm_plex_box_lower {low},0,0 -{b}_dm_plex_box_upper {high},0.01,0.01 -{b}_initial_velocity {v},0,0",
+    "quad4": (2, (0, 0, 1), 0, 2, 2),
+    "quad4-turned": (2, (0, 0, 1), 33, 2, 3),
+    "quad4-over": (2, (0, 0, 1), -110, 2, 1),
+    "hex8": (3, (0, 0, 1), 0, 1, 1),
+    "hex8-turned": (3, (1, -2, 0.7), 71, 2, 1),
+    "hex8-over": (3, (-0.3, 0.2, 1), 203, 1, 2),
 }
-BODIES = (("l", -0.27, -0.02, 100), ("r", 0.02, 0.27, -100))
-INTEGRATORS = {"implicit": "", "explicit": "-l_ts_type centraldifference -r_ts_type centraldifference -l_mass_type lumped -r_mass_type lumped"}
+NORMAL = {shape: rotation(axis, degrees)[:dim, 0] for shape, (dim, axis, degrees, *_) in SHAPES.items()}
+TIMES = "-time_start -2e-4 -time_end 8e-4"
+EXPLICIT = "-{b}_ts_type centraldifference"
+LUMPED = "-l_mass_type lumped -r_mass_type lumped"
+AVERAGED = "-l_mass_type averaged -r_mass_type averaged"
+WITH_MASS = f"{LUMPED} -l_mass_redistribute false -r_mass_redistribute false"
+BOTH_EXPLICIT = f"{EXPLICIT.format(b='l')} {EXPLICIT.format(b='r')} {LUMPED}"
+PENALTY = 7.5e10  # per area [N/m^3]
+METHODS = {
+    "II": AVERAGED,
+    "IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED}",
+    "EI": f"{EXPLICIT.format(b='l')} -l_ts_time_step 2e-7 {LUMPED}",
+    "EE": f"{BOTH_EXPLICIT} -l_ts_time_step 1e-6 -r_ts_time_step 5e-7",
+    "whole-bodies": f"{AVERAGED} -schwarz_condense 0",
+    "whole-bodies-IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED} -schwarz_condense 0",
+    "anderson": f"{AVERAGED} -schwarz_snes_type anderson",
+    "nrichardson": f"{AVERAGED} -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5",
+    "paper": f"{WITH_MASS} -schwarz_snes_type nrichardson",
+    "penalty": f"{AVERAGED} -contact_type penalty -contact_penalty {{penalty}}",
+    "penalty-explicit": f"{BOTH_EXPLICIT} -contact_type penalty -contact_penalty {{penalty}}",
+    "augmented-lagrangian": f"{AVERAGED} -contact_type augmented_lagrangian -contact_penalty {{penalty}}",
+    "lagrange": f"{AVERAGED} -contact_type lagrange",
+    "lagrange-explicit": f"{WITH_MASS} {BOTH_EXPLICIT} -contact_type lagrange",
+}
+CASES = [(shape, method) for shape in SHAPES for method in METHODS if "over" not in shape or method in ("II", "EE", "penalty")]
 
 
-def options(shape, more):
-    bodies = [SHAPES[shape].format(b=b, low=low, high=high, v=v) + f" -{b}_density 1000 -{b}_youngs_modulus 1e9" for b, low, high, v in BODIES]
-    return " ".join(["-bodies l,r -contact_pairs l.xmax:r.xmin", TIMES, *bodies, more])
+def bar(b):
+    low, high = ENDS[b]
+    return f"-{b}_dm_plex_dim 1 -{b}_dm_plex_box_faces {ELEMENTS} -{b}_dm_plex_box_lower {low} -{b}_dm_plex_box_upper {high} -{b}_cross_section {WIDTH**2} -{b}_initial_velocity {SPEEDS[b]}"
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
-@pytest.mark.parametrize("shape", ["quad4", "hex8"])
-def test_impact(shape, integrator, shared_run):
-    """To 1e-9: the outer iteration stops at 1e-12 m, of displacements of 1e-2 m."""
-    bars, solids = (shared_run(options(each, INTEGRATORS[integrator])).summary for each in ("bar2", shape))
-    for name in ("release_time", "onsets", "force_mean", "impulse"):
-        assert solids["contact"][name] == pytest.approx(bars["contact"][name], rel=1e-9), name
-    assert bars["contact"]["onsets"] == 1 and bars["contact"]["impulse"] == pytest.approx(5, rel=0.02)  # rho A c v over two passages; 25 elements lose 1.1 %
-    for name in ("kinetic", "potential", "peak_potential"):
-        assert solids["bodies"]["l"][name] == pytest.approx(bars["bodies"]["l"][name], rel=1e-7), name
-    assert solids["system"]["momentum_error_max"] <= 1e-10
+def solid(b, shape):
+    dim, axis, degrees, *across = SHAPES[shape]
+    low, high = ENDS[b]
+    n = across["lr".index(b)]
+    words = [f"-{b}_dm_plex_dim {dim} -{b}_dm_plex_box_faces {','.join([str(ELEMENTS)] + [str(n)] * (dim - 1))}"]
+    words.append(f"-{b}_dm_plex_box_lower {low}{',0' * (dim - 1)} -{b}_dm_plex_box_upper {high}{f',{WIDTH}' * (dim - 1)}")
+    words.append(f"-{b}_rotate {degrees if dim == 2 else ','.join(map(str, (*axis, degrees)))} -{b}_initial_velocity {','.join(f'{SPEEDS[b] * c:.17g}' for c in NORMAL[shape])}")
+    if dim == 2:
+        words.append(f"-{b}_thickness {WIDTH}")
+    return " ".join(words)
+
+
+def options(shape, more, pairs=None):
+    bodies = [(solid(b, shape) if shape in SHAPES else bar(b)) + f" -{b}_density 1000 -{b}_youngs_modulus 1e9" for b in "lr"]
+    pairs = pairs or ("l.xmax:r.xmin" if shape in SHAPES else "l:r")
+    return " ".join(["-bodies l,r -contact_pairs", pairs, TIMES, *bodies, "-time_step 2e-6", more.format(penalty=PENALTY * (1 if shape in SHAPES else WIDTH**2))])
+
+
+def figures(run, shape):
+    """Over time: forces, energies, and what lies along the bars."""
+    normal = NORMAL.get(shape, np.ones(1))
+    history = run.history
+    pair = next(iter(history["contact"].values()))
+    found = {"force": pair["force"][()], "area": pair["area"][()], "touching": (pair["active"][()] > 0).astype(float)}
+    for b in "lr":
+        body = history[f"body/{b}"]
+        found |= {f"{name} {b}": body[name][()] for name in ("kinetic", "potential")}
+        for name in ("contact_velocity", "mean_velocity", "momentum"):
+            found[f"{name} {b}"] = body[name][()].reshape(len(found["force"]), -1)[:, : len(normal)] @ normal
+    return found
+
+
+def compare(one, other, within):
+    for name, expected in one.items():
+        scale = np.abs(expected).max()
+        assert scale > 0
+        np.testing.assert_allclose(other[name], expected, rtol=0, atol=within * scale, err_msg=name)
+
+
+@pytest.mark.parametrize(("shape", "method"), CASES)
+def test_impact(shape, method, shared_run):
+    """At every step. The issue wants 1e-6; measured: 5e-13 to 2e-11, as the outer iteration stops at 1e-12 m of displacements of 1e-2 m, and with the
+    paper's method, which chatters, 1e-11. The figures themselves are tested in one dimension, and here for what they must be in a rough way:
+    rho A c v = 1e4 N, over two passages of 2.5e-4 s."""
+    bars = shared_run(options("bar2", METHODS[method]))
+    run = shared_run(options(shape, METHODS[method]))
+    compare(figures(bars, "bar2"), figures(run, shape), 1e-9)
+    assert run.summary["contact"]["onsets"] == bars.summary["contact"]["onsets"]
+    assert run.summary["contact"]["force_mean"] == pytest.approx(1e4, rel=0.01)
+    assert run.summary["contact"]["impulse"] == pytest.approx(5, rel=0.03)  # 25 elements with lumped mass lose 2.1 %
+    if "ts_time_step" not in METHODS[method] and method != "paper":  # the force with which contact ends is not one and the same over substeps
+        assert run.summary["system"]["momentum_error_max"] <= 1e-10
+
+
+@pytest.mark.parametrize("shape", ["quad4-turned", "hex8-turned"])
+@pytest.mark.parametrize("method", ["II", "IE", "EI", "EE", "anderson"])
+def test_condensed(shape, method, shared_run):
+    """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: the issue wants 1e-10."""
+    runs = [shared_run(options(shape, f"{METHODS[method]} -schwarz_condense {condense}")) for condense in (0, 1)]
+    compare(*(figures(run, shape) for run in runs), 1e-10)
+    np.testing.assert_array_equal(*(run.history["schwarz/iterations"][()] for run in runs))
+
+
+@pytest.mark.parametrize("shape", list(SHAPES))
+@pytest.mark.parametrize("pairs", ["auto", "l:r"])
+def test_surfaces_not_named(shape, pairs, shared_run):
+    """Of all the surface of the bars only the ends that face each other have gaps, and the figures are the same."""
+    named = shared_run(options(shape, METHODS["II"]))
+    run = shared_run(options(shape, f"{METHODS['II']} -output_fields fields.h5 -output_fields_precision double -output_fields_interval 125", pairs))
+    compare(figures(named, shape), figures(run, shape), 1e-9)
+    dim, _, _, left, right = SHAPES[shape]
+    rows = (max(left, right) if pairs == "auto" else left) + 1  # auto: of the finer side
+    assert f" {rows ** (dim - 1)} contact nodes" in run.stdout
+    with h5py.File(run.folder / "fields.h5") as fields:
+        along = fields["mesh/positions"][()][:, :dim] @ NORMAL[shape]
+        ends = np.isclose(along, ENDS["l"][1], rtol=0, atol=1e-9) | np.isclose(along, ENDS["r"][0], rtol=0, atol=1e-9)
+        gaps = [fields["contact_gap"][frame][()] for frame in sorted(fields["contact_gap"])]
+    assert len(gaps) == 5
+    np.testing.assert_allclose(gaps[0][ends], ENDS["r"][0] - ENDS["l"][1], rtol=1e-12)
+    for gap in gaps:
+        np.testing.assert_array_equal(np.isfinite(gap), ends)
+
+
+@pytest.mark.parametrize("ranks", [2, 3, 4])
+@pytest.mark.parametrize("method", ["II", "IE", "penalty", "lagrange-explicit"])
+def test_ranks(method, ranks, shared_run):
+    compare(*(figures(shared_run(options("hex8-turned", METHODS[method]), n), "hex8-turned") for n in (1, ranks)), 1e-9)

@@ -66,6 +66,21 @@ static void first_explicit_step(void **state)
   near(Step(simulation).force, PENALTY * (2 * COLLISION_SPEED * COLLISION_STEP - COLLISION_GAP), 1e-12);
 }
 
+/* Without -contact_penalty: as many times the stiffness of an element on each side, E A / h, one behind the other */
+static void springs_from_elements(void **state)
+{
+  Simulation      *simulation = (Simulation *)*state;
+  const PetscReal  length = 1 - COLLISION_GAP / 2, stiffness = 3 / (length / 8 + length / 10); /* 3 times, with E A = 1 N */
+  ContactPairState pair;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type penalty -contact_penalty_scale 3");
+  SimulationRepeat(simulation, integrators[0]);
+  pair = Step(simulation);
+  assert_true(pair.gap < 0);
+  near(pair.force, -stiffness * pair.gap, 1e-9 * pair.force); /* -penalty_snes_rtol */
+}
+
 /* The springs hold nothing before and after contact */
 static void energy_of_the_springs(void **state)
 {
@@ -93,9 +108,10 @@ static void wrong_options_are_refused(void **state)
   Simulation *simulation = (Simulation *)*state;
 
   AddCollision(8, 10, 0);
-  AddOptions("-contact_type penalty");
-  refused(PETSC_ERR_USER_INPUT, "-contact_penalty|N/m", SimulationCreate(simulation));
+  AddOptions("-contact_type penalty -contact_penalty_scale 0");
+  refused(PETSC_ERR_USER_INPUT, "-contact_penalty_scale 0|positive", SimulationCreate(simulation));
   ok(ControllerDestroy(&simulation->controller));
+  ok(PetscOptionsClearValue(NULL, "-contact_penalty_scale"));
   AddOptions("-contact_penalty -5");
   refused(PETSC_ERR_USER_INPUT, "-contact_penalty -5|positive", SimulationCreate(simulation));
 }
@@ -116,6 +132,7 @@ int main(int argc, char **argv)
       simulation_test(springs_with_massless_layers),
       simulation_test(springs_with_mass_on_the_surface),
       simulation_test(first_explicit_step),
+      simulation_test(springs_from_elements),
       simulation_test(energy_of_the_springs),
       simulation_test(wrong_options_are_refused),
       simulation_test(unconverged_steps_are_refused),

@@ -49,7 +49,7 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
   PetscReal mismatch, time;
 
   PetscFunctionBegin;
-  PetscCall(ForcesBeginStep(contact, penalty->held, &in_contact));
+  PetscCall(ForcesBeginStep(contact, &penalty->forces, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(contact->force, contact->saved_force, contact->n_rows));
   for (PetscInt k = 0; k < penalty->augmentation_max_it; k++) {
@@ -67,7 +67,8 @@ static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscView
   const Penalty *penalty = (const Penalty *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g, augmented until the gap is within %g m\n", (double)penalty->penalty, (double)penalty->augmentation_tolerance));
+  PetscCall(PenaltyViewParameter(contact, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until the gap is within %g m\n", (double)penalty->augmentation_tolerance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,7 +76,7 @@ static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscView
    CONTACT_AUGMENTED_LAGRANGIAN - the penalty method, with forces that add up from round to round until the gap is closed
 
    Options Database Keys:
-+  -contact_penalty tau                                         - penalty parameter [N/m in one dimension], required
++  -contact_penalty tau, -contact_penalty_scale s               - penalty parameter, as with `CONTACT_PENALTY`
 .  -contact_augmentation_tolerance g                            - gap that is left [m], 1e-10
 .  -contact_augmentation_max_it n                               - limit of rounds in a step, 200
 -  -penalty_snes_type, -penalty_snes_rtol, ...                  - the iteration in each round, as with `CONTACT_PENALTY`
@@ -103,6 +104,7 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   contact->ops->setfromoptions    = ContactSetFromOptions_AugmentedLagrangian;
   contact->ops->setup             = ContactSetUp_AugmentedLagrangian;
   contact->ops->step              = ContactStep_AugmentedLagrangian;
+  contact->ops->rowschanged       = PenaltyRowsChanged;
   contact->ops->view              = ContactView_AugmentedLagrangian;
   contact->ops->destroy           = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -15,10 +15,9 @@
 typedef struct {
   OuterSolver  outer;
   PetscReal    atol, rtol; /* on the gap [m], and relative to the displacement of the contact nodes */
-  Trace        force;      /* of all rows over the controller step */
+  Forces       forces;
   PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
   PetscBool    have_jacobian, scaled_in_place;
-  PetscBool   *held;  /* rows whose gap rate matters in this step */
   PetscReal    scale; /* of the forces at the end of the step, as the integrator takes them */
   /* for the rate beside the gap, and for the contact-stabilised prediction */
   Complementarity impulses;
@@ -61,9 +60,9 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionBegin;
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(ForcesIntegrate(contact, lagrange->force, x, lagrange->scale));
+  PetscCall(ForcesIntegrate(contact, &lagrange->forces, x, lagrange->scale));
   PetscCall(VecGetArrayWrite(F, &f));
-  for (PetscInt i = 0; i < contact->n_rows; i++) f[i] = contact->gap[i] - (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->held[i] ? contact->saved_gap[i] : 0);
+  for (PetscInt i = 0; i < contact->n_rows; i++) f[i] = contact->gap[i] - (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->forces.held[i] ? contact->saved_gap[i] : 0);
   PetscCall(MeasureMismatch(contact, x, f));
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -172,7 +171,7 @@ static PetscErrorCode TakeForces(Contact contact)
   }
   PetscCall(VecRestoreArrayRead(lagrange->outer.x, &force));
   PetscCall(ContactOr(contact, &pulls));
-  if (pulls) PetscCall(ForcesIntegrate(contact, lagrange->force, contact->force, lagrange->scale));
+  if (pulls) PetscCall(ForcesIntegrate(contact, &lagrange->forces, contact->force, lagrange->scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,7 +182,7 @@ static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
   PetscScalar      *x;
 
   PetscFunctionBegin;
-  PetscCall(ForcesBeginStep(contact, lagrange->held, &in_contact));
+  PetscCall(ForcesBeginStep(contact, &lagrange->forces, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   if (lagrange->stabilized) PetscCall(LagrangeProjectPrediction(contact, lagrange->step, &lagrange->impulses));
   PetscCall(VecGetArrayWrite(lagrange->outer.x, &x));
@@ -194,7 +193,7 @@ static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
     PetscCall(CheckConverged(contact));
     PetscCall(TakeForces(contact));
     changed = PETSC_FALSE;
-    if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) PetscCall(ForcesHold(contact, contact->force, lagrange->held, &changed));
+    if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) PetscCall(ForcesHold(contact, &lagrange->forces, contact->force, &changed));
   }
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->force[i] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -212,8 +211,7 @@ static PetscErrorCode ContactAccept_ImplicitLagrange(Contact contact)
   if (!lagrange->stabilized) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComplementarityGather(contact, contact->force, &lagrange->impulses));
-  for (PetscInt i = 0; i < contact->n_all_rows; i++) lagrange->impulses.forces[i] = -lagrange->scale * lagrange->impulses.gaps[i];
+  for (PetscInt i = 0; i < contact->n_rows; i++) lagrange->impulses.forces[i] = -lagrange->scale * contact->force[i];
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->impulses, lagrange->impulses.mine));
     PetscCall(BodyAddAcceleration(contact->bodies[b], lagrange->impulses.mine));
@@ -238,9 +236,9 @@ static PetscErrorCode ContactDestroy_ImplicitLagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(OuterSolverDestroy(&lagrange->outer));
-  PetscCall(TraceDestroy(&lagrange->force));
+  PetscCall(ForcesDestroy(&lagrange->forces));
   if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementarityDestroy(&lagrange->impulses));
-  PetscCall(PetscFree2(lagrange->compliance, lagrange->held));
+  PetscCall(PetscFree(lagrange->compliance));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -276,29 +274,52 @@ static PetscErrorCode SetUpStabilized(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ComputeCompliance(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(ForcesComputeCompliance(contact, lagrange->compliance));
+  for (PetscInt i = 0; i < contact->n_all_rows * contact->n_all_rows; i++) lagrange->compliance[i] *= lagrange->scale;
+  lagrange->have_jacobian = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(ComputeCompliance(contact));
+  if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode LagrangeSetUpImplicit(Contact contact)
 {
   ImplicitLagrange *lagrange;
 
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, "lagrange"));
+  PetscCall(ForcesCheckDense(contact, "lagrange"));
+  PetscCheck(contact->law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
   PetscCall(PetscNew(&lagrange));
-  contact->data         = lagrange;
-  contact->ops->step    = ContactStep_ImplicitLagrange;
-  contact->ops->view    = ContactView_ImplicitLagrange;
-  contact->ops->destroy = ContactDestroy_ImplicitLagrange;
-  lagrange->scale       = 1;
+  contact->data             = lagrange;
+  contact->ops->step        = ContactStep_ImplicitLagrange;
+  contact->ops->view        = ContactView_ImplicitLagrange;
+  contact->ops->rowschanged = ContactRowsChanged_ImplicitLagrange;
+  contact->ops->destroy     = ContactDestroy_ImplicitLagrange;
+  lagrange->scale           = 1;
   PetscCall(ForcesGetStep(contact, &lagrange->step));
-  PetscCall(TraceCreate(contact->n_rows, 1, &lagrange->force));
-  PetscCall(PetscCalloc2(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance, contact->n_rows, &lagrange->held));
+  PetscCall(ForcesCreate(contact, &lagrange->forces));
+  PetscCall(PetscCalloc1(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance));
   if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(SetUpStabilized(contact));
   if (contact->constraint == CONTACT_CONSTRAINT_BOTH) {
     PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
     lagrange->close_rate = PETSC_TRUE;
   } else if (lagrange->stabilized) PetscCall(LagrangeSetUpImpulses(contact, "-contact_stabilization contact_stabilized", &lagrange->impulses));
   if (lagrange->close_rate || lagrange->stabilized) contact->ops->accept = ContactAccept_ImplicitLagrange;
-  PetscCall(ForcesComputeCompliance(contact, lagrange->compliance));
-  for (PetscInt i = 0; i < contact->n_all_rows * contact->n_all_rows; i++) lagrange->compliance[i] *= lagrange->scale;
+  PetscCall(ComputeCompliance(contact));
   PetscCall(SetUpOuter(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,20 +6,16 @@ PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Compl
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const Body *sides[2] = {&contact->bodies[contact->pairs[p].body[0]], &contact->bodies[contact->pairs[p].body[1]]};
-    PetscBool   massless[2];
+    const ContactPair *pair  = &contact->pairs[p];
+    const Body         first = contact->bodies[pair->body[0]], second = contact->bodies[pair->obstacle ? pair->body[0] : pair->body[1]];
+    PetscBool          massless[2];
 
-    for (PetscInt side = 0; side < 2; side++) PetscCall(BodyIsRedistributed(*sides[side], &massless[side]));
-    PetscCheck(!massless[0] || !massless[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "%s changes velocities through the mass of the contact nodes, and those of '%s' and '%s' have none: their velocity is the change of position over the step, so that a closed gap that stays closed has no rate already. Leave the option out, or set -%s_mass_redistribute false", option, ((PetscObject)*sides[0])->name, ((PetscObject)*sides[1])->name, ((PetscObject)*sides[0])->name);
+    PetscCall(BodyIsRedistributed(first, &massless[0]));
+    PetscCall(BodyIsRedistributed(second, &massless[1]));
+    PetscCheck(!massless[0] || !massless[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "%s changes velocities through the mass of the contact nodes, and those of '%s' and '%s' have none: their velocity is the change of position over the step, so that a closed gap that stays closed has no rate already. Leave the option out, or set -%s_mass_redistribute false", option, ((PetscObject)first)->name, ((PetscObject)second)->name, ((PetscObject)first)->name);
   }
   PetscCall(ComplementarityCreate(contact, impulses));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscScalar *inverse;
-
-    PetscCall(BodyComputeInverseMass(contact->bodies[b], &inverse));
-    PetscCall(ContactAddCompliance(contact, b, inverse, impulses->compliance));
-    PetscCall(PetscFree(inverse));
-  }
+  PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -52,10 +48,8 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
   PetscFunctionBegin;
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetRates(contact, PETSC_TRUE, impulses->mine));
-  PetscCall(ComplementarityGather(contact, impulses->mine, impulses));
-  PetscCall(ContactGatherActive(contact));
-  for (PetscInt i = 0; i < contact->n_all_rows; i++) impulses->active[i] = (PetscBool)(contact->all_active[i] > 0 && (!pushing_only || impulses->gaps[i] < 0));
+  PetscCall(GetRates(contact, PETSC_TRUE, impulses->gaps));
+  for (PetscInt i = 0; i < contact->n_rows; i++) impulses->active[i] = (PetscBool)(contact->active[i] && (contact->tied[i] || !pushing_only || impulses->gaps[i] < 0));
   PetscCall(ComplementaritySolveActive(contact, impulses));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
@@ -71,14 +65,13 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   int any = 0;
 
   PetscFunctionBegin;
-  PetscCall(GetRates(contact, PETSC_FALSE, impulses->mine));
+  PetscCall(GetRates(contact, PETSC_FALSE, impulses->gaps));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    impulses->mine[i] = contact->saved_gap[i] + step * impulses->mine[i];
-    any |= impulses->mine[i] < 0;
+    impulses->gaps[i] = contact->saved_gap[i] + step * impulses->gaps[i];
+    any |= impulses->gaps[i] < 0;
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComplementarityGather(contact, impulses->mine, impulses));
   PetscCall(ComplementaritySolve(contact, contact->tolerance, impulses));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));

@@ -5,28 +5,14 @@
 
    with a spring tau, a damper c, or both; the multiplier is zero but for the augmented Lagrangian. During the step the force goes
    linearly from its last value to this one. The outer SNES solves F(lambda) = lambda - <...> = 0 with both bodies under forces; its
-   Jacobian is I + (tau + c / dt) A W on the rows that push, with the interface compliance W of all bodies.
+   Jacobian is I + (tau + c / dt) A S on the rows that push, with the interface compliance S of all bodies (forceproblem.c). Tied rows are held
+   by springs that pull as well.
 
    With explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: the second
    evaluation, which finds this out, only adds the change of force to the end state.
 */
 #include "penaltyimpl.h"
 #include <sys/petsccompat.h>
-
-/* -contact_penalty, which springs need */
-PetscErrorCode PenaltyReadParameter(Contact contact)
-{
-  Penalty  *penalty = (Penalty *)contact->data;
-  PetscBool set;
-
-  PetscFunctionBegin;
-  PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "", penalty->penalty, &penalty->penalty, &set));
-  PetscOptionsEnd();
-  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_type %s needs -contact_penalty, in N/m in one dimension", ((PetscObject)contact)->type_name);
-  PetscCheck(penalty->penalty > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive", (double)penalty->penalty);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
 {
@@ -48,11 +34,11 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
 static PetscReal WantedForce(Contact contact, PetscInt i)
 {
   const Penalty  *penalty = (const Penalty *)contact->data;
-  const PetscReal spring  = penalty->multiplier[i] - penalty->penalty * contact->area[i] * contact->gap[i];
+  const PetscReal spring  = penalty->multiplier[i] - penalty->spring[i] * contact->gap[i];
 
   if (contact->constraint == CONTACT_CONSTRAINT_GAP) return spring;
-  if (!penalty->held[i]) return 0;
-  return spring - penalty->damping * contact->area[i] * (contact->gap[i] - contact->saved_gap[i]) / penalty->step;
+  if (!penalty->forces.held[i]) return 0;
+  return spring - penalty->damper[i] * (contact->gap[i] - contact->saved_gap[i]) / penalty->step;
 }
 
 /* What springs and dampers make of the round-off in gap i, a sum of three lengths that were rounded themselves: no iteration
@@ -63,7 +49,8 @@ static PetscReal RoundOff(Contact contact, PetscInt i)
   const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
   const PetscScalar *start   = penalty->start[pair->body[0]]; /* displacements */
 
-  return 4 * PETSC_MACHINE_EPSILON * (penalty->penalty + penalty->damping / penalty->step) * contact->area[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->initial_gap[i]));
+  if (!penalty->pushing[i]) return 0;
+  return 4 * PETSC_MACHINE_EPSILON * penalty->stiffness[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->initial_gap[i]));
 }
 
 /* Advances all bodies under the forces x, and compares these with what springs and dampers ask for */
@@ -78,13 +65,13 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionBegin;
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(ForcesIntegrate(contact, penalty->force, x, 1));
+  PetscCall(ForcesIntegrate(contact, &penalty->forces, x, 1));
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
     const PetscReal wanted = WantedForce(contact, i);
 
-    penalty->pushing[i] = (PetscBool)(wanted > 0);
-    f[i]                = x[i] - (wanted > 0 || PetscIsInfOrNanReal(wanted) ? wanted : 0);
+    penalty->pushing[i] = (PetscBool)(contact->tied[i] || wanted > 0);
+    f[i]                = x[i] - (penalty->pushing[i] || PetscIsInfOrNanReal(wanted) ? wanted : 0);
     sums[0] += PetscSqr(f[i]);
     sums[1] += PetscSqr(x[i]);
     sums[2] += PetscSqr(RoundOff(contact, i));
@@ -98,33 +85,27 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nothing to assemble: the step is that of the force problem */
 static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 {
-  Contact         contact   = (Contact)ctx;
-  Penalty        *penalty   = (Penalty *)contact->data;
-  const PetscReal stiffness = penalty->penalty + penalty->damping / penalty->step;
-  int             differs   = 0;
+  Contact  contact = (Contact)ctx;
+  Penalty *penalty = (Penalty *)contact->data;
 
   PetscFunctionBegin;
   (void)snes;
-  (void)X;
+  (void)J;
   (void)P;
-  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= penalty->jacobian_pushing[i] != penalty->pushing[i];
-  PetscCall(ContactOr(contact, &differs));
-  if (penalty->have_jacobian && !differs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(penalty->jacobian_pushing, penalty->pushing, contact->n_rows));
-  penalty->have_jacobian = PETSC_TRUE;
-  for (PetscInt local = 0; local < contact->n_rows; local++) {
-    const PetscInt i = contact->row_begin + local;
+  PetscCall(ForceProblemUpdate(contact, &penalty->problem, penalty->pushing, X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    for (PetscInt j = 0; j < contact->n_all_rows; j++) {
-      const PetscScalar value = (i == j ? 1 : 0) + (penalty->pushing[local] ? stiffness * contact->area[local] * penalty->compliance[j * contact->n_all_rows + i] : 0);
+static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
+{
+  Contact contact;
 
-      PetscCall(MatSetValue(J, i, j, value, INSERT_VALUES));
-    }
-  }
-  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  PetscFunctionBegin;
+  PetscCall(PCShellGetContext(pc, &contact));
+  PetscCall(ForceProblemSolve(contact, &((Penalty *)contact->data)->problem, F, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,72 +124,56 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement after a step for a force at its start, of the explicit nodes with mass, the largest over all rows [m/N]: over a
-   substep, and over the controller step as if it were one */
-static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
+/* Newton's step by the force problem, in place of a matrix and its factors */
+static PetscErrorCode SetUpNewton(Contact contact)
 {
-  PetscReal *compliance[2];
+  OuterSolver *outer = &((Penalty *)contact->data)->outer;
+  Mat          shell;
+  KSP          ksp;
+  PC           pc;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(contact->n_rows, &compliance[0], contact->n_rows, &compliance[1]));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool    is_explicit, massless;
-    PetscInt     substeps;
-    PetscScalar *forward;
-
-    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
-    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    if (!is_explicit || massless) continue;
-    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    PetscCall(BodyComputeForwardCompliance(contact->bodies[b], &forward));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const PetscReal value = forward[(contact->row_begin + i) * (contact->n_all_rows + 1)];
-
-      compliance[0][i] += value;
-      compliance[1][i] += substeps * substeps * value;
-    }
-    PetscCall(PetscFree(forward));
-  }
-  worst[0] = worst[1] = 0;
-  for (PetscInt k = 0; k < 2; k++)
-    for (PetscInt i = 0; i < contact->n_rows; i++) worst[k] = PetscMax(worst[k], compliance[k][i] * contact->area[i]);
-  PetscCall(PetscFree2(compliance[0], compliance[1]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Spring and damper alone, between the masses of explicit bodies, must be stable: tau C + 2 c C / dt < 4, C = A dt^2 B M^{-1} B^T */
-static PetscErrorCode CheckStability(Contact contact)
-{
-  Penalty  *penalty = (Penalty *)contact->data;
-  MPI_Comm  comm    = PetscObjectComm((PetscObject)contact);
-  PetscReal worst[2], spring, damper;
-
-  PetscFunctionBegin;
-  PetscCall(GetForwardCompliance(contact, worst));
-  spring = penalty->penalty * worst[0];
-  damper = 2 * penalty->damping * worst[1] / penalty->step;
-  PetscCheck(spring < 4, comm, PETSC_ERR_USER_INPUT, "-contact_penalty %g is too stiff for the explicit steps: above %.4g the contact springs are unstable; choose a smaller one, or smaller time steps", (double)penalty->penalty, (double)(4 / worst[0]));
-  PetscCheck(spring + damper < 4, comm, PETSC_ERR_USER_INPUT, "-contact_penalty_damping %g is too much for the explicit steps: above %.4g the contact dampers are unstable; choose a smaller one, or smaller time steps", (double)penalty->damping, (double)((4 - spring) * penalty->step / (2 * worst[1])));
+  PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, contact, &shell));
+  PetscCall(SNESSetJacobian(outer->snes, shell, shell, ComputeJacobian, contact));
+  PetscCall(SNESGetKSP(outer->snes, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, contact));
+  PetscCall(PCShellSetApply(pc, ApplyNewton));
+  PetscCall(PCShellSetName(pc, "interface compliance of the bodies"));
+  PetscCall(MatDestroy(&shell));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode PenaltySetUp(Contact contact)
 {
-  Penalty *penalty = (Penalty *)contact->data;
+  Penalty       *penalty = (Penalty *)contact->data;
+  const PetscInt n       = contact->n_rows;
 
   PetscFunctionBegin;
   PetscCall(ForcesGetStep(contact, &penalty->step));
-  PetscCall(CheckStability(contact));
-  PetscCall(OuterSolverCreate(contact, "penalty_", contact->n_rows, ComputeResidual, ComputeJacobian, &penalty->outer));
+  PetscCall(PetscCalloc5(n, &penalty->multiplier, n, &penalty->pushing, n, &penalty->spring, n, &penalty->damper, n, &penalty->stiffness));
+  PetscCall(PenaltySetUpSprings(contact));
+  PetscCall(OuterSolverCreate(contact, "penalty_", n, ComputeResidual, ComputeJacobian, &penalty->outer));
+  PetscCall(SetUpNewton(contact));
   PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, 1e-14, 1e-9, 50));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
-  PetscCall(TraceCreate(contact->n_rows, 1, &penalty->force));
-  PetscCall(PetscCalloc5(contact->n_rows, &penalty->multiplier, contact->n_rows, &penalty->held, contact->n_rows, &penalty->pushing, contact->n_rows, &penalty->jacobian_pushing, contact->n_all_rows * contact->n_all_rows, &penalty->compliance));
+  PetscCall(ForcesCreate(contact, &penalty->forces));
   PetscCall(PetscMalloc1(contact->n_bodies, &penalty->start));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(TraceGetLevel(contact->traces[b].displacement, 0, &penalty->start[b]));
-  PetscCall(ForcesComputeCompliance(contact, penalty->compliance));
+  PetscCall(ForceProblemCreate(contact, penalty->stiffness, &penalty->problem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Other areas, other springs, and a compliance that bodies have forgotten */
+PetscErrorCode PenaltyRowsChanged(Contact contact)
+{
+  Penalty *penalty = (Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(PenaltySetUpSprings(contact));
+  penalty->problem.stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,9 +191,9 @@ static PetscErrorCode CheckConverged(Contact contact)
     ContactPairState state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(!PetscIsInfOrNanReal(state.gap * penalty->penalty), PetscObjectComm((PetscObject)contact), PETSC_ERR_FP, "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step or -contact_penalty too large?", contact->pairs[p].name, (double)time);
+    PetscCheck(!PetscIsInfOrNanReal(state.gap), PetscObjectComm((PetscObject)contact), PETSC_ERR_FP, "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step or -contact_penalty too large?", contact->pairs[p].name, (double)time);
   }
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller -contact_penalty or -time_step", (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller -contact_penalty (or -contact_penalty_scale) or -time_step", (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
 }
 
 /* The forces of springs and dampers, from the forces as they are as first iterate */
@@ -250,9 +215,9 @@ PetscErrorCode PenaltySolve(Contact contact)
     PetscCall(PetscArraycpy(contact->force, force, contact->n_rows));
     PetscCall(VecRestoreArrayRead(penalty->outer.x, &force));
     changed = PETSC_FALSE;
-    if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ForcesHold(contact, contact->force, penalty->held, &changed));
+    if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ForcesHold(contact, &penalty->forces, contact->force, &changed));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->force[i] > 0);
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || contact->force[i] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -264,11 +229,11 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
 
   PetscFunctionBegin;
   contact->penalty_energy = 0;
-  PetscCall(ForcesBeginStep(contact, penalty->held, &in_contact));
+  PetscCall(ForcesBeginStep(contact, &penalty->forces, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(contact->force, contact->saved_force, contact->n_rows));
   PetscCall(PenaltySolve(contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) energy += 0.5 * penalty->penalty * contact->area[i] * PetscSqr(PetscMin(contact->gap[i], 0));
+  for (PetscInt i = 0; i < contact->n_rows; i++) energy += 0.5 * penalty->spring[i] * PetscSqr(contact->tied[i] ? contact->gap[i] : PetscMin(contact->gap[i], 0));
   if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   contact->penalty_energy = energy;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -279,7 +244,8 @@ static PetscErrorCode ContactView_Penalty(Contact contact, PetscViewer viewer)
   const Penalty *penalty = (const Penalty *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g, damping %g\n", (double)penalty->penalty, (double)penalty->damping));
+  PetscCall(PenaltyViewParameter(contact, viewer));
+  if (penalty->damping > 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g %s\n", (double)penalty->damping, contact->dim == 1 ? "N s/m" : "N s/m^3"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -289,9 +255,10 @@ PetscErrorCode PenaltyDestroy(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(OuterSolverDestroy(&penalty->outer));
-  PetscCall(TraceDestroy(&penalty->force));
+  PetscCall(ForcesDestroy(&penalty->forces));
+  PetscCall(ForceProblemDestroy(&penalty->problem));
   PetscCall(PetscFree(penalty->start));
-  PetscCall(PetscFree5(penalty->multiplier, penalty->held, penalty->pushing, penalty->jacobian_pushing, penalty->compliance));
+  PetscCall(PetscFree5(penalty->multiplier, penalty->pushing, penalty->spring, penalty->damper, penalty->stiffness));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -300,9 +267,11 @@ PetscErrorCode PenaltyDestroy(Contact contact)
    CONTACT_PENALTY - contact forces in proportion to the penetration, or to its rate
 
    Options Database Keys:
-+  -contact_penalty tau                                          - penalty parameter [N/m in one dimension], required by springs
++  -contact_penalty tau                                          - penalty parameter [N/m^3; N/m in one dimension]
+.  -contact_penalty_scale s                                      - where tau is not given: as many times the stiffness of an element of each
+                                                                   side, one behind the other; 10 for massless contact nodes, 1 for others
 .  -contact_constraint (gap|gap_rate|both)                       - springs, dampers in their place, or both
-.  -contact_penalty_damping c                                    - damping [N s/m in one dimension], required by dampers
+.  -contact_penalty_damping c                                    - damping [N s/m^3; N s/m in one dimension], required by dampers
 .  -penalty_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration on the contact forces
 -  -penalty_snes_rtol, -penalty_snes_atol, -penalty_snes_max_it  - its tolerances on the force (1e-9, 1e-14 N) and limit (50)
 
@@ -327,6 +296,7 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   contact->ops->setfromoptions = ContactSetFromOptions_Penalty;
   contact->ops->setup          = PenaltySetUp;
   contact->ops->step           = ContactStep_Penalty;
+  contact->ops->rowschanged    = PenaltyRowsChanged;
   contact->ops->view           = ContactView_Penalty;
   contact->ops->destroy        = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -14,7 +14,9 @@ PetscErrorCode SchwarzReadCondensation(Contact contact)
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEnum("-schwarz_condense", "Sweeps on the interface compliance", "", Condenses, (PetscEnum)schwarz->condense, (PetscEnum *)&schwarz->condense, NULL));
+  PetscCall(PetscOptionsInt("-schwarz_dense_limit", "Interface unknowns up to which its matrices are dense", "", schwarz->dense_limit, &schwarz->dense_limit, NULL));
   PetscOptionsEnd();
+  PetscCheck(schwarz->dense_limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_dense_limit %" PetscInt_FMT " must not be negative", schwarz->dense_limit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -58,7 +60,9 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   PetscCall(FindObstacle(contact, &why, &newton));
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
   schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || schwarz->condense == CONDENSE_ALWAYS));
+  schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && why);
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
+  contact->fades         = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -127,6 +131,7 @@ PetscErrorCode SchwarzFinishCondensed(Contact contact)
       for (PetscInt i = 0; i < contact->n_rows; i++)
         if (DirichletBody(&contact->pairs[contact->row_pair[i]]) == b) force[i] = reaction[i];
     }
+    PetscCall(ContactLoadReleased(contact, b));
     PetscCall(BodyIntegrate(contact->bodies[b]));
   }
   PetscCall(ContactComputeGaps(contact));

@@ -11,18 +11,13 @@
 #include "schwarzimpl.h"
 #include <petscblaslapack.h>
 
-/* Above so many unknowns forces come from conjugate gradients */
-#define MAX_DENSE_UNKNOWNS 2000
-/* of the residual: a step of Newton's method that leaves so much takes one more sweep at most */
-#define FORCE_TOLERANCE 1e-9
-
-static PetscErrorCode MakeRoom(InterfaceProblem *problem, PetscInt size)
+static PetscErrorCode MakeRoom(InterfaceProblem *problem, PetscInt size, PetscInt most)
 {
   PetscFunctionBegin;
   if (size <= problem->capacity) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree4(problem->matrices, problem->dirichlet, problem->factor, problem->pivots));
   PetscCall(PetscFree5(problem->rows, problem->body_rows, problem->residual, problem->force, problem->change));
-  problem->capacity = PetscMax(size, PetscMin(2 * problem->capacity, MAX_DENSE_UNKNOWNS));
+  problem->capacity = PetscMax(size, PetscMin(2 * problem->capacity, most));
   size              = problem->capacity;
   PetscCall(PetscMalloc4(size * size, &problem->matrices, size * size, &problem->dirichlet, size * size, &problem->factor, size, &problem->pivots));
   PetscCall(PetscMalloc5(size, &problem->rows, size, &problem->body_rows, size, &problem->residual, size, &problem->force, size, &problem->change));
@@ -190,9 +185,9 @@ PetscErrorCode SchwarzUpdateInterfaceProblem(Contact contact)
   PetscCall(CountLevels(contact, &problem->levels, &problem->chain));
   problem->n        = n;
   problem->factored = PETSC_FALSE;
-  problem->dense    = (PetscBool)(n * problem->levels <= MAX_DENSE_UNKNOWNS);
+  problem->dense    = (PetscBool)(n * problem->levels <= schwarz->dense_limit);
   if (!problem->dense) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MakeRoom(problem, n * problem->levels));
+  PetscCall(MakeRoom(problem, n * problem->levels, schwarz->dense_limit));
   n = 0;
   for (PetscInt i = 0; i < contact->n_all_rows; i++)
     if (contact->all_active[i]) problem->rows[n++] = i;
@@ -267,121 +262,16 @@ static PetscErrorCode SolveDense(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += t_b W_b t_b x of all bodies on active rows, or, if `dirichlet`, what happens to the Dirichlet sides */
-static PetscErrorCode MultiplyBodies(Contact contact, PetscBool dirichlet, Vec x, Vec y)
+/* Y = F'^{-1} F by the compliance alone; rows that are not active stay where they are */
+static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
 {
-  InterfaceProblem *problem = &((Schwarz *)contact->data)->problem;
-
-  PetscFunctionBegin;
-  PetscCall(VecZeroEntries(y));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscScalar *in, *moved;
-    PetscScalar       *force, *out;
-
-    PetscCall(VecGetArrayRead(x, &in));
-    PetscCall(VecGetArrayWrite(problem->work[0], &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-
-      force[i] = contact->active[i] ? ((DirichletBody(pair) == b) - (NeumannBody(pair) == b)) * in[i] : 0;
-    }
-    PetscCall(VecRestoreArrayWrite(problem->work[0], &force));
-    PetscCall(VecRestoreArrayRead(x, &in));
-    PetscCall(BodyApplyCompliance(contact->bodies[b], problem->work[0], problem->work[1]));
-    PetscCall(VecGetArrayRead(problem->work[1], &moved));
-    PetscCall(VecGetArray(y, &out));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-
-      if (contact->active[i]) out[i] += ((DirichletBody(pair) == b) - (dirichlet ? 0 : NeumannBody(pair) == b)) * moved[i];
-    }
-    PetscCall(VecRestoreArray(y, &out));
-    PetscCall(VecRestoreArrayRead(problem->work[1], &moved));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
-{
-  Contact contact;
-
-  PetscFunctionBegin;
-  PetscCall(MatShellGetContext(shell, &contact));
-  PetscCall(MultiplyBodies(contact, PETSC_FALSE, x, y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateIterative(Contact contact)
-{
-  InterfaceProblem *problem = &((Schwarz *)contact->data)->problem;
-  MPI_Comm          comm    = PetscObjectComm((PetscObject)contact);
-  Mat               shell;
-  PC                pc;
-
-  PetscFunctionBegin;
-  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
-  PetscCall(VecDuplicate(problem->force_vec, &problem->residual_vec));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDuplicate(problem->force_vec, &problem->work[k]));
-  PetscCall(MatCreateShell(comm, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, contact, &shell));
-  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))Multiply));
-  PetscCall(KSPCreate(comm, &problem->iterative));
-  PetscCall(KSPSetOptionsPrefix(problem->iterative, "schwarz_interface_"));
-  PetscCall(KSPSetOperators(problem->iterative, shell, shell));
-  PetscCall(KSPSetType(problem->iterative, KSPCG));
-  PetscCall(KSPGetPC(problem->iterative, &pc));
-  PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(KSPSetTolerances(problem->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
-  PetscCall(MatDestroy(&shell));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same with one time in the controller step, by conjugate gradients */
-static PetscErrorCode SolveIteratively(Contact contact, Vec F, Vec Y)
-{
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  InterfaceProblem  *problem = &schwarz->problem;
-  PetscInt           iterations;
-  const PetscScalar *f, *moved;
-  PetscScalar       *residual, *y;
-
-  PetscFunctionBegin;
-  if (!problem->iterative) PetscCall(CreateIterative(contact));
-  PetscCall(VecGetArrayRead(F, &f));
-  PetscCall(VecGetArrayWrite(problem->residual_vec, &residual));
-  for (PetscInt i = 0; i < contact->n_rows; i++) residual[i] = contact->active[i] ? f[schwarz->offset[i] + schwarz->levels[contact->row_pair[i]] - 1] : 0;
-  PetscCall(VecRestoreArrayWrite(problem->residual_vec, &residual));
-  PetscCall(VecRestoreArrayRead(F, &f));
-  PetscCall(KSPSolve(problem->iterative, problem->residual_vec, problem->force_vec));
-  PetscCall(KSPGetIterationNumber(problem->iterative, &iterations));
-  contact->counts_made.inner_iterations += iterations;
-  PetscCall(MultiplyBodies(contact, PETSC_TRUE, problem->force_vec, problem->residual_vec));
-  PetscCall(VecZeroEntries(Y));
-  PetscCall(VecGetArrayRead(problem->residual_vec, &moved));
-  PetscCall(VecGetArray(Y, &y));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt levels = schwarz->levels[contact->row_pair[i]];
-
-    for (PetscInt k = 0; k < levels; k++) y[schwarz->offset[i] + k] = moved[i] * (k + 1) / levels;
-  }
-  PetscCall(VecRestoreArray(Y, &y));
-  PetscCall(VecRestoreArrayRead(problem->residual_vec, &moved));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Y = F'^{-1} F; rows that are not active stay where they are */
-static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
-{
-  Contact           contact;
-  Schwarz          *schwarz;
-  InterfaceProblem *problem;
+  Schwarz          *schwarz = (Schwarz *)contact->data;
+  InterfaceProblem *problem = &schwarz->problem;
   PetscScalar      *y;
 
   PetscFunctionBegin;
-  PetscCall(PCShellGetContext(pc, &contact));
-  schwarz = (Schwarz *)contact->data;
-  problem = &schwarz->problem;
   if (!problem->dense) {
-    PetscCall(SolveIteratively(contact, F, Y));
+    PetscCall(SchwarzSolveIteratively(contact, F, Y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!problem->factored) PetscCall(FactorProblem(contact));
@@ -396,6 +286,27 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
       if (local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]) y[schwarz->offset[local] + k] = problem->change[k * problem->n + i];
     }
   PetscCall(VecRestoreArray(Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
+{
+  Contact     contact;
+  Schwarz    *schwarz;
+  Vec         rest;
+  PetscInt    n, which[SCHWARZ_MAX_SECANTS];
+  PetscScalar c[SCHWARZ_MAX_SECANTS];
+
+  PetscFunctionBegin;
+  PetscCall(PCShellGetContext(pc, &contact));
+  schwarz = (Schwarz *)contact->data;
+  if (!schwarz->uses_secants) {
+    PetscCall(ApplyCompliance(contact, F, Y));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SchwarzApplySecants(contact, F, &rest, &n, which, c));
+  PetscCall(ApplyCompliance(contact, rest, Y));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecAXPY(Y, c[i], schwarz->secants.dx[which[i]]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

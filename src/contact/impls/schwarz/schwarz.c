@@ -98,6 +98,7 @@ static PetscErrorCode SetUpNewton(Contact contact)
   schwarz->stale = PETSC_TRUE;
   if (schwarz->by_compliance) {
     PetscCall(SchwarzSetUpInterfaceProblem(contact));
+    if (schwarz->uses_secants) PetscCall(SchwarzSetUpSecants(contact));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &newton));
@@ -173,6 +174,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(SchwarzDestroyNewton(contact));
   PetscCall(SchwarzDestroyInterfaceProblem(contact));
+  PetscCall(SchwarzDestroySecants(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->jacobian_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
@@ -203,6 +205,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
                                                                   of the contact nodes, or the change of the contact nodes that a plain
                                                                   sweep would bring
 .  -schwarz_condense (0|1|auto)                                 - whether sweeps run on the interface compliance of the bodies
+.  -schwarz_dense_limit n                                       - interface unknowns up to which its matrices are dense, 2000
 .  -schwarz_recheck (true|false)                                - whether tensile nodes leave contact within the step
 -  -schwarz_unconverged (error|accept)                          - what to do with a step that does not converge
 
@@ -223,6 +226,8 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   schwarz->predictor           = PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
   schwarz->condense            = CONDENSE_AUTO;
+  schwarz->dense_limit         = 2000;
+  contact->prescribes          = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
   contact->ops->setup          = ContactSetUp_Schwarz;

@@ -65,6 +65,16 @@ typedef struct {
   Vec           force_vec, residual_vec, work[2];
 } InterfaceProblem;
 
+#define SCHWARZ_MAX_SECANTS 12
+
+/* Changes from sweep to sweep, the newest before `next`, in units of the change of F */
+typedef struct {
+  PetscInt  n, next;
+  PetscBool has_last;
+  Vec      *dx, *df, *basis;
+  Vec       last_x, last_f, rest;
+} Secants;
+
 typedef struct {
   OuterSolver         outer;
   PetscReal           atol, rtol;
@@ -78,6 +88,7 @@ typedef struct {
   PetscReal           controller_step; /* [s] */
   PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
   Condense            condense;
+  PetscInt            dense_limit;   /* unknowns of the interface up to which its matrices are dense */
   PetscBool           by_compliance; /* Newton's method by the bodies' compliance; else by probing them under each set of conditions */
   PetscBool           condensed;     /* sweeps on the compliance alone */
   PetscBool           responding;    /* sweeps are, just now */
@@ -85,6 +96,8 @@ typedef struct {
   PetscBool          *known;         /* per row: it is known to the bodies' compliance */
   PetscBool           has_newton;    /* the outer iteration is Newton's */
   InterfaceProblem    problem;
+  PetscBool           uses_secants; /* the compliance is not exact */
+  Secants             secants;
   PetscBool           recheck;            /* tensile reactions leave the active set within the step */
   PetscBool           swap;               /* sides change with every controller step */
   PetscInt            side;               /* 0, or 1 while they are swapped */
@@ -160,7 +173,12 @@ PETSC_INTERN PetscErrorCode SchwarzDestroyNewton(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzSetUpInterfaceProblem(Contact);
 PETSC_INTERN PetscErrorCode SchwarzUpdateInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSolveIteratively(Contact, Vec, Vec);
 PETSC_INTERN PetscErrorCode SchwarzDestroyInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetUpSecants(Contact);
+PETSC_INTERN PetscErrorCode SchwarzDestroySecants(Contact);
+PETSC_INTERN PetscErrorCode SchwarzApplySecants(Contact, Vec, Vec *, PetscInt *, PetscInt[], PetscScalar[]);
+PETSC_INTERN void           SchwarzResetSecants(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode SchwarzReadCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzChooseCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);

@@ -13,6 +13,7 @@ static PetscErrorCode CompareActive(Contact contact)
   if (!differs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(schwarz->jacobian_active, contact->active, contact->n_rows));
   schwarz->stale = PETSC_TRUE;
+  if (schwarz->uses_secants) SchwarzResetSecants(contact, PETSC_TRUE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,6 +43,7 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionBegin;
   PetscCall(PrepareSweeps(contact));
   schwarz->swept = PETSC_FALSE;
+  if (schwarz->uses_secants) SchwarzResetSecants(contact, PETSC_FALSE);
   PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
   PetscCall(SchwarzCheckConverged(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

@@ -144,6 +144,7 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
       if (NeumannBody(pair) == b) PetscCall(LoadNeumann(contact, p));
     }
   }
+  PetscCall(ContactLoadReleased(contact, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,106 @@
+/* Newton's step on interfaces with more rows than a dense matrix is good for: conjugate gradients, with one solution of each body for a product. */
+#include "schwarzimpl.h"
+
+/* of the residual: a step of Newton's method that leaves so much takes one more sweep at most */
+#define FORCE_TOLERANCE 1e-9
+
+/* y += t_b W_b t_b x of all bodies on active rows, or, if `dirichlet`, what happens to the Dirichlet sides */
+static PetscErrorCode MultiplyBodies(Contact contact, PetscBool dirichlet, Vec x, Vec y)
+{
+  InterfaceProblem *problem = &((Schwarz *)contact->data)->problem;
+
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(y));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const PetscScalar *in, *moved;
+    PetscScalar       *force, *out;
+
+    PetscCall(VecGetArrayRead(x, &in));
+    PetscCall(VecGetArrayWrite(problem->work[0], &force));
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+
+      force[i] = contact->active[i] ? ((DirichletBody(pair) == b) - (NeumannBody(pair) == b)) * in[i] : 0;
+    }
+    PetscCall(VecRestoreArrayWrite(problem->work[0], &force));
+    PetscCall(VecRestoreArrayRead(x, &in));
+    PetscCall(BodyApplyCompliance(contact->bodies[b], problem->work[0], problem->work[1]));
+    PetscCall(VecGetArrayRead(problem->work[1], &moved));
+    PetscCall(VecGetArray(y, &out));
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+
+      if (contact->active[i]) out[i] += ((DirichletBody(pair) == b) - (dirichlet ? 0 : NeumannBody(pair) == b)) * moved[i];
+    }
+    PetscCall(VecRestoreArray(y, &out));
+    PetscCall(VecRestoreArrayRead(problem->work[1], &moved));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
+{
+  Contact contact;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(shell, &contact));
+  PetscCall(MultiplyBodies(contact, PETSC_FALSE, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateIterative(Contact contact)
+{
+  InterfaceProblem *problem = &((Schwarz *)contact->data)->problem;
+  MPI_Comm          comm    = PetscObjectComm((PetscObject)contact);
+  Mat               shell;
+  PC                pc;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
+  PetscCall(VecDuplicate(problem->force_vec, &problem->residual_vec));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDuplicate(problem->force_vec, &problem->work[k]));
+  PetscCall(MatCreateShell(comm, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, contact, &shell));
+  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))Multiply));
+  PetscCall(KSPCreate(comm, &problem->iterative));
+  PetscCall(KSPSetOptionsPrefix(problem->iterative, "schwarz_interface_"));
+  PetscCall(KSPSetOperators(problem->iterative, shell, shell));
+  PetscCall(KSPSetType(problem->iterative, KSPCG));
+  PetscCall(KSPGetPC(problem->iterative, &pc));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(KSPSetTolerances(problem->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
+  PetscCall(MatDestroy(&shell));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same with one time in the controller step, by conjugate gradients */
+PetscErrorCode SchwarzSolveIteratively(Contact contact, Vec F, Vec Y)
+{
+  Schwarz           *schwarz = (Schwarz *)contact->data;
+  InterfaceProblem  *problem = &schwarz->problem;
+  PetscInt           iterations;
+  const PetscScalar *f, *moved;
+  PetscScalar       *residual, *y;
+
+  PetscFunctionBegin;
+  if (!problem->iterative) PetscCall(CreateIterative(contact));
+  PetscCall(VecGetArrayRead(F, &f));
+  PetscCall(VecGetArrayWrite(problem->residual_vec, &residual));
+  for (PetscInt i = 0; i < contact->n_rows; i++) residual[i] = contact->active[i] ? f[schwarz->offset[i] + schwarz->levels[contact->row_pair[i]] - 1] : 0;
+  PetscCall(VecRestoreArrayWrite(problem->residual_vec, &residual));
+  PetscCall(VecRestoreArrayRead(F, &f));
+  PetscCall(KSPSolve(problem->iterative, problem->residual_vec, problem->force_vec));
+  PetscCall(KSPGetIterationNumber(problem->iterative, &iterations));
+  contact->counts_made.inner_iterations += iterations;
+  PetscCall(MultiplyBodies(contact, PETSC_TRUE, problem->force_vec, problem->residual_vec));
+  PetscCall(VecZeroEntries(Y));
+  PetscCall(VecGetArrayRead(problem->residual_vec, &moved));
+  PetscCall(VecGetArray(Y, &y));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscInt levels = schwarz->levels[contact->row_pair[i]];
+
+    for (PetscInt k = 0; k < levels; k++) y[schwarz->offset[i] + k] = moved[i] * (k + 1) / levels;
+  }
+  PetscCall(VecRestoreArray(Y, &y));
+  PetscCall(VecRestoreArrayRead(problem->residual_vec, &moved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

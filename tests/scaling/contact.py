@@ -1,0 +1,116 @@
+"""What contact costs: two bars of hexahedra that meet, implicit and explicit, and contact alone for surfaces from 10^2 to 10^5 facets.
+
+    python tests/scaling/contact.py --build build [--largest 100000]
+
+The share of contact is that of everything in a controller step but the bodies' own work: search, transfer, active set, outer iteration. The
+times of CalculiX 2.20 beside the bars are not measured here: they are those of the same problem on a machine of this kind, 1270 s with
+implicit and 256 s with explicit steps.
+"""
+
+import argparse
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from bench import ROOT, RunError, print_table
+
+CALCULIX = {"implicit": 1270.0, "explicit": 256.0}  # s
+FASTER = {"implicit": 20.0, "explicit": 50.0}
+SHARE = {"implicit": 0.10, "explicit": 0.15}
+
+
+def bars(faces, length, speed, gap, more):
+    """Options of two equal bars with square ends of 0.1 m, along z."""
+    options = {"bodies": "a,b", "contact_pairs": "a.zmax:b.zmin", "progress": 0, **more}
+    for name, low, high, velocity in (("a", -length - gap / 2, -gap / 2, speed), ("b", gap / 2, length + gap / 2, -speed)):
+        options |= {
+            f"{name}_dm_plex_dim": 3,
+            f"{name}_dm_plex_box_faces": ",".join(map(str, faces)),
+            f"{name}_dm_plex_box_lower": f"0,0,{low}",
+            f"{name}_dm_plex_box_upper": f"0.1,0.1,{high}",
+            f"{name}_density": 1000,
+            f"{name}_youngs_modulus": 1e9,
+            f"{name}_poissons_ratio": 0.25,
+            f"{name}_initial_velocity": f"0,0,{velocity}",
+        }
+    return options
+
+
+def run(build, options, limit):
+    """Summary of a run, and the seconds of PETSc's log events by name."""
+    with tempfile.TemporaryDirectory() as directory:
+        summary, log = Path(directory) / "summary.json", Path(directory) / "log.csv"
+        words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
+        command = [str(build / "impakt"), *words, "-output_summary", str(summary), "-log_view", f":{log}:ascii_csv"]
+        environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        done = subprocess.run(command, cwd=ROOT, env=environment, timeout=limit, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise RunError(" ".join(command) + "\n" + "\n".join((done.stdout + done.stderr).splitlines()[-20:]))
+        with log.open(encoding="utf-8") as file:
+            seconds = {row["Event Name"]: float(row["Time"]) for row in csv.DictReader(file) if row["Rank"] == "0"}
+        return json.loads(summary.read_text(encoding="utf-8")), seconds
+
+
+def contact_seconds(events):
+    """Of controller steps without the bodies' own work."""
+    return events["ContactStep"] - events["BodyIntegrate"] - events.get("BodyResponse", 0.0)
+
+
+def whole_runs(build, limit):
+    """Rows of the table of the two whole runs."""
+    cases = {
+        "implicit": {"time_step": 1e-6, "time_end": 2e-4},
+        "explicit": {"time_step": 2e-7, "time_end": 2e-4, "a_ts_type": "centraldifference", "b_ts_type": "centraldifference"},
+    }
+    for name, more in cases.items():
+        summary, events = run(build, bars((10, 10, 100), 1.0, 100, 1e-3, more), limit)
+        timing = summary["timing"]
+        cpu = timing["cpu"] + timing["wall_setup"]  # set-up is one thread's work
+        share = contact_seconds(events) / timing["wall"]
+        ratio = CALCULIX[name] / cpu
+        held = "held" if ratio >= FASTER[name] and share <= SHARE[name] else "not held"
+        yield [name, f"{cpu:.2f}", f"{CALCULIX[name]:g}", f"{ratio:.0f}", f"{100 * share:.1f} %", f"{FASTER[name]:g} times, {100 * SHARE[name]:g} %: {held}"]
+
+
+def surfaces(build, largest, limit):
+    """Rows of the table of growing surfaces: microseconds of contact per facet and step."""
+    for side, steps in ((10, 200), (32, 100), (100, 20), (316, 5)):
+        if side**2 > largest:
+            return
+        size = 0.1 / side
+        step = 0.2 * size / 1100
+        more = {"time_step": step, "time_end": steps * step, "a_ts_type": "centraldifference", "b_ts_type": "centraldifference"}
+        summary, events = run(build, bars((side, side, 2), 2 * size, 10, 0.0, more), limit)
+        per_facet = 1e6 / steps / side**2
+        outer = contact_seconds(events) - events["ContactUpdate"]
+        yield [f"{side**2}", f"{events['ContactUpdate'] * per_facet:.2f}", f"{outer * per_facet:.2f}", f"{(events['BodyIntegrate'] + events.get('BodyResponse', 0)) * per_facet:.1f}", f"{summary['schwarz']['mean_contact_steps']:.2f}"]
+
+
+def main():
+    """Run everything and print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help="directory of impakt")
+    parser.add_argument("--largest", type=int, default=100000, help="facets of the largest surface (default: 100000)")
+    parser.add_argument("--time-limit", type=float, default=600.0, help="for one run, in s (default: 600)")
+    arguments = parser.parse_args()
+    build, limit = arguments.build.resolve(), arguments.time_limit
+    try:
+        print("\nTwo bars of 10 x 10 x 100 hex8, 200 implicit or 1000 explicit steps: CPU time with set-up [s].\n")
+        print_table([["steps", "Impakt", "CalculiX 2.20", "ratio", "contact", "bounds"], *whole_runs(build, limit)])
+        print("\nContact of two square surfaces, explicit bodies: microseconds per facet and step.\n")
+        print_table([["facets", "search and transfer", "active set, sweeps", "bodies", "sweeps"], *surfaces(build, arguments.largest, limit)])
+    except RunError as error:
+        print(f"contact.py: a run failed: {error}", file=sys.stderr)
+        return 1
+    except subprocess.TimeoutExpired as error:
+        print(f"contact.py: no result within {limit:g} s: {error.cmd}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
