@@ -238,6 +238,29 @@ PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
 }
 
 /*@
+  BodyIsStatic - whether the body has no inertia
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. is_static - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Body`, `TSSTATIC`
+@*/
+PetscErrorCode BodyIsStatic(Body body, PetscBool *is_static)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *is_static = body->is_static;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyIsRedistributed - whether the contact nodes of the body are massless
 
   Not Collective

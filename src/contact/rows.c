@@ -5,6 +5,8 @@
 #define NO_GAP 1e30
 /* Rows whose bodies lie closer than this part of a face are tied */
 #define TIE_DISTANCE 0.5
+/* Part of the jump of a gap, where its row was built again, that is given back in a controller step */
+#define SHIFT_FADES 0.02
 /* Directions along which a row moves less than this part of the displacement do not count */
 #define DIRECTION 1e-9
 
@@ -63,7 +65,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCallMPI(MPI_Allreduce(&n, &contact->n_all_rows, 1, MPIU_INT, MPI_SUM, comm));
   PetscCall(PetscCalloc7(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area, n, &contact->row_dof, 3 * n, &contact->row_normal, n, &contact->opposite, n, &contact->tied));
   PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n, &contact->saved_active, n, &contact->conditions));
-  PetscCall(PetscCalloc6(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets, n, &contact->changed));
+  PetscCall(PetscCalloc7(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets, n, &contact->changed, n, &contact->gap_shift));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->size; total += contact->counts[r++]) contact->offsets[r] = total;
@@ -111,7 +113,7 @@ static PetscErrorCode DescribeRows(Contact contact, const ContactPair *pair)
 
       contact->row_dof[i]     = rows.dofs[node] - first;
       contact->opposite[i]    = rows.opposite[node];
-      contact->initial_gap[i] = rows.opposite[node] ? rows.gap[node] : NO_GAP;
+      contact->initial_gap[i] = rows.opposite[node] ? rows.gap[node] + (rows.changed[node] ? 0 : contact->gap_shift[i]) : NO_GAP;
       contact->area[i]        = rows.area[node];
       contact->changed[i]     = rows.changed[node];
       if (contact->law == CONTACT_LAW_TIED) {
@@ -332,6 +334,45 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of nothing.
+   So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, and the difference
+   fades in the steps that follow. Between bodies without inertia nothing is a blow. */
+static PetscErrorCode ShiftGaps(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair              = &contact->pairs[p];
+    PetscBool          without_inertia[] = {PETSC_TRUE, PETSC_TRUE};
+
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &without_inertia[side]));
+    if (without_inertia[0] && without_inertia[1]) continue;
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscBool held = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+
+      if (!contact->changed[i]) continue;
+      contact->gap_shift[i] = !contact->opposite[i] ? 0 : held ? -contact->gap[i]
+                                                               : PetscMax(-contact->gap[i], 0);
+      contact->initial_gap[i] += contact->gap_shift[i];
+      contact->gap[i] += contact->gap_shift[i];
+      contact->saved_gap[i] = contact->gap[i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What gaps are counted from goes back to the surfaces, by a part of what is left in each controller step */
+static void FadeShifts(Contact contact)
+{
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscReal part = PetscAbsReal(contact->gap_shift[i]) > contact->tolerance ? SHIFT_FADES * contact->gap_shift[i] : contact->gap_shift[i];
+
+    contact->gap_shift[i] -= part;
+    contact->initial_gap[i] -= part;
+    contact->gap[i] -= part;
+    contact->saved_gap[i] -= part;
+  }
+}
+
 /* Looks at the start of a controller step whether surfaces have slid or turned so far that their rows are to be built again, and does so. Rows in
    contact that have nothing opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
@@ -342,6 +383,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetReach(contact, &near));
+  FadeShifts(contact);
   PetscCall(PetscArrayzero(contact->changed, contact->n_rows));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -364,6 +406,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     contact->saved_force[i]  = 0;
   }
   PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ShiftGaps(contact));
   PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -395,6 +438,6 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree(contact->pairs));
   PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite, contact->tied));
   PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active, contact->conditions));
-  PetscCall(PetscFree6(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets, contact->changed));
+  PetscCall(PetscFree7(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets, contact->changed, contact->gap_shift));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

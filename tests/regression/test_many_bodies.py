@@ -1,0 +1,76 @@
+"""A stack of five blocks and ten discs that fall and bounce: energy never grows, and no row of a contact pair is ever open to penetration.
+
+Every figure of energy is relative to the largest one, less the work of gravity. The massless contact layer loses a little at each onset, in
+proportion to the square of the step; it must not gain.
+"""
+
+import re
+
+import numpy as np
+import pytest
+
+pytest_plugins = "shared_runs"
+
+STACK = "-options_file options/stack.opts -time_end 0.3"
+BALLS = "-options_file options/ten-balls.opts -time_end 0.5"
+EXPLICIT = " ".join(f"-{b}_ts_type centraldifference -{b}_ts_time_step auto" for b in "abcde")
+GROWTH = 1e-4  # the demand: an impulse at the start of contact is shared out to the square of the step
+
+
+def depths(run):
+    return [pair["max_penetration"] for pair in run.summary["pairs"].values()]
+
+
+@pytest.mark.parametrize("more", ["", EXPLICIT], ids=["implicit", "explicit"])
+def test_stack(more, shared_run):
+    run = shared_run(f"{STACK} {more}")
+    system = run.summary["system"]
+    assert system["energy_error_max"] <= GROWTH
+    assert system["energy_error_min"] >= -1e-2  # 0.4 % measured, of some 4000 changes of the active sets
+    assert max(depths(run)) <= 1e-6 * 0.035  # of the smallest elements; 1e-16 m measured
+    assert run.summary["schwarz"]["set_cycles"] == 0
+    contacts = run.history["contact"]
+    assert all(np.any(contacts[pair]["active"][()]) for pair in contacts)  # the impact goes through the whole stack
+    # the floor bears the weight of 340 kg in the mean, and what turns the fall round
+    mass = 80 + 74 + 68 + 62 + 56
+    momentum = sum(run.history["body"][b]["momentum"][-1][1] for b in "abcde")
+    impulse = contacts["a.ymin:floor"]["impulse"][-1][1]
+    assert momentum + impulse == pytest.approx(-mass * 9.81 * 0.3, rel=1e-3)  # the impulse is integrated by trapezoids, the step's forces jump at onsets
+
+
+def test_stack_converges(shared_run):
+    """Half the step, about a quarter of the loss; less than that is asked for here, since bounces take another course after a while."""
+    losses = [-shared_run(f"{STACK} {more}").summary["system"]["energy_error_min"] for more in ("", "-time_step 5e-5")]
+    assert losses[1] <= 0.5 * losses[0]
+
+
+def test_stack_on_ranks(shared_run):
+    """Blocks that tilt part with round-off: figures are compared over the first impact, in which it has grown to no more than 1e-9."""
+    one, two = (shared_run(f"{STACK} -time_end 0.1", ranks).history for ranks in (1, 2))
+    for name in "abcde":
+        for figure in ("kinetic", "potential"):
+            a, b = (history["body"][name][figure][()] for history in (one, two))
+            np.testing.assert_allclose(b, a, rtol=0, atol=1e-7 * np.abs(a).max(), err_msg=f"{name} {figure}")
+
+
+def test_ten_balls(shared_run):
+    run = shared_run(BALLS)
+    system = run.summary["system"]
+    assert len(run.summary["pairs"]) == 45 + 30
+    touched = [name for name, pair in run.summary["pairs"].items() if pair["onsets"]]
+    assert sum("floor" in name for name in touched) >= 2
+    assert sum(":" in name and not name.endswith(("floor", "left", "right")) for name in touched) >= 8
+    assert system["energy_error_max"] <= GROWTH  # without gaps that go on when rows are built again, 0.4
+    assert system["energy_error_min"] >= -0.1
+    assert max(depths(run)) <= 1e-6 * 0.03  # of rows; discs of 16 edges overlap by up to 6 mm at their corners
+
+
+def contact_nodes(run):
+    return int(re.search(r"(\d+) contact nodes", run.stdout).group(1))
+
+
+def test_faces_that_see_each_other(shared_run):
+    """All 16 nodes of a disc may touch another; if the faces alone count that see each other at the start, those of its front half."""
+    two = "-options_file options/ten-balls.opts -time_end 4e-4 -contact_pairs a:b"
+    assert contact_nodes(shared_run(f"{two} -contact_facing false")) == 16
+    assert contact_nodes(shared_run(f"{two} -contact_facing true")) <= 8
