@@ -103,7 +103,7 @@ def pressures(ball, path):
     """Of the nodes of the surface by their distance from the axis, which is that before they moved, as in theory."""
     with h5py.File(path, "r") as file:
         positions = file["mesh/positions"][:, : ball.dim] - ball.centre
-        last = sorted(file["contact_pressure"])[-1]
+        last = max(file["contact_pressure"])
         pressure, active = (file[f"{name}/{last}"][()].ravel() for name in ("contact_pressure", "contact_active"))
     surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, -1] < 0)
     distance = np.linalg.norm(positions[:, :-1], axis=1)

@@ -3,9 +3,9 @@
 
 #define N_BACKUP 7
 
-/* What probing overwrites: present and saved state, internal force; all traces; where the body is in time */
+/* What probing overwrites: present and saved state, internal force; forces from outside, NULL without loads; all traces; where the body is in time */
 struct _BodyProbe {
-  Vec          vecs[N_BACKUP];
+  Vec          vecs[N_BACKUP], applied;
   PetscScalar *traces;
   PetscReal    time, saved_time, work;
   PetscInt     step, saved_step;
@@ -16,6 +16,7 @@ PetscErrorCode BodyDestroyProbe(Body body)
   PetscFunctionBegin;
   if (!body->probe) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDestroy(&body->probe->vecs[k]));
+  PetscCall(VecDestroy(&body->probe->applied));
   PetscCall(PetscFree(body->probe->traces));
   PetscCall(PetscFree(body->probe));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -46,11 +47,13 @@ PetscErrorCode BodyBeginProbe(Body body)
     PetscCall(PetscNew(&body->probe));
     PetscCall(PetscMalloc1(8 * (body->substeps + 1) * body->rows.local, &body->probe->traces));
     for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDuplicate(body->state.u, &body->probe->vecs[k]));
+    if (body->applied) PetscCall(VecDuplicate(body->applied, &body->probe->applied));
   }
   for (PetscInt k = 0; k < N_BACKUP; k++) {
     PetscCall(VecCopy(vecs[k], body->probe->vecs[k]));
     PetscCall(VecZeroEntries(vecs[k]));
   }
+  if (body->applied) PetscCall(VecCopy(body->applied, body->probe->applied));
   PetscCall(CopyTraces(body, PETSC_TRUE));
   body->probe->time       = body->time;
   body->probe->saved_time = body->saved_time;
@@ -82,6 +85,7 @@ PetscErrorCode BodyEndProbe(Body body)
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecCopy(body->probe->vecs[k], vecs[k]));
+  if (body->applied) PetscCall(VecCopy(body->probe->applied, body->applied));
   PetscCall(CopyTraces(body, PETSC_FALSE));
   body->time          = body->probe->time;
   body->saved_time    = body->probe->saved_time;

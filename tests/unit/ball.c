@@ -269,6 +269,32 @@ static void symmetric_parts(void **state)
         for (PetscReal grading = 1; grading < 20; grading += 9) check_part(dim, part, grading, simplex);
 }
 
+/* Half of the sphere's faces where its equator is along their edges, and of graded balls those that are wholly behind */
+static void back_of_ball(void **state)
+{
+  (void)state;
+  for (PetscInt dim = 2; dim <= 3; dim++)
+    for (PetscInt grading = 1; grading <= 9; grading += 8) {
+      DM                 dm     = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_divisions 8 -ball_grading %d -ball_pole 0,-2%s", (int)dim, (int)(grading > 1), (int)grading, dim == 3 ? ",0" : "");
+      const SurfaceFacts sphere = surface_facts(dm, "surface"), back = surface_facts(dm, "back");
+      PetscInt           n, *vertices;
+
+      ok(MeshGetNodeSet(dm, "back", &n, &vertices));
+      for (PetscInt i = 0; i < n; i++) {
+        PetscReal x[3];
+
+        position_of(dm, vertices[i], x);
+        assert_true(x[1] >= -1e-12);
+      }
+      ok(PetscFree(vertices));
+      if (grading == 1) {
+        assert_int_equal(2 * back.n, sphere.n);
+        near(back.area, sphere.area / 2, 1e-13);
+      } else between(back.area / sphere.area, 0.4, 0.499); /* elements across the equator are left out: measured 0.468 and 0.409 */
+      ok(DMDestroy(&dm));
+    }
+}
+
 /* Centre (1, 0) and radius 0.5, all of it twice as large, then moved down by 3 */
 static void placed(void **state)
 {
@@ -313,6 +339,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(sizes_match),
       cmocka_unit_test(sizes_at_poles),
       cmocka_unit_test(symmetric_parts),
+      cmocka_unit_test(back_of_ball),
       cmocka_unit_test(placed),
       cmocka_unit_test(refused_options),
   };

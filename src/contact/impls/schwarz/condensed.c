@@ -54,13 +54,20 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
 {
   Schwarz    *schwarz = (Schwarz *)contact->data;
   const char *why;
-  PetscBool   newton;
+  PetscBool   newton, substeps = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(FindObstacle(contact, &why, &newton));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt n;
+
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &n));
+    if (n > 1) substeps = PETSC_TRUE;
+  }
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
   schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || schwarz->condense == CONDENSE_ALWAYS));
-  schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && why);
+  schwarz->exact         = (PetscBool)!why;
+  schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
   contact->fades         = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR);
   PetscFunctionReturn(PETSC_SUCCESS);

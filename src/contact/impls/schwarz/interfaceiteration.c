@@ -72,8 +72,14 @@ static PetscErrorCode CreateIterative(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same with one time in the controller step, by conjugate gradients */
-PetscErrorCode SchwarzSolveIteratively(Contact contact, Vec F, Vec Y)
+/* The level of a pair's unknowns that belongs to level `k` of those of the pair with most, or less than 0: they end together */
+static PetscInt LevelOfPair(const Schwarz *schwarz, PetscInt p, PetscInt most, PetscInt k)
+{
+  return k - (most - schwarz->levels[p]);
+}
+
+/* Level `k` of Y from that of F: the forces that close it, then what they do to the Dirichlet sides */
+static PetscErrorCode SolveLevel(Contact contact, PetscInt most, PetscInt k, Vec F, Vec Y)
 {
   Schwarz           *schwarz = (Schwarz *)contact->data;
   InterfaceProblem  *problem = &schwarz->problem;
@@ -82,25 +88,43 @@ PetscErrorCode SchwarzSolveIteratively(Contact contact, Vec F, Vec Y)
   PetscScalar       *residual, *y;
 
   PetscFunctionBegin;
-  if (!problem->iterative) PetscCall(CreateIterative(contact));
   PetscCall(VecGetArrayRead(F, &f));
   PetscCall(VecGetArrayWrite(problem->residual_vec, &residual));
-  for (PetscInt i = 0; i < contact->n_rows; i++) residual[i] = contact->active[i] ? f[schwarz->offset[i] + schwarz->levels[contact->row_pair[i]] - 1] : 0;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscInt level = LevelOfPair(schwarz, contact->row_pair[i], most, k);
+
+    residual[i] = contact->active[i] && level >= 0 ? f[schwarz->offset[i] + level] : 0;
+  }
   PetscCall(VecRestoreArrayWrite(problem->residual_vec, &residual));
   PetscCall(VecRestoreArrayRead(F, &f));
   PetscCall(KSPSolve(problem->iterative, problem->residual_vec, problem->force_vec));
   PetscCall(KSPGetIterationNumber(problem->iterative, &iterations));
   contact->counts_made.inner_iterations += iterations;
   PetscCall(MultiplyBodies(contact, PETSC_TRUE, problem->force_vec, problem->residual_vec));
-  PetscCall(VecZeroEntries(Y));
   PetscCall(VecGetArrayRead(problem->residual_vec, &moved));
   PetscCall(VecGetArray(Y, &y));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt levels = schwarz->levels[contact->row_pair[i]];
+    const PetscInt level = LevelOfPair(schwarz, contact->row_pair[i], most, k);
 
-    for (PetscInt k = 0; k < levels; k++) y[schwarz->offset[i] + k] = moved[i] * (k + 1) / levels;
+    if (level >= 0) y[schwarz->offset[i] + level] = moved[i];
   }
   PetscCall(VecRestoreArray(Y, &y));
   PetscCall(VecRestoreArrayRead(problem->residual_vec, &moved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same by conjugate gradients, level by level: what the force at one time does later is left to the next sweep, so that with equal substeps
+   the last level is right after as many sweeps as there are levels, and to secants */
+PetscErrorCode SchwarzSolveIteratively(Contact contact, Vec F, Vec Y)
+{
+  Schwarz          *schwarz = (Schwarz *)contact->data;
+  InterfaceProblem *problem = &schwarz->problem;
+  PetscInt          most    = 1;
+
+  PetscFunctionBegin;
+  if (!problem->iterative) PetscCall(CreateIterative(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) most = PetscMax(most, schwarz->levels[p]);
+  PetscCall(VecZeroEntries(Y));
+  for (PetscInt k = 0; k < most; k++) PetscCall(SolveLevel(contact, most, k, F, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,7 +6,8 @@
 
    move the Dirichlet sides by W_b t_b d: the step of Newton's method in x, whatever the order of the bodies. With several times in the
    controller step the matrices are those of a convolution in time. With more active rows than a dense matrix is good for, S is only
-   multiplied with, by solutions with the bodies' factors, and d comes from conjugate gradients.
+   multiplied with, by solutions with the bodies' factors, and d comes from conjugate gradients, for one time after the other; where there are
+   several, or bodies make substeps, that is not the whole Jacobian, and secants do the rest.
 */
 #include "schwarzimpl.h"
 #include <petscblaslapack.h>
@@ -300,7 +301,7 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
   PetscFunctionBegin;
   PetscCall(PCShellGetContext(pc, &contact));
   schwarz = (Schwarz *)contact->data;
-  if (!schwarz->uses_secants) {
+  if (!schwarz->uses_secants || (schwarz->exact && schwarz->problem.dense)) {
     PetscCall(ApplyCompliance(contact, F, Y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -96,7 +96,8 @@ typedef struct {
   PetscBool          *known;         /* per row: it is known to the bodies' compliance */
   PetscBool           has_newton;    /* the outer iteration is Newton's */
   InterfaceProblem    problem;
-  PetscBool           uses_secants; /* the compliance is not exact */
+  PetscBool           exact;        /* the compliance is */
+  PetscBool           uses_secants; /* it is not, or not all of it is used where conjugate gradients are */
   Secants             secants;
   PetscBool           recheck;            /* tensile reactions leave the active set within the step */
   PetscBool           swap;               /* sides change with every controller step */
