@@ -74,6 +74,11 @@ def options(shape, more, pairs=None):
     return " ".join(["-bodies l,r -contact_pairs", pairs, TIMES, *bodies, "-time_step 2e-6", more.format(penalty=PENALTY * (1 if shape in SHAPES else WIDTH**2))])
 
 
+def in_one_dimension(method):
+    """Where there are substeps, sweeps on the compliance, without which the force of the last contact is lost to them in one dimension."""
+    return method.replace(" -schwarz_condense 0", "") + (" -schwarz_condense 1" if "ts_time_step" in method else "")
+
+
 def figures(run, shape):
     """Over time: forces, energies, and what lies along the bars."""
     normal = NORMAL.get(shape, np.ones(1))
@@ -97,23 +102,23 @@ def compare(one, other, within):
 
 @pytest.mark.parametrize(("shape", "method"), CASES)
 def test_impact(shape, method, shared_run):
-    """At every step. The issue wants 1e-6; measured: 5e-13 to 2e-11, as the outer iteration stops at 1e-12 m of displacements of 1e-2 m, and with the
-    paper's method, which chatters, 1e-11. The figures themselves are tested in one dimension, and here for what they must be in a rough way:
+    """At every step. The issue wants 1e-6; measured: 1e-12, as the outer iteration stops at 1e-12 m of displacements of 1e-2 m, and 1.4e-10 with the
+    paper's method, which chatters. The figures themselves are tested in one dimension, and here for what they must be in a rough way:
     rho A c v = 1e4 N, over two passages of 2.5e-4 s."""
-    bars = shared_run(options("bar2", METHODS[method]))
+    bars = shared_run(options("bar2", in_one_dimension(METHODS[method])))
     run = shared_run(options(shape, METHODS[method]))
     compare(figures(bars, "bar2"), figures(run, shape), 1e-9)
     assert run.summary["contact"]["onsets"] == bars.summary["contact"]["onsets"]
     assert run.summary["contact"]["force_mean"] == pytest.approx(1e4, rel=0.01)
     assert run.summary["contact"]["impulse"] == pytest.approx(5, rel=0.03)  # 25 elements with lumped mass lose 2.1 %
-    if "ts_time_step" not in METHODS[method] and method != "paper":  # the force with which contact ends is not one and the same over substeps
+    if method not in ("EI", "paper"):  # EI: the partner of a body with substeps does not know the force in them; paper: nodes with mass lose theirs
         assert run.summary["system"]["momentum_error_max"] <= 1e-10
 
 
 @pytest.mark.parametrize("shape", ["quad4-turned", "hex8-turned"])
 @pytest.mark.parametrize("method", ["II", "IE", "EI", "EE", "anderson"])
 def test_condensed(shape, method, shared_run):
-    """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: the issue wants 1e-10."""
+    """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: the issue wants 1e-10; measured: 6e-13."""
     runs = [shared_run(options(shape, f"{METHODS[method]} -schwarz_condense {condense}")) for condense in (0, 1)]
     compare(*(figures(run, shape) for run in runs), 1e-10)
     np.testing.assert_array_equal(*(run.history["schwarz/iterations"][()] for run in runs))
