@@ -313,11 +313,14 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
   if (body->n_prescribed) {
     Vec force = body->internal_force;
 
-    if (body->traction == BODY_TRACTION_REACTION) {
+    if (body->traction == BODY_TRACTION_REACTION || body->loads || body->n_forced) {
       force = body->work[0];
-      PetscCall(BodyMultiplyMass(body, body->state.a, force));
-      PetscCall(VecAXPY(force, 1, body->internal_force));
+      if (body->traction == BODY_TRACTION_REACTION) {
+        PetscCall(BodyMultiplyMass(body, body->state.a, force));
+        PetscCall(VecAXPY(force, 1, body->internal_force));
+      } else PetscCall(VecCopy(body->internal_force, force));
       /* what is loaded and prescribed at once has the load in its balance */
+      PetscCall(BodyAddExternalForce(body, body->time, -1, force));
       PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, body->state.u, force));
     }
     PetscCall(WriteTrace(body, force, body->traces.reaction, level));

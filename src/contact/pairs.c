@@ -131,30 +131,46 @@ static PetscErrorCode GetElementSize(Body body, PetscReal *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the second body should take displacements rather than the first: an implicit one before an explicit one, then the one with the finer
-   mesh. A difference of a thousandth is none. */
-static PetscErrorCode PrefersSecond(Contact contact, PetscInt first, PetscInt second, PetscBool *prefers)
+/* What decides which of two bodies takes displacements */
+typedef struct {
+  PetscBool is_explicit;
+  PetscReal size; /* mean edge length of its elements, of all that are alike the largest [m] */
+} Preference;
+
+/* Of all bodies. Elements of sizes that differ by less than a thousandth, from the largest of them, are alike: for two bodies on their own that
+   could go round in circles. */
+static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
 {
-  PetscBool is_explicit[2];
-  PetscReal size[2];
+  PetscReal *size, level = PETSC_MAX_REAL;
 
   PetscFunctionBegin;
-  PetscCall(BodyIsExplicit(contact->bodies[first], &is_explicit[0]));
-  PetscCall(BodyIsExplicit(contact->bodies[second], &is_explicit[1]));
-  PetscCall(GetElementSize(contact->bodies[first], &size[0]));
-  PetscCall(GetElementSize(contact->bodies[second], &size[1]));
-  *prefers = is_explicit[0] == is_explicit[1] ? (PetscBool)(size[1] < 0.999 * size[0]) : is_explicit[0];
+  PetscCall(PetscMalloc1(contact->n_bodies, &size));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
+    PetscCall(GetElementSize(contact->bodies[b], &size[b]));
+    preferences[b].size = -1;
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt largest = -1;
+
+    for (PetscInt c = 0; c < contact->n_bodies; c++)
+      if (preferences[c].size < 0 && (largest < 0 || size[c] > size[largest])) largest = c;
+    if (size[largest] < 0.999 * level) level = size[largest];
+    preferences[largest].size = level;
+  }
+  PetscCall(PetscFree(size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A pair of whole bodies whose order is not stated */
-static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second)
+/* A pair of whole bodies whose order is not stated: an implicit one before an explicit one, then the one with the finer mesh, then the one that is
+   named first, takes displacements */
+static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const Preference preferences[])
 {
-  char      pair[256];
-  PetscBool turn = PETSC_FALSE;
+  const Preference *a = &preferences[first], *b = &preferences[second];
+  const PetscBool   turn = a->is_explicit == b->is_explicit ? (PetscBool)(b->size < a->size) : a->is_explicit;
+  char              pair[256];
 
   PetscFunctionBegin;
-  PetscCall(PrefersSecond(contact, first, second, &turn));
   PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[turn ? second : first])->name, ((PetscObject)contact->bodies[turn ? first : second])->name));
   PetscCall(ContactAddPair(contact, pair));
   contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
@@ -164,9 +180,14 @@ static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt sec
 /* All bodies with each other and with all obstacles */
 PetscErrorCode ContactAddAllPairs(Contact contact)
 {
+  Preference *preferences;
+
   PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
+  PetscCall(GetPreferences(contact, preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
-    for (PetscInt b = a + 1; b < contact->n_bodies; b++) PetscCall(AddUnordered(contact, a, b));
+    for (PetscInt b = a + 1; b < contact->n_bodies; b++) PetscCall(AddUnordered(contact, a, b, preferences));
+  PetscCall(PetscFree(preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt o = 0; o < contact->n_obstacles; o++) {
       const char *name;

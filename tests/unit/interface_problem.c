@@ -125,11 +125,35 @@ static void every_way_gives_the_same(void **state)
     }
 }
 
+/* The corner of the first block carries a traction beside its contact force: what its partner feels is the latter */
+static void a_traction_on_a_contact_node_is_not_handed_on(void **state)
+{
+  static const char *const ways[]     = {"-schwarz_condense 1", "-schwarz_condense 0", "-schwarz_condense 0 -schwarz_traction reaction"};
+  Simulation              *simulation = (Simulation *)*state;
+
+  AddBlocks("-a_boundary_traction ymax -a_boundary_traction_ymax 0.05,0");
+  for (PetscInt pairing = 0; pairing < PAIRINGS; pairing++)
+    for (PetscInt s = 0; s < STEPS; s++) {
+      Record r[3];
+
+      AddOptions(pairings[pairing]);
+      AddOptions(steps[s]);
+      AddOptions("-schwarz_traction internal");
+      for (PetscInt way = 0; way < 3; way++) {
+        SimulationRepeat(simulation, ways[way]);
+        record(simulation, 25, &r[way]);
+        if (way) compare(&r[way], &r[0], 1e-10);
+      }
+      assert_true(r[0].most_active >= 3);
+    }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       simulation_test(two_sweeps_are_enough),
       simulation_test(every_way_gives_the_same),
+      simulation_test(a_traction_on_a_contact_node_is_not_handed_on),
   };
 
   return impakt_main(argc, argv, tests);
