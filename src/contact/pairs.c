@@ -177,22 +177,75 @@ static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt sec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Middle of a body in one dimension [m] */
+static PetscErrorCode GetMiddle(Body body, PetscReal middle[3])
+{
+  PetscReal lower[3], upper[3];
+  DM        dm;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDM(body, &dm));
+  PetscCall(DMGetBoundingBox(dm, lower, upper));
+  middle[0] = 0.5 * (lower[0] + upper[0]);
+  middle[1] = middle[2] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether another body keeps body `a` from ever touching body `b`, or an obstacle: on a line, where it lies between them */
+static PetscErrorCode IsHidden(Contact contact, PetscInt a, PetscInt b, Obstacle obstacle, PetscBool *hidden)
+{
+  PetscReal first[3], second[3], normal[3], distance = 0;
+  PetscInt  dim = 1;
+
+  PetscFunctionBegin;
+  *hidden = PETSC_FALSE;
+  for (PetscInt c = 0; c < contact->n_bodies; c++) {
+    PetscInt of_body;
+    DM       dm;
+
+    PetscCall(BodyGetDM(contact->bodies[c], &dm));
+    PetscCall(DMGetCoordinateDim(dm, &of_body));
+    dim = PetscMax(dim, of_body);
+  }
+  if (dim > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetMiddle(contact->bodies[a], first));
+  if (obstacle) PetscCall(ObstacleGetGap(obstacle, first, &distance, normal));
+  else PetscCall(GetMiddle(contact->bodies[b], second));
+  for (PetscInt c = 0; c < contact->n_bodies; c++) {
+    PetscReal middle[3], between;
+
+    if (c == a || c == b) continue;
+    PetscCall(GetMiddle(contact->bodies[c], middle));
+    if (obstacle) {
+      PetscCall(ObstacleGetGap(obstacle, middle, &between, normal));
+      if (between < distance && between > 0) *hidden = PETSC_TRUE;
+    } else if ((middle[0] - first[0]) * (middle[0] - second[0]) < 0) *hidden = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All bodies with each other and with all obstacles */
 PetscErrorCode ContactAddAllPairs(Contact contact)
 {
   Preference *preferences;
+  PetscBool   hidden;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
   PetscCall(GetPreferences(contact, preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
-    for (PetscInt b = a + 1; b < contact->n_bodies; b++) PetscCall(AddUnordered(contact, a, b, preferences));
+    for (PetscInt b = a + 1; b < contact->n_bodies; b++) {
+      PetscCall(IsHidden(contact, a, b, NULL, &hidden));
+      if (!hidden) PetscCall(AddUnordered(contact, a, b, preferences));
+    }
   PetscCall(PetscFree(preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt o = 0; o < contact->n_obstacles; o++) {
       const char *name;
       char        pair[256];
 
+      PetscCall(IsHidden(contact, a, -1, contact->obstacles[o], &hidden));
+      if (hidden) continue;
       PetscCall(ObstacleGetName(contact->obstacles[o], &name));
       PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[a])->name, name));
       PetscCall(ContactAddPair(contact, pair));

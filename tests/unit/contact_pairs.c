@@ -1,0 +1,202 @@
+/* Which pairs there are, which side takes displacements, what obstacles and tied surfaces do. */
+#include "simulation.h"
+
+static void AddBox(const char name[], PetscInt dim, const char faces[], const char lower[], const char upper[], const char more[])
+{
+  char options[1024];
+
+  ok(PetscSNPrintf(options, sizeof(options), "-prefix_push %s_ -dm_plex_dim %d -dm_plex_simplex 0 -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s -density 1 -youngs_modulus 1 %s -prefix_pop", name, (int)dim, faces, lower, upper, more));
+  AddOptions(options);
+}
+
+static void check_pairs(Simulation *simulation, PetscInt n, const char *const expected[])
+{
+  PetscInt found;
+
+  ok(ContactGetNumPairs(simulation->contact, &found));
+  assert_int_equal(found, n);
+  for (PetscInt p = 0; p < n; p++) {
+    const char *name;
+
+    ok(ContactGetPair(simulation->contact, p, &name, NULL, NULL));
+    assert_string_equal(name, expected[p]);
+  }
+}
+
+#define FLOOR "-floor_obstacle_type plane -floor_point 0,-1,0 -floor_normal 0,1,0 "
+#define WALL  "-wall_obstacle_type plane -wall_point 9,0,0 -wall_normal -1,0,0 "
+
+/* The implicit body, then the finer mesh, then the one named first */
+static void sides_are_chosen(void **state)
+{
+  static const char *const finer[] = {"a:b", "c:a", "c:b", "a:floor", "a:wall", "b:floor", "b:wall", "c:floor", "c:wall"}, *const implicit[] = {"a:b", "a:c", "b:c", "a:floor", "a:wall", "b:floor", "b:wall", "c:floor", "c:wall"};
+  Simulation *simulation = (Simulation *)*state;
+
+  AddBox("a", 2, "3,3", "0,0", "1,1", "");
+  AddBox("b", 2, "3,3", "2,0", "3,1", "");
+  AddBox("c", 2, "4,4", "4,0", "5,1", "");
+  AddOptions(FLOOR WALL "-obstacles floor,wall -bodies a,b,c -contact_pairs auto -time_step 0.01 -time_end 0.1");
+  ok(SimulationCreate(simulation));
+  check_pairs(simulation, 9, finer);
+  SimulationRepeat(simulation, "-c_ts_type centraldifference");
+  check_pairs(simulation, 9, implicit);
+  ok(ContactStep(simulation->contact));
+}
+
+/* Each is by less than a thousandth finer than the one before, and the last by more than the first: no circle may come of it */
+static void nearly_equal_meshes_form_no_circle(void **state)
+{
+  static const char *const expected[] = {"a:b", "c:a", "c:b"};
+  Simulation              *simulation = (Simulation *)*state;
+
+  AddBox("a", 2, "10,3", "0,0", "1,1", "");
+  AddBox("b", 2, "10,3", "2,0", "2.999,1", ""); /* the edge is the root of the area */
+  AddBox("c", 2, "10,3", "4,0", "4.9978,1", "");
+  AddOptions("-bodies a,b,c -contact_pairs auto -time_step 0.01 -time_end 0.1");
+  ok(SimulationCreate(simulation));
+  check_pairs(simulation, 3, expected);
+}
+
+/* On a line, what lies between two bodies keeps them apart: the end of a bar has one partner */
+static void bars_touch_their_neighbours(void **state)
+{
+  static const char *const expected[] = {"a:b", "b:c", "a:floor", "c:wall"};
+  Simulation              *simulation = (Simulation *)*state;
+
+  AddBar("c", 3, 4, 10, -0.1);
+  AddBar("a", 0.1, 1, 9, 0.1);
+  AddBar("b", 1.5, 2.5, 10, 0);
+  AddOptions("-floor_obstacle_type plane -floor_point 0 -floor_normal 1 -wall_obstacle_type plane -wall_point 5 -wall_normal -1 -obstacles floor,wall -bodies a,b,c -contact_pairs auto -time_step 0.1 -time_end 20");
+  ok(SimulationCreate(simulation));
+  check_pairs(simulation, 4, expected);
+  for (PetscInt step = 0; step < 200; step++) (void)Step(simulation);
+  between(TotalEnergy(simulation), 0, 1.01 * 0.5 * 0.1 * 0.1 * 1.9); /* all pairs have been in contact, some at the same time */
+}
+
+static void the_order_of_the_user_stands(void **state)
+{
+  static const char *const expected[] = {"a:b"};
+  Simulation              *simulation = (Simulation *)*state;
+
+  AddBox("a", 2, "2,2", "0,0", "1,1", "-ts_type centraldifference");
+  AddBox("b", 2, "7,7", "2,0", "3,1", "");
+  AddOptions("-bodies a,b -contact_pairs a:b -time_step 0.01 -time_end 0.1");
+  ok(SimulationCreate(simulation));
+  check_pairs(simulation, 1, expected);
+}
+
+static void bad_pairs_are_refused(void **state)
+{
+  static const struct {
+    const char *options, *words;
+  } cases[] = {
+      {"-contact_pairs a:floor -obstacles floor " FLOOR "-floor_point 0,0.5,0", "a:floor|inside the obstacle"},
+      {"-contact_pairs floor:a -obstacles floor " FLOOR, "floor:a|no body 'floor'|obstacles stand second"},
+      {"-contact_pairs a:ceiling -obstacles floor " FLOOR, "no body 'ceiling'"},
+      {"-contact_pairs a:floor.top -obstacles floor " FLOOR, "floor"},
+      {"-contact_pairs auto -obstacles b -b_obstacle_type plane -b_point 0,-1,0 -b_normal 0,1,0", "'b'|body already"},
+      {"-contact_pairs a:b,b:a", "circle"},
+      {"-contact_pairs a.left:b", "left"},
+      {"-contact_pairs a.xmin:b.xmax", "a.xmin:b.xmax|do not face each other"},
+      {"-contact_pairs a:b -obstacles floor -floor_obstacle_type plane -floor_point 0,-1,0", "-floor_normal is missing"},
+      {"-contact_pairs a:ball -obstacles ball -ball_obstacle_type sphere -ball_point 0,-9,0", "-ball_radius|positive radius"},
+      {"-contact_pairs a:b,a:floor -obstacles floor -contact_swap_sides " FLOOR, "a:floor|no other side"},
+      {"-contact_pairs a:b,a:floor -obstacles floor -schwarz_transmission robin " FLOOR, "a:floor|no other side"},
+      {"-contact_pairs a:b,a:floor -obstacles floor -schwarz_transmission impedance " FLOOR, "a:floor|no other side"},
+  };
+  Simulation *simulation = (Simulation *)*state;
+
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    AddBox("a", 2, "3,3", "0,0", "1,1", "");
+    AddBox("b", 2, "3,3", "2,0", "3,1", "");
+    AddOptions("-bodies a,b -time_step 0.01 -time_end 0.1");
+    AddOptions(cases[i].options);
+    refused(PETSC_ERR_USER_INPUT, cases[i].words, SimulationCreate(simulation));
+    ok(ControllerDestroy(&simulation->controller));
+    options_drop(simulation->options);
+    simulation->options = options_begin("");
+  }
+}
+
+static void bodies_of_different_dimension_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddBox("a", 2, "3,3", "0,0", "1,1", "");
+  AddBox("b", 3, "3,3,3", "2,0,0", "3,1,1", "");
+  AddOptions("-bodies a,b -time_step 0.01 -time_end 0.1");
+  refused(PETSC_ERR_USER_INPUT, "a:b|dimension|2|3", SimulationCreate(simulation));
+}
+
+/* A body thrown at a plane, a disc, or a sphere, bounces: what it hands over as impulse it gains in momentum, along all axes, and it does not
+   get in. A plane has a normal against the fall, of which only one component takes part. */
+static void check_bounce(Simulation *simulation, PetscInt dim, PetscInt steps, PetscReal tolerance)
+{
+  BodyMeasures     before, after;
+  PetscReal        deepest = 0;
+  PetscInt         touched = 0;
+  ContactPairState pair    = {0};
+
+  ok(BodyGetMeasures(simulation->bodies[0], &before));
+  for (PetscInt step = 0; step < steps; step++) {
+    pair    = Step(simulation);
+    deepest = PetscMin(deepest, pair.gap);
+    touched += pair.active > 0;
+  }
+  ok(BodyGetMeasures(simulation->bodies[0], &after));
+  assert_true(touched > 3);
+  assert_int_equal(pair.active, 0);
+  between(deepest, -1e-10, 0);
+  assert_true(after.momentum[dim - 1] > 0 && before.momentum[dim - 1] < 0);
+  for (PetscInt d = 0; d < dim; d++) near(after.momentum[d] - before.momentum[d], -pair.impulse[d], tolerance * PetscAbsReal(before.momentum[dim - 1]));
+}
+
+static const char *const integrators_of_bodies[] = {"", "-a_ts_type centraldifference"};
+static const char *const planes[]                = {"-o_obstacle_type plane -o_point 0 -o_normal 1 ", "-o_obstacle_type plane -o_point 0,0 -o_normal 0,1 ", "-o_obstacle_type plane -o_point 0,0,0 -o_normal 0,0,1 "};
+static const char *const rounds[]                = {NULL, "-o_obstacle_type cylinder -o_point 0.5,-2 -o_radius 2 ", "-o_obstacle_type sphere -o_point 0.5,0.5,-2 -o_radius 2 "};
+static const char *const lying[]                 = {NULL, NULL, "-o_obstacle_type cylinder -o_point 0.5,0.5,-2 -o_radius 2 -o_axis 0,1,0 "};
+
+static void AddThrown(PetscInt dim, const char obstacle[])
+{
+  static const char *const faces[] = {"12", "3,4", "2,2,3"}, *const lowers[] = {"0.02", "0,0.02", "0,0,0.02"}, *const uppers[] = {"1.02", "1,1.02", "1,1,1.02"}, *const velocities[] = {"-initial_velocity -0.1", "-initial_velocity 0.01,-0.1", "-initial_velocity 0.01,0,-0.1"};
+
+  AddBox("a", dim, faces[dim - 1], lowers[dim - 1], uppers[dim - 1], velocities[dim - 1]);
+  AddOptions(obstacle);
+  AddOptions("-bodies a -obstacles o -time_step 0.04 -time_end 4 ");
+}
+
+static void thrown_bodies_bounce(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  for (PetscInt dim = 1; dim <= 3; dim++)
+    for (PetscInt kind = 0; kind < 3; kind++)
+      for (PetscInt i = 0; i < 2; i++) {
+        const char *obstacle = kind == 0 ? planes[dim - 1] : kind == 1 ? rounds[dim - 1]
+                                                                       : lying[dim - 1];
+
+        if (!obstacle) continue;
+        AddThrown(dim, obstacle);
+        AddOptions("-contact_type schwarz");
+        SimulationRepeat(simulation, integrators_of_bodies[i]);
+        check_bounce(simulation, dim, 100, 1e-2);
+        ok(ControllerDestroy(&simulation->controller));
+        options_drop(simulation->options);
+        simulation->options = options_begin("");
+      }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      simulation_test(sides_are_chosen),
+      simulation_test(nearly_equal_meshes_form_no_circle),
+      simulation_test(bars_touch_their_neighbours),
+      simulation_test(the_order_of_the_user_stands),
+      simulation_test(bad_pairs_are_refused),
+      simulation_test(bodies_of_different_dimension_are_refused),
+      simulation_test(thrown_bodies_bounce),
+  };
+
+  return impakt_main(argc, argv, tests);
+}
