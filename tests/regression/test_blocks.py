@@ -7,7 +7,7 @@ from cases import ANDERSON, joined, never_tensile, worst_energy_error
 pytest_plugins = "shared_runs"
 
 BLOCKS = "-options_file options/blocks.opts"
-LEFT, RIGHT = ("-{0}_ts_type centraldifference".format(body) for body in ("left", "right"))
+LEFT, RIGHT = (f"-{body}_ts_type centraldifference" for body in ("left", "right"))
 PAIRINGS = {"II": "", "IE": RIGHT, "EI": LEFT, "EE": f"{LEFT} {RIGHT}"}
 FINE = f"{RIGHT} -right_ts_time_step 2.5e-7"  # four substeps beside one implicit step
 # the demands; measured: 1.5e-6 (II), 1.2e-6 (IE), 8e-7 (EI), 4e-7 (EE)
