@@ -96,6 +96,16 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What part of the force of a row is normal: tied rows are along the axes, others along normals */
+static PetscReal Normality(Contact contact, const ContactPair *pair, PetscInt i)
+{
+  PetscReal part = 0;
+
+  if (contact->law != CONTACT_LAW_TIED) return 1;
+  for (PetscInt d = 0; d < contact->dim; d++) part += contact->row_normal[3 * i + d] * pair->normal[d];
+  return part;
+}
+
 static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
 {
   const ContactPair *pair    = &contact->pairs[p];
@@ -106,7 +116,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   maxima[MAX_PENETRATION] = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]     = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++) {
-    sums[SUM_FORCE] += contact->force[i];
+    sums[SUM_FORCE] += contact->force[i] * Normality(contact, pair, i);
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->gap[i]);
     if (!contact->tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
     if (!contact->active[i]) continue;
