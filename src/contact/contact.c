@@ -225,6 +225,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscOptionsEnd();
   PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound, (double)contact->angle_bound);
   PetscCall(ContactReadObstacles(contact));
+  PetscCheck(!set || n < 64, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs takes 63 pairs at most; for more say auto, all with all");
   if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "none", &none));
   if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "auto", &all));
   if (set) {

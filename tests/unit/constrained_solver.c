@@ -203,6 +203,69 @@ static void solves_with_rows_on_springs(void **state)
   }
 }
 
+/* Constraint forces by conjugate gradients, to 1e-13 of some tenths, held rows and springs alike */
+static void conjugate_gradients_give_the_same(void **state)
+{
+  const PetscReal flexibility[ROWS] = {0.5, 0, 3, 0};
+  System          s;
+
+  (void)state;
+  create_system(&s, -1);
+  ok(ConstrainedSolverSetDenseLimit(s.solver, 0));
+  for (size_t k = 0; k < sizeof(sets) / sizeof(sets[0]); k++) {
+    PetscBool springs[ROWS];
+
+    hold(&s, sets[k]);
+    check_solution(&s, sets[k], (PetscInt)k);
+    for (PetscInt r = 0; r < ROWS; r++) springs[r] = sets[k][r];
+    ok(ConstrainedSolverSetConstraints(s.solver, springs + s.begin, flexibility + s.begin));
+    {
+      PetscReal soft[ROWS];
+
+      for (PetscInt r = 0; r < ROWS; r++) soft[r] = springs[r] ? flexibility[r] : 0;
+      check_flexible_solution(&s, springs, soft, (PetscInt)k + 20);
+    }
+  }
+  destroy_system(&s);
+}
+
+/* Rows 1 and 2 change places, the others stay: the columns of what stays know what they do to the new rows */
+static void rows_may_change(void **state)
+{
+  const PetscInt place[ROWS] = {0, 2, 1, 3};
+
+  (void)state;
+  for (PetscInt limit = 0; limit < 2; limit++)
+    for (PetscInt all = 0; all < 2; all++) {
+      PetscInt  begin, end;
+      PetscBool changed[ROWS] = {PETSC_FALSE, PETSC_TRUE, PETSC_TRUE, PETSC_FALSE};
+      System    s;
+      Mat       B;
+
+      create_system(&s, -1);
+      if (!limit) ok(ConstrainedSolverSetDenseLimit(s.solver, 0));
+      hold(&s, sets[2]); /* columns of rows 0, 1, 2 are there */
+      check_solution(&s, sets[2], 1);
+      ok(VecGetOwnershipRange(s.b, &begin, &end));
+      ok(MatCreateAIJ(PETSC_COMM_WORLD, s.end - s.begin, end - begin, ROWS, SIZE, 2, NULL, 2, NULL, &B));
+      for (PetscInt i = s.begin; i < s.end; i++)
+        for (PetscInt j = 0; j < SIZE; j++)
+          if (b_entry(place[i], j) != 0) ok(MatSetValue(B, i, j, b_entry(place[i], j), INSERT_VALUES));
+      ok(MatAssemblyBegin(B, MAT_FINAL_ASSEMBLY));
+      ok(MatAssemblyEnd(B, MAT_FINAL_ASSEMBLY));
+      ok(ConstrainedSolverSetRows(s.solver, B, all ? NULL : changed + s.begin));
+      ok(MatDestroy(&B));
+      for (size_t k = 0; k < sizeof(sets) / sizeof(sets[0]); k++) {
+        PetscBool moved[ROWS];
+
+        for (PetscInt r = 0; r < ROWS; r++) moved[r] = sets[k][place[r]];
+        hold(&s, moved);
+        check_solution(&s, sets[k], (PetscInt)k);
+      }
+      destroy_system(&s);
+    }
+}
+
 /* The matrix is factored once, whatever is held */
 static void never_factors_again(void **state)
 {
@@ -249,6 +312,8 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solves_with_any_set_of_rows_held),
       cmocka_unit_test(solves_with_rows_on_springs),
+      cmocka_unit_test(conjugate_gradients_give_the_same),
+      cmocka_unit_test(rows_may_change),
       cmocka_unit_test(never_factors_again),
       cmocka_unit_test(refuses_rows_that_are_not_independent),
   };

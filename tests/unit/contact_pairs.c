@@ -91,15 +91,9 @@ static void bad_pairs_are_refused(void **state)
     const char *options, *words;
   } cases[] = {
       {"-contact_pairs a:floor -obstacles floor " FLOOR "-floor_point 0,0.5,0", "a:floor|inside the obstacle"},
-      {"-contact_pairs floor:a -obstacles floor " FLOOR, "floor:a|no body 'floor'|obstacles stand second"},
-      {"-contact_pairs a:ceiling -obstacles floor " FLOOR, "no body 'ceiling'"},
-      {"-contact_pairs a:floor.top -obstacles floor " FLOOR, "floor"},
-      {"-contact_pairs auto -obstacles b -b_obstacle_type plane -b_point 0,-1,0 -b_normal 0,1,0", "'b'|body already"},
       {"-contact_pairs a:b,b:a", "circle"},
       {"-contact_pairs a.left:b", "left"},
       {"-contact_pairs a.xmin:b.xmax", "a.xmin:b.xmax|do not face each other"},
-      {"-contact_pairs a:b -obstacles floor -floor_obstacle_type plane -floor_point 0,-1,0", "-floor_normal is missing"},
-      {"-contact_pairs a:ball -obstacles ball -ball_obstacle_type sphere -ball_point 0,-9,0", "-ball_radius|positive radius"},
       {"-contact_pairs a:b,a:floor -obstacles floor -contact_swap_sides " FLOOR, "a:floor|no other side"},
       {"-contact_pairs a:b,a:floor -obstacles floor -schwarz_transmission robin " FLOOR, "a:floor|no other side"},
       {"-contact_pairs a:b,a:floor -obstacles floor -schwarz_transmission impedance " FLOOR, "a:floor|no other side"},
