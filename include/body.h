@@ -91,7 +91,7 @@ typedef struct {
   PetscReal momentum[3];         /* kg m/s */
   PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
   PetscReal mean_velocity[3];    /* mass-averaged, m/s */
-  PetscBool loaded;              /* whether forces from outside or held displacements act at all */
+  PetscBool loaded;              /* whether forces from outside, held displacements or obstacles act at all */
 } BodyMeasures;
 
 /*S

@@ -59,6 +59,7 @@ struct _p_Contact {
   PetscBool           *tied;                    /* it is held whatever its force and gap */
   PetscBool           *changed;                 /* it has new entries */
   PetscReal           *gap_shift;               /* added to its gap when it was built again [m] */
+  PetscReal           *last_gap;                /* work space: before that */
   PetscReal           *force, *gap;             /* at the end of the controller step */
   PetscReal           *saved_force, *saved_gap; /* at its start */
   PetscBool           *active, *saved_active;

@@ -6,7 +6,7 @@
 /* Rows whose bodies lie closer than this part of a face are tied */
 #define TIE_DISTANCE 0.5
 /* Part of the jump of a gap, where its row was built again, that is given back in a controller step */
-#define SHIFT_FADES 0.02
+#define SHIFT_FADES 0.002
 /* Directions along which a row moves less than this part of the displacement do not count */
 #define DIRECTION 1e-9
 
@@ -65,7 +65,8 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCallMPI(MPI_Allreduce(&n, &contact->n_all_rows, 1, MPIU_INT, MPI_SUM, comm));
   PetscCall(PetscCalloc7(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area, n, &contact->row_dof, 3 * n, &contact->row_normal, n, &contact->opposite, n, &contact->tied));
   PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n, &contact->saved_active, n, &contact->conditions));
-  PetscCall(PetscCalloc7(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets, n, &contact->changed, n, &contact->gap_shift));
+  PetscCall(PetscCalloc5(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets));
+  PetscCall(PetscCalloc3(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->size; total += contact->counts[r++]) contact->offsets[r] = total;
@@ -198,16 +199,27 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
 /* Surfaces of a pair that the user wants must have faces that see each other, though they may lie beside each other at the start */
 static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 {
-  const SurfaceData *data;
-  int                any[2] = {0, 1};
+  Surface surfaces[2] = {NULL, NULL};
+  int     any[2]      = {0, 1};
 
   PetscFunctionBegin;
+  if (pair->chosen || !contact->facing) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    PetscCall(SurfaceGetData(pair->surfaces[side], &data));
+    DM dm;
+
+    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
+    PetscCall(SurfaceCreate(dm, pair->surface[side], &surfaces[side]));
+  }
+  PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], pair->obstacle, PETSC_TRUE, PETSC_TRUE));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    const SurfaceData *data;
+
+    PetscCall(SurfaceGetData(surfaces[side], &data));
     any[side] = data->n_faces > 0;
     PetscCall(ContactOr(contact, &any[side]));
+    PetscCall(SurfaceDestroy(&surfaces[side]));
   }
-  PetscCheck(pair->chosen || (any[0] && any[1]), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
+  PetscCheck(any[0] && any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -350,8 +362,8 @@ static PetscErrorCode ShiftGaps(Contact contact)
       const PetscBool held = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
 
       if (!contact->changed[i]) continue;
-      contact->gap_shift[i] = !contact->opposite[i] ? 0 : held ? -contact->gap[i]
-                                                               : PetscMax(-contact->gap[i], 0);
+      if (!contact->opposite[i]) contact->gap_shift[i] = 0;
+      else contact->gap_shift[i] = held ? contact->last_gap[i] - contact->gap[i] : PetscMax(-contact->gap[i], 0);
       contact->initial_gap[i] += contact->gap_shift[i];
       contact->gap[i] += contact->gap_shift[i];
       contact->saved_gap[i] = contact->gap[i];
@@ -405,6 +417,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     contact->saved_active[i] = PETSC_FALSE;
     contact->saved_force[i]  = 0;
   }
+  PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ShiftGaps(contact));
   PetscTryTypeMethod(contact, rowschanged);
@@ -438,6 +451,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree(contact->pairs));
   PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite, contact->tied));
   PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active, contact->conditions));
-  PetscCall(PetscFree7(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets, contact->changed, contact->gap_shift));
+  PetscCall(PetscFree5(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets));
+  PetscCall(PetscFree3(contact->changed, contact->gap_shift, contact->last_gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -191,6 +191,13 @@ static PetscErrorCode Observe(Controller controller, PetscInt step)
     PetscCall(BodyGetMeasures(controller->bodies[b], &controller->measures[b]));
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
   }
+  for (PetscInt p = 0; p < frame.n_pairs; p++) { /* an obstacle is something outside */
+    Body first, second;
+
+    PetscCall(ContactGetPair(controller->contact, p, NULL, &first, &second));
+    for (PetscInt b = 0; b < controller->n_bodies && !second; b++)
+      if (controller->bodies[b] == first) controller->measures[b].loaded = PETSC_TRUE;
+  }
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
   PetscCall(ContactGetCounts(controller->contact, &counts));
   frame.sweeps = step ? counts.sweeps : 0;

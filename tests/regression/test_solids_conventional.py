@@ -40,7 +40,8 @@ def test_penalty(shape, pairing, shared_run):
 @pytest.mark.parametrize("shape", ["quad4", "hex8"])
 def test_default_penalty(shape, shared_run):
     """The default is the same in one dimension and in others, Poisson's ratio being 0: 10 elements of each side, one behind the other."""
-    bars, solids = (shared_run(options(each, "-contact_type penalty")).summary for each in ("bar2", shape))
+    cubes = {"bar2": "", "quad4": "-l_dm_plex_box_faces 25,1 -r_dm_plex_box_faces 25,1", "hex8": ""}  # elements of one size in all directions
+    bars, solids = (shared_run(options(each, f"-contact_type penalty {cubes[each]}")).summary for each in ("bar2", shape))
     given = shared_run(options("bar2", f"-contact_type penalty -contact_penalty {10 * ELEMENT / 2}")).summary
     same_figures(bars, solids, 1e-6)
     same_figures(given, bars, 1e-9)
@@ -61,16 +62,17 @@ METHODS = {
     "penalty-nonlinear": "-contact_type penalty -left_material_type neo_hookean -right_material_type saint_venant_kirchhoff -left_dm_plex_box_faces 10,4 -right_dm_plex_box_faces 8,3 -time_step 5e-6",
     "lagrange": f"-contact_type lagrange {BLOCKS_EXPLICIT} {BLOCKS_MASS} -time_step 5e-7",
 }
-# Measured: energy that implicit and explicit springs give back more than they took is 3e-4 with massless contact nodes, 5e-3 with mass;
-# multipliers take 1.3e-2, that of the contact nodes, 1/50 and 1/30 of the elements of each half, when these are stopped
-GAINED = {"penalty-implicit": 5e-4, "penalty-explicit": 5e-4, "penalty-mass": 8e-3, "penalty-nonlinear": 1e-2, "lagrange": 1e-12}
+# Measured: springs give back 1.8e-6 more than they took at most; multipliers take 1.3e-2, that of the contact nodes, 1/50 and 1/30 of the elements
+# of each half, when these are stopped
+GAINED = {"penalty-implicit": 1e-5, "penalty-explicit": 1e-5, "penalty-mass": 1e-5, "penalty-nonlinear": 1e-5, "lagrange": 1e-12}
+ONSETS = {"penalty-mass": 2}  # two corner nodes touch once more after release, having mass of their own
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_blocks(method, shared_run):
     """Faces that do not match: 11 nodes against 8."""
     summary = shared_run(f"{BLOCKS} {METHODS[method]}").summary
-    assert summary["contact"]["onsets"] == 1
+    assert summary["contact"]["onsets"] == ONSETS.get(method, 1)
     assert summary["contact"]["impulse"] == pytest.approx(2 * 12.5 * 100, rel=0.05)  # the blocks, 12.5 kg each, turn round, if with waves in them
     assert summary["system"]["momentum_error_max"] <= 1e-10
     assert summary["system"]["energy_error_max"] <= GAINED[method]

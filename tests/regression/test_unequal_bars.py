@@ -22,7 +22,7 @@ GRAZINGS = {
     "two-ranks": (GRAZING, 2),
     "moving": (joined(GRAZING, MOVING), 1),  # and impact inside a step
     "swapped": (f"{GRAZING} -contact_pairs right:left", 1),
-    "non-matching": (joined(GRAZING, "-left_dm_plex_box_faces 137 -right_dm_plex_box_faces 311"), 1),
+    "non-matching": (joined(GRAZING, "-contact_pairs left:right -left_dm_plex_box_faces 137 -right_dm_plex_box_faces 311"), 1),
     "coarse-step": (joined(GRAZING, MOVING, "-time_step 1e-6"), 1),
     "IE": (joined(GRAZING, PAIRINGS["IE"]), 1),
     "EE": (joined(GRAZING, PAIRINGS["EE"]), 1),
