@@ -93,6 +93,8 @@ PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
+PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);

@@ -1,0 +1,118 @@
+/* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
+#include "contactimpl.h"
+
+/* Part of the jump of a gap, where its row was built again, that is given back in a controller step */
+#define SHIFT_FADES 0.002
+
+/* Gaps at the start of the controller step, from what the bodies tell of it */
+PetscErrorCode ContactComputeStartGaps(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+    PetscScalar       *dirichlet, *neumann;
+
+    PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
+    PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
+    contact->gap[i] = contact->saved_gap[i] = contact->initial_gap[i] + neumann[i] - dirichlet[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Surfaces further apart than this do not touch in the next controller step: twice the way that the fastest nodes of all bodies make towards each
+   other */
+static PetscErrorCode GetReach(Contact contact, PetscReal *near)
+{
+  PetscReal first = 0, second = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    Vec       velocity;
+    PetscReal speed;
+
+    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
+    PetscCall(VecNorm(velocity, NORM_INFINITY, &speed));
+    second = PetscMax(second, PetscMin(first, speed));
+    first  = PetscMax(first, speed);
+  }
+  *near = 2 * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of nothing.
+   So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, and the difference
+   fades in the steps that follow. Between bodies without inertia nothing is a blow. */
+static PetscErrorCode ShiftGaps(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair              = &contact->pairs[p];
+    PetscBool          without_inertia[] = {PETSC_TRUE, PETSC_TRUE};
+
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &without_inertia[side]));
+    if (without_inertia[0] && without_inertia[1]) continue;
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscBool held = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+
+      if (!contact->changed[i]) continue;
+      if (!contact->opposite[i]) contact->gap_shift[i] = 0;
+      else contact->gap_shift[i] = held ? contact->last_gap[i] - contact->gap[i] : PetscMax(-contact->gap[i], 0);
+      contact->initial_gap[i] += contact->gap_shift[i];
+      contact->gap[i] += contact->gap_shift[i];
+      contact->saved_gap[i] = contact->gap[i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What gaps are counted from goes back to the surfaces, by a part of what is left in each controller step */
+static void FadeShifts(Contact contact)
+{
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const PetscReal part = PetscAbsReal(contact->gap_shift[i]) > contact->tolerance ? SHIFT_FADES * contact->gap_shift[i] : contact->gap_shift[i];
+
+    contact->gap_shift[i] -= part;
+    contact->initial_gap[i] -= part;
+    contact->gap[i] -= part;
+    contact->saved_gap[i] -= part;
+  }
+}
+
+/* Looks at the start of a controller step whether surfaces have slid or turned so far that their rows are to be built again, and does so. Rows in
+   contact that have nothing opposite any more are let go. */
+PetscErrorCode ContactUpdateRows(Contact contact)
+{
+  PetscReal near = 0;
+  PetscBool any  = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (contact->dim == 1 || contact->law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetReach(contact, &near));
+  FadeShifts(contact);
+  PetscCall(PetscArrayzero(contact->changed, contact->n_rows));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+    Vec          u[2] = {NULL, NULL};
+    PetscBool    rebuilt;
+
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, &rebuilt));
+    if (!rebuilt) continue;
+    any = PETSC_TRUE;
+    PetscCall(ContactDescribeRows(contact, pair));
+  }
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->counts_made.rebuilds++;
+  PetscCall(ContactFillMatrices(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->changed));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    if (contact->opposite[i]) continue;
+    contact->saved_active[i] = PETSC_FALSE;
+    contact->saved_force[i]  = 0;
+  }
+  PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
+  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ShiftGaps(contact));
+  PetscTryTypeMethod(contact, rowschanged);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
