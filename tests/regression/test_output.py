@@ -225,9 +225,9 @@ def check_whole(path):
     with h5py.File(path, "r") as file:
         found = datasets(file)
         assert found.keys() == expected_units(["left", "right"], ["left:right"]).keys()
-        lengths = {data.shape for data in found.values()}
+        lengths = {len(data) for data in found.values()}
         assert len(lengths) == 1
-        length = lengths.pop()[0]
+        length = lengths.pop()
         np.testing.assert_allclose(file["time"][()], -2e-4 + 1e-9 * np.arange(length), rtol=0, atol=1e-15)
         assert np.isfinite(file["body/left/kinetic"][()]).all()
         return length
