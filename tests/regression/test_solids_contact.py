@@ -147,3 +147,14 @@ def test_surfaces_not_named(shape, pairs, shared_run):
 @pytest.mark.parametrize(("method", "ranks"), [("II", 2), ("II", 4), ("IE", 3), ("penalty", 2), ("lagrange-explicit", 3)])
 def test_ranks(method, ranks, shared_run):
     compare(*(figures(shared_run(options("hex8-turned", METHODS[method]), n), "hex8-turned") for n in (1, ranks)), 1e-9)
+
+
+def test_options_file(shared_run):
+    """The file of the gallery against bars in one dimension: measured 4e-12."""
+    solids = shared_run("-options_file options/impact-solids.opts").summary
+    ends = " ".join(f"-{b}_dm_plex_box_faces 50 -{b}_cross_section 1e-4" for b in ("left", "right"))
+    bars = shared_run(f"-options_file options/bars-high-speed.opts -time_step 1e-6 {ends}").summary
+    for name in ("force_mean", "force_peak", "impulse", "release_time"):
+        assert solids["contact"][name] == pytest.approx(bars["contact"][name], rel=1e-9), name
+    for name in ("kinetic", "potential", "peak_potential"):
+        assert solids["bodies"]["left"][name] == pytest.approx(bars["bodies"]["left"][name], rel=1e-9), name
