@@ -1,9 +1,6 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include "contactimpl.h"
 
-/* Part of the jump of a gap, where its row was built again, that is given back in a controller step */
-#define SHIFT_FADES 0.002
-
 /* Gaps at the start of the controller step, from what the bodies tell of it */
 PetscErrorCode ContactComputeStartGaps(Contact contact)
 {
@@ -40,8 +37,8 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
 }
 
 /* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of nothing.
-   So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, and the difference
-   fades in the steps that follow. Between bodies without inertia nothing is a blow. */
+   So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, until the row is
+   open again. Between bodies without inertia nothing is a blow. */
 static PetscErrorCode ShiftGaps(Contact contact)
 {
   PetscFunctionBegin;
@@ -65,12 +62,13 @@ static PetscErrorCode ShiftGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What gaps are counted from goes back to the surfaces, by a part of what is left in each controller step */
-static void FadeShifts(Contact contact)
+/* What gaps are counted from goes back to the surfaces as soon as a row is open, which costs no work: in contact it would, out of nothing */
+static void DropShifts(Contact contact)
 {
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscReal part = PetscAbsReal(contact->gap_shift[i]) > contact->tolerance ? SHIFT_FADES * contact->gap_shift[i] : contact->gap_shift[i];
+    const PetscReal part = PetscMin(contact->gap_shift[i], PetscMax(contact->gap[i], 0));
 
+    if (contact->saved_active[i] || part == 0) continue;
     contact->gap_shift[i] -= part;
     contact->initial_gap[i] -= part;
     contact->gap[i] -= part;
@@ -88,7 +86,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetReach(contact, &near));
-  FadeShifts(contact);
+  DropShifts(contact);
   PetscCall(PetscArrayzero(contact->changed, contact->n_rows));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
