@@ -76,7 +76,7 @@ def test_faces_that_see_each_other(shared_run):
     assert contact_nodes(shared_run(f"{two} -contact_facing true")) <= 8
 
 
-def test_ten_balls(shared_run):
+def test_ten_balls_in_three_dimensions(shared_run):
     """In three dimensions: measured, energy grows by 7.2e-5 of itself at most, at a step of 2e-4 s (1e-14 at half of it); rows close to 1e-15 m."""
     summary = shared_run("-options_file options/ten-balls-3d.opts").summary
     assert summary["system"]["energy_error_max"] <= 2e-4
