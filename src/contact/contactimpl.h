@@ -1,5 +1,6 @@
 #pragma once
 #include <contact.h>
+#include <petscksp.h>
 #include <petsc/private/petscimpl.h>
 
 struct _ContactOps {
@@ -97,6 +98,7 @@ PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
+PETSC_INTERN PetscErrorCode ContactCreateRowSolver(Contact, const char[], PetscReal, PetscErrorCode (*)(Mat, Vec, Vec), void *, KSP *);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);

@@ -234,25 +234,11 @@ static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
 
 static PetscErrorCode CreateIterative(Contact contact, ForceProblem *problem)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
-  Mat      shell;
-  PC       pc;
-
   PetscFunctionBegin;
   PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->unknown));
   PetscCall(VecDuplicate(problem->unknown, &problem->rhs));
   for (PetscInt k = 0; k < 3; k++) PetscCall(VecDuplicate(problem->unknown, &problem->work[k]));
-  PetscCall(MatCreateShell(comm, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, problem, &shell));
-  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))Multiply));
-  PetscCall(KSPCreate(comm, &problem->iterative));
-  PetscCall(KSPSetOptionsPrefix(problem->iterative, "penalty_interface_"));
-  PetscCall(KSPSetOperators(problem->iterative, shell, shell));
-  PetscCall(KSPSetType(problem->iterative, KSPCG));
-  PetscCall(KSPGetPC(problem->iterative, &pc));
-  PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(KSPSetTolerances(problem->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
-  PetscCall(KSPSetFromOptions(problem->iterative));
-  PetscCall(MatDestroy(&shell));
+  PetscCall(ContactCreateRowSolver(contact, "penalty_interface_", FORCE_TOLERANCE, Multiply, problem, &problem->iterative));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -51,24 +51,12 @@ static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
 static PetscErrorCode CreateIterative(Contact contact)
 {
   InterfaceProblem *problem = &((Schwarz *)contact->data)->problem;
-  MPI_Comm          comm    = PetscObjectComm((PetscObject)contact);
-  Mat               shell;
-  PC                pc;
 
   PetscFunctionBegin;
   PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
   PetscCall(VecDuplicate(problem->force_vec, &problem->residual_vec));
   for (PetscInt k = 0; k < 2; k++) PetscCall(VecDuplicate(problem->force_vec, &problem->work[k]));
-  PetscCall(MatCreateShell(comm, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, contact, &shell));
-  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))Multiply));
-  PetscCall(KSPCreate(comm, &problem->iterative));
-  PetscCall(KSPSetOptionsPrefix(problem->iterative, "schwarz_interface_"));
-  PetscCall(KSPSetOperators(problem->iterative, shell, shell));
-  PetscCall(KSPSetType(problem->iterative, KSPCG));
-  PetscCall(KSPGetPC(problem->iterative, &pc));
-  PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(KSPSetTolerances(problem->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
-  PetscCall(MatDestroy(&shell));
+  PetscCall(ContactCreateRowSolver(contact, "schwarz_interface_", FORCE_TOLERANCE, Multiply, contact, &problem->iterative));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
