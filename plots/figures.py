@@ -7,24 +7,10 @@ from pathlib import Path
 import h5py
 
 # Okabe and Ito's colours, told apart with any colour vision
-BLUE, ORANGE, GREEN, PURPLE, BLACK = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#CC79A7",
-    "#000000",
-)
+BLUE, ORANGE, GREEN, PURPLE, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
 DASHED = {"color": BLACK, "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 3}
-PREFIXES = (
-    (1e9, "G"),
-    (1e6, "M"),
-    (1e3, "k"),
-    (1, ""),
-    (1e-3, "m"),
-    (1e-6, "µ"),
-    (1e-9, "n"),
-)
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 class CannotDraw(Exception):
