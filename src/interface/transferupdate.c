@@ -67,8 +67,8 @@ static void SplitOffset(PetscInt dim, const PetscReal normal[], PetscReal offset
 static PetscErrorCode GetColumnPositions(Transfer transfer)
 {
   PetscFunctionBegin;
-  PetscCall(PetscSFBcastBegin(transfer->rows.sf, transfer->neumann->vector, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(transfer->rows.sf, transfer->neumann->vector, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
