@@ -83,16 +83,21 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
 static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[])
 {
   const PetscInt dim = body->dim;
-  PetscInt       rstart, n = 0, *blocks, *from, *to;
+  PetscInt       rstart, n = 0, *dofs, *from, *to;
   IS             is, to_is;
 
   PetscFunctionBegin;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, layer->n_dofs, &layer->u));
   PetscCall(VecDuplicate(layer->u, &layer->f));
   PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(n_nodes, &blocks));
-  for (PetscInt k = 0; k < n_nodes; k++) blocks[k] = nodes[k] < body->owned_nodes ? rstart / dim + nodes[k] : body->ghost_dofs[(nodes[k] - body->owned_nodes) * dim] / dim;
-  PetscCall(ISCreateBlock(PETSC_COMM_SELF, dim, n_nodes, blocks, PETSC_OWN_POINTER, &is));
+  PetscCall(PetscMalloc1(layer->n_dofs, &dofs));
+  for (PetscInt k = 0; k < n_nodes; k++) {
+    const PetscInt first = nodes[k] < body->owned_nodes ? rstart + nodes[k] * dim : body->ghost_dofs[(nodes[k] - body->owned_nodes) * dim];
+
+    for (PetscInt d = 0; d < dim; d++) dofs[k * dim + d] = first + d;
+  }
+  /* no blocks of `dim`: PETSc takes its type for them apart, and allocates memory, in each scatter */
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, layer->n_dofs, dofs, PETSC_OWN_POINTER, &is));
   PetscCall(VecScatterCreate(body->positions, is, layer->u, NULL, &layer->gather));
   PetscCall(ISDestroy(&is));
   PetscCall(PetscMalloc2(layer->n_dofs, &from, layer->n_dofs, &to));
