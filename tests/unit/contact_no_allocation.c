@@ -202,7 +202,7 @@ static void schwarz_on_whole_bodies(void **state)
 
 static void schwarz_with_conjugate_gradients(void **state)
 {
-  expect_nothing((Simulation *)*state, 3, "-schwarz_dense_limit 0");
+  expect_nothing((Simulation *)*state, 6, "-schwarz_dense_limit 0");
 }
 
 static void schwarz_with_aitken(void **state)
