@@ -299,14 +299,27 @@ static void find_events(int n, const char *const names[], PetscLogEvent events[]
   }
 }
 
+/* PetscMallocSet() must not be called where an option has set another allocator */
 static int begin(void **state)
 {
   (void)state;
+  allocate       = PetscTrMalloc;
+  reallocate     = PetscTrRealloc;
+  PetscTrMalloc  = CountAllocate;
+  PetscTrRealloc = CountReallocate;
   ok(SNESInitializePackage());
   ok(PCInitializePackage());
   find_events(2, theirs, their_events);
   find_events(5, ours, our_events);
   ok(PetscLogLegacyCallbacksBegin(event_begins, event_ends, NULL, NULL));
+  return 0;
+}
+
+static int end(void **state)
+{
+  (void)state;
+  PetscTrMalloc  = allocate;
+  PetscTrRealloc = reallocate;
   return 0;
 }
 
@@ -329,11 +342,8 @@ int main(int argc, char **argv)
   };
   int failed;
 
-  allocate   = PetscTrMalloc;
-  reallocate = PetscTrRealloc;
-  if (PetscMallocSet(CountAllocate, PetscTrFree, CountReallocate)) return 1;
   if (ImpaktInitialize(&argc, &argv)) return 1;
-  failed = _cmocka_run_group_tests("no_allocation_in_contact", tests, sizeof(tests) / sizeof(tests[0]), begin, NULL);
+  failed = _cmocka_run_group_tests("no_allocation_in_contact", tests, sizeof(tests) / sizeof(tests[0]), begin, end);
   if (ImpaktFinalize()) return 1;
   return failed;
 }
