@@ -146,6 +146,7 @@ PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body);
 PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
 PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
 PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Mat *);
+PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, PetscReal, PetscBool, Vec);

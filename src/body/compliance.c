@@ -124,7 +124,7 @@ PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[]
     c->rows[c->n++]   = rows[i];
   }
   PetscCall(BodyProbeCompliance(body, first));
-  c->ramp_valid = c->base_gathered = PETSC_FALSE;
+  c->ramp_valid = c->base_gathered = c->factored = PETSC_FALSE;
   PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,7 +166,7 @@ PetscErrorCode BodyForgetCompliance(Body body, const PetscMPIInt changed[])
     c->place[c->rows[j]] = j;
   }
   c->n          = n;
-  c->ramp_valid = c->base_gathered = PETSC_FALSE;
+  c->ramp_valid = c->base_gathered = c->factored = PETSC_FALSE;
   PetscCall(PetscFree(from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -20,6 +20,7 @@ struct _BodyCompliance {
   PetscMPIInt   *all_roles;
   PetscInt       n_prescribed, *prescribed; /* places */
   PetscScalar   *factor;                    /* LU of the first level on them */
+  PetscBool      factored;                  /* it is that */
   PetscBLASInt  *pivots;
   /* known rows, for each substep: base, inputs, forces, displacements */
   PetscScalar *known_displacement, *known_force, *input, *force, *displacement;

@@ -244,7 +244,7 @@ PetscErrorCode BodyHasFreeRows(Body body, PetscBool *has)
   Notes:
   From the saved state, which remains as it is, as do the present one and all traces. The same as the displacement traces of
   `BodyIntegrate()` under `BODY_FREE` conditions, for the price of the elements that touch the massless layer: central differences
-  know the displacement of all nodes with mass before the step's internal force.
+  know the displacement of all nodes with mass before the step's internal force. Rows must be of contact nodes alone.
 
 .seealso: `Body`, `BodyHasFreeRows()`, `BodyIntegrate()`
 @*/
@@ -253,18 +253,26 @@ PetscErrorCode BodyComputeFreeRows(Body body, PetscScalar displacement[])
   const PetscReal    end = body->saved_time + body->time_step, dt = body->time_step;
   const PetscScalar *u, *v, *a, *rows;
   PetscScalar       *moved;
-  Vec                way = body->work[1];
+  const PetscInt    *near;
+  PetscInt           n;
+  Vec                way = body->work[1]; /* elsewhere it is of no concern */
   PetscBool          has;
 
   PetscFunctionBegin;
   PetscCall(BodyHasFreeRows(body, &has));
   PetscCheck(has, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s' is not explicit with massless contact nodes and one substep to a controller step: only integrating tells where its rows get; see BodyHasFreeRows()", body->hdr.name);
+  BodyGetNearLayer(body, &n, &near);
+  if (!body->linear) PetscCall(VecCopy(body->saved.u, way)); /* the balance takes the size of all of it */
   PetscCall(VecGetArrayRead(body->saved.u, &u));
   PetscCall(VecGetArrayRead(body->saved.v, &v));
   PetscCall(VecGetArrayRead(body->saved.a, &a));
-  PetscCall(VecGetArrayWrite(way, &moved));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) moved[i] = u[i] + dt * (v[i] + 0.5 * dt * a[i]);
-  PetscCall(VecRestoreArrayWrite(way, &moved));
+  PetscCall(VecGetArray(way, &moved));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt i = near[k];
+
+    moved[i] = u[i] + dt * (v[i] + 0.5 * dt * a[i]);
+  }
+  PetscCall(VecRestoreArray(way, &moved));
   PetscCall(VecRestoreArrayRead(body->saved.a, &a));
   PetscCall(VecRestoreArrayRead(body->saved.v, &v));
   PetscCall(VecRestoreArrayRead(body->saved.u, &u));

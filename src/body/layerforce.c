@@ -11,6 +11,8 @@ struct _n_LayerElements {
   Vec        u, f;    /* n_dofs each, of this rank alone */
   VecScatter gather;  /* from a vector of the body to u */
   VecScatter add;     /* from f to a vector of the layer */
+  PetscInt   n_near;  /* of contact nodes and of the nodes of these elements, on whatever rank the elements are */
+  PetscInt  *near;    /* owned ones, rank numbering */
 };
 
 /* The number of each dof of this rank's nodes, ghosts too, within the layer; -1 for others */
@@ -83,16 +85,21 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
 static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[])
 {
   const PetscInt dim = body->dim;
-  PetscInt       rstart, n = 0, *blocks, *from, *to;
+  PetscInt       rstart, n = 0, *dofs, *from, *to;
   IS             is, to_is;
 
   PetscFunctionBegin;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, layer->n_dofs, &layer->u));
   PetscCall(VecDuplicate(layer->u, &layer->f));
   PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(n_nodes, &blocks));
-  for (PetscInt k = 0; k < n_nodes; k++) blocks[k] = nodes[k] < body->owned_nodes ? rstart / dim + nodes[k] : body->ghost_dofs[(nodes[k] - body->owned_nodes) * dim] / dim;
-  PetscCall(ISCreateBlock(PETSC_COMM_SELF, dim, n_nodes, blocks, PETSC_OWN_POINTER, &is));
+  PetscCall(PetscMalloc1(layer->n_dofs, &dofs));
+  for (PetscInt k = 0; k < n_nodes; k++) {
+    const PetscInt first = nodes[k] < body->owned_nodes ? rstart + nodes[k] * dim : body->ghost_dofs[(nodes[k] - body->owned_nodes) * dim];
+
+    for (PetscInt d = 0; d < dim; d++) dofs[k * dim + d] = first + d;
+  }
+  /* no blocks of `dim`: PETSc takes its type for them apart, and allocates memory, in each scatter */
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, layer->n_dofs, dofs, PETSC_OWN_POINTER, &is));
   PetscCall(VecScatterCreate(body->positions, is, layer->u, NULL, &layer->gather));
   PetscCall(ISDestroy(&is));
   PetscCall(PetscMalloc2(layer->n_dofs, &from, layer->n_dofs, &to));
@@ -107,6 +114,30 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   PetscCall(ISDestroy(&is));
   PetscCall(ISDestroy(&to_is));
   PetscCall(PetscFree2(from, to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Needs the scatters */
+static PetscErrorCode FindNear(Body body, LayerElements layer)
+{
+  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscScalar *mark;
+  Vec                marks;
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateVec(body, &marks));
+  PetscCall(VecZeroEntries(marks));
+  PetscCall(VecSet(layer->u, 1));
+  PetscCall(VecScatterBegin(layer->gather, layer->u, marks, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(layer->gather, layer->u, marks, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecGetArrayRead(marks, &mark));
+  for (PetscInt i = 0; i < n; i++) layer->n_near += PetscRealPart(mark[i]) > 0 || body->in_layer[i / body->dim];
+  PetscCall(PetscMalloc1(layer->n_near, &layer->near));
+  layer->n_near = 0;
+  for (PetscInt i = 0; i < n; i++)
+    if (PetscRealPart(mark[i]) > 0 || body->in_layer[i / body->dim]) layer->near[layer->n_near++] = i;
+  PetscCall(VecRestoreArrayRead(marks, &mark));
+  PetscCall(VecDestroy(&marks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,6 +162,7 @@ PetscErrorCode BodySetUpLayerElements(Body body)
   PetscCall(ElementCreateLike(body->element, body->material, &layer->element));
   PetscCall(ElementSetUp(layer->element, count, layer->connectivity, layer->coordinates));
   PetscCall(CreateScatters(body, layer, n_nodes, nodes));
+  PetscCall(FindNear(body, layer));
   PetscCall(PetscFree(nodes));
   PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -148,6 +180,7 @@ PetscErrorCode BodyLayerElementsDestroy(LayerElements *layer)
   PetscCall(VecDestroy(&(*layer)->f));
   PetscCall(PetscFree2((*layer)->coordinates, (*layer)->numbers));
   PetscCall(PetscFree((*layer)->connectivity));
+  PetscCall(PetscFree((*layer)->near));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,6 +195,13 @@ PetscErrorCode BodyLayerLinearize(Body body, Material material)
   PetscCall(ElementCreateLike(layer->element, material, &layer->linearized));
   PetscCall(ElementSetUp(layer->linearized, layer->element->count, layer->connectivity, layer->coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The owned displacements that the balance of the layer and the rows of contact nodes hang on, rank numbering */
+void BodyGetNearLayer(Body body, PetscInt *n, const PetscInt *dofs[])
+{
+  *n    = body->layer_elements->n_near;
+  *dofs = body->layer_elements->near;
 }
 
 /* rhs -= internal force of the layer for displacement u of the body [N] */

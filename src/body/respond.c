@@ -66,6 +66,23 @@ PetscErrorCode BodySetFreeBase(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* For substeps: the force on each prescribed row by the displacement that it is to have at the end */
+static PetscErrorCode FactorPrescribed(Body body)
+{
+  struct _BodyCompliance *c = body->compliance;
+  PetscBLASInt            n, info;
+
+  PetscFunctionBegin;
+  if (!c->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < c->n_prescribed; j++)
+    for (PetscInt i = 0; i < c->n_prescribed; i++) c->factor[j * c->n_prescribed + i] = c->levels[c->prescribed[j] * c->capacity + c->prescribed[i]];
+  PetscCall(PetscBLASIntCast(c->n_prescribed, &n));
+  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, c->factor, &n, c->pivots, &info));
+  PetscCheck(info == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT, "The prescribed contact rows of body '%s' are not independent (LAPACK getrf info %d); is a node in two contact pairs?", body->hdr.name, (int)info);
+  c->factored = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodySetRoles - says which rows are prescribed and which are loaded in `BodyRespond()`
 
@@ -78,15 +95,16 @@ PetscErrorCode BodySetFreeBase(Body body)
   Level: developer
 
   Note:
-  Factors the compliance of the prescribed rows. The conditions under which `BodyIntegrate()` integrates stay as they are.
+  Factors the compliance of the prescribed rows, if they are others than in the last call or have changed. The conditions under which
+  `BodyIntegrate()` integrates stay as they are.
 
 .seealso: `Body`, `BodyRespond()`, `BodyExtendCompliance()`
 @*/
 PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
 {
   struct _BodyCompliance *c;
-  const BodyRows         *rows = &body->rows;
-  PetscBLASInt            n, info;
+  const BodyRows         *rows  = &body->rows;
+  PetscInt                count = 0;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -96,18 +114,16 @@ PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
   PetscCall(PetscArrayzero(c->all_roles, rows->global));
   for (PetscInt i = 0; i < rows->local; i++) c->all_roles[rows->begin + i] = (PetscMPIInt)roles[i];
   if (rows->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->all_roles, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  c->n_prescribed = 0;
   for (PetscInt i = 0; i < rows->global; i++) {
     if (c->all_roles[i] == BODY_FREE) continue;
     PetscCheck(c->place[i] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Row %" PetscInt_FMT " of body '%s' is not known to its compliance; call BodyExtendCompliance() first", i, body->hdr.name);
-    if (c->all_roles[i] == BODY_PRESCRIBED) c->prescribed[c->n_prescribed++] = c->place[i];
+    if (c->all_roles[i] != BODY_PRESCRIBED) continue;
+    if (count >= c->n_prescribed || c->prescribed[count] != c->place[i]) c->factored = PETSC_FALSE;
+    c->prescribed[count++] = c->place[i];
   }
-  if (!c->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt j = 0; j < c->n_prescribed; j++)
-    for (PetscInt i = 0; i < c->n_prescribed; i++) c->factor[j * c->n_prescribed + i] = c->levels[c->prescribed[j] * c->capacity + c->prescribed[i]];
-  PetscCall(PetscBLASIntCast(c->n_prescribed, &n));
-  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, c->factor, &n, c->pivots, &info));
-  PetscCheck(info == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT, "The prescribed contact rows of body '%s' are not independent (LAPACK getrf info %d); is a node in two contact pairs?", body->hdr.name, (int)info);
+  if (count != c->n_prescribed) c->factored = PETSC_FALSE;
+  c->n_prescribed = count;
+  if (!c->factored) PetscCall(FactorPrescribed(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -359,7 +359,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   }
   PetscCall(ContactDestroyRows(c));
   PetscCall(PetscFree(c->bodies));
-  PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->node_dofs, c->n_node_dofs, c->n_all_nodes));
+  PetscCall(PetscFree7(c->speeds, c->traces, c->interfaces, c->order, c->node_dofs, c->n_node_dofs, c->n_all_nodes));
   PetscCall(PetscFree(c->stabilized));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(PetscHeaderDestroy(contact));

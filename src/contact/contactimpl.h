@@ -69,6 +69,7 @@ struct _p_Contact {
   PetscInt            *all_row_pair; /* of all rows, on every rank */
   int                 *mine_active, *all_active;
   PetscMPIInt          size, *counts, *offsets;
+  PetscReal           *speeds;    /* work space, per body */
   PetscReal            tolerance; /* gaps above minus this are not penetration [m] */
   PetscInt           **node_dofs; /* per body: its owned contact nodes, first displacement, rank numbering */
   PetscInt            *n_node_dofs, *n_all_nodes;

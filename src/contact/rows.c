@@ -253,7 +253,7 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   PetscReal extent = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc6(contact->n_bodies + 1, &contact->traces, contact->n_bodies, &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs, contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
+  PetscCall(PetscCalloc7(contact->n_bodies, &contact->speeds, contact->n_bodies + 1, &contact->traces, contact->n_bodies, &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs, contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
   PetscCall(ContactOrderBodies(contact));
   PetscCall(ContactFindDimension(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

@@ -1,4 +1,4 @@
-/* What ranks send each other: records of any kind, and the faces that come near. */
+/* What ranks send each other: records of any kind, vectors of nodes, and the faces that come near. */
 #include "interfaceimpl.h"
 
 /* Sends record i, of `bytes` bytes, to rank destination[i]; what arrives is sorted by the rank it comes from. Free with PetscFree(). */
@@ -31,6 +31,26 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const Pe
   PetscCallMPI(MPI_Type_free(&type));
   PetscCall(PetscFree(sorted));
   PetscCall(PetscFree4(sent, arrived, sent_at, arrived_at));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The star forest of `n_roots` and `n_leaves` nodes for three numbers of each. With a type of three numbers in its place PETSc takes that type
+   apart to compare it, and allocates memory, in each communication. */
+PetscErrorCode CreateVectorForest(MPI_Comm comm, PetscInt n_roots, PetscInt n_leaves, const PetscInt leaves[], const PetscSFNode roots[], PetscSF *vectors)
+{
+  PetscInt    *numbers = NULL;
+  PetscSFNode *from;
+
+  PetscFunctionBegin;
+  if (leaves) PetscCall(PetscMalloc1(3 * n_leaves, &numbers));
+  PetscCall(PetscMalloc1(3 * n_leaves, &from));
+  for (PetscInt i = 0; i < 3 * n_leaves; i++) {
+    if (leaves) numbers[i] = 3 * leaves[i / 3] + i % 3;
+    from[i].rank  = roots[i / 3].rank;
+    from[i].index = 3 * roots[i / 3].index + i % 3;
+  }
+  PetscCall(PetscSFCreate(comm, vectors));
+  PetscCall(PetscSFSetGraph(*vectors, 3 * n_roots, 3 * n_leaves, numbers, PETSC_OWN_POINTER, from, PETSC_OWN_POINTER));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -10,8 +10,8 @@ struct _n_Surface {
   PetscReal   *signs;       /* per face, in one dimension: of its normal */
   PetscInt    *owner_index; /* per node: its number on the rank that owns it */
   PetscMPIInt *owner_rank;
-  PetscSF      sf;     /* from owned nodes to ghosts */
-  MPI_Datatype vector; /* three reals */
+  PetscSF      sf;      /* from owned nodes to ghosts */
+  PetscSF      vectors; /* the same for three numbers of each node */
 };
 
 /* A face of the Neumann side as it travels between ranks */
@@ -52,7 +52,7 @@ typedef struct {
   Share     *shares;               /* sorted by row and dof */
   PetscInt   n_columns;            /* distinct Neumann nodes of the shares */
   PetscInt  *columns;              /* per share: its column */
-  PetscSF    sf;                   /* from owned nodes of the Neumann side to columns */
+  PetscSF    vectors;              /* from owned nodes of the Neumann side to columns, three numbers of each */
 } RowSet;
 
 struct _n_Transfer {
@@ -108,6 +108,7 @@ PETSC_INTERN PetscErrorCode TreeCreate(PetscInt, PetscInt, const Face[], Tree *)
 PETSC_INTERN PetscErrorCode TreeDestroy(Tree *);
 PETSC_INTERN PetscErrorCode TreeQuery(Tree *, const Frame *, const PetscReal[], const PetscReal[], PetscInt *);
 
+PETSC_INTERN PetscErrorCode CreateVectorForest(MPI_Comm, PetscInt, PetscInt, const PetscInt[], const PetscSFNode[], PetscSF *);
 PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const PetscMPIInt[], const void *, PetscInt *, void **);
 PETSC_INTERN PetscErrorCode ExchangeFaces(MPI_Comm, Surface, Surface, PetscReal, PetscReal, PetscInt *, Face *[]);
 PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);

@@ -19,7 +19,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
   PetscFunctionBegin;
   PetscCall(PetscFree6(set->opposite, set->changed, set->gap, set->area, set->normals, set->offsets));
   PetscCall(PetscFree2(set->shares, set->columns));
-  PetscCall(PetscSFDestroy(&set->sf));
+  PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,8 +78,8 @@ static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n
     owners[set->columns[i]].index = set->shares[i].owner_index;
   }
   PetscCall(PetscFree(dofs));
-  PetscCall(PetscSFCreate(comm, &set->sf));
-  PetscCall(PetscSFSetGraph(set->sf, n_owned, set->n_columns, NULL, PETSC_OWN_POINTER, owners, PETSC_OWN_POINTER));
+  PetscCall(CreateVectorForest(comm, n_owned, set->n_columns, NULL, owners, &set->vectors));
+  PetscCall(PetscFree(owners));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -267,10 +267,10 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(PetscFree(shares));
   PetscCall(ConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
   PetscCall(PetscMalloc2(3 * set.n_columns, &x, 3 * set.n_columns, &reference));
-  PetscCall(PetscSFBcastBegin(set.sf, transfer->neumann->vector, neumann->positions, x, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(set.sf, transfer->neumann->vector, neumann->positions, x, MPI_REPLACE));
-  PetscCall(PetscSFBcastBegin(set.sf, transfer->neumann->vector, neumann->reference, reference, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(set.sf, transfer->neumann->vector, neumann->reference, reference, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
     else PetscCall(FinishRow(transfer, row, x, reference, near, behind, &set));

@@ -115,6 +115,7 @@ static PetscErrorCode ConnectNodes(Surface surface, PetscSF points, PetscInt num
     owners[i].rank  = surface->owner_rank[data->n_owned + i];
     owners[i].index = surface->owner_index[data->n_owned + i];
   }
+  PetscCall(CreateVectorForest(comm, data->n_owned, n_ghosts, ghosts, owners, &surface->vectors));
   PetscCall(PetscSFCreate(comm, &surface->sf));
   PetscCall(PetscSFSetGraph(surface->sf, data->n_owned, n_ghosts, ghosts, PETSC_OWN_POINTER, owners, PETSC_OWN_POINTER));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -221,6 +222,7 @@ PetscErrorCode SurfaceClearNodes(Surface surface)
 
   PetscFunctionBegin;
   PetscCall(PetscSFDestroy(&surface->sf));
+  PetscCall(PetscSFDestroy(&surface->vectors));
   PetscCall(PetscFree4(data->vertices, data->dofs, surface->owner_index, surface->owner_rank));
   PetscCall(PetscFree4(data->faces, surface->signs, data->face_normals, data->face_areas));
   PetscCall(PetscFree5(data->reference, data->positions, data->normals, data->areas, data->sizes));
@@ -253,8 +255,6 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
   PetscCall(PetscNew(surface));
   PetscCall(PetscObjectReference((PetscObject)dm));
   (*surface)->dm = dm;
-  PetscCallMPI(MPI_Type_contiguous(3, MPIU_REAL, &(*surface)->vector));
-  PetscCallMPI(MPI_Type_commit(&(*surface)->vector));
   PetscCall(DMGetCoordinateDim(dm, &(*surface)->data.dim));
   PetscCall(DMGetGlobalSection(dm, &section)); /* made by all ranks together, also by those that have no face */
   if (name) PetscCall(PetscStrcmp(name, "all", &all));
@@ -280,7 +280,6 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
   PetscFunctionBegin;
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SurfaceClearNodes(*surface));
-  PetscCallMPI(MPI_Type_free(&(*surface)->vector));
   PetscCall(PetscFree((*surface)->points));
   PetscCall(DMDestroy(&(*surface)->dm));
   PetscCall(PetscFree(*surface));

@@ -15,8 +15,8 @@ static PetscErrorCode UpdatePositions(Surface surface, Vec u)
   for (PetscInt i = 0; i < data->n_owned; i++)
     for (PetscInt d = 0; d < data->dim; d++) data->positions[3 * i + d] += PetscRealPart(values[data->dofs[i] - start + d]);
   PetscCall(VecRestoreArrayRead(u, &values));
-  PetscCall(PetscSFBcastBegin(surface->sf, surface->vector, data->positions, data->positions, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(surface->sf, surface->vector, data->positions, data->positions, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(surface->vectors, MPIU_REAL, data->positions, data->positions, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(surface->vectors, MPIU_REAL, data->positions, data->positions, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,7 +63,7 @@ static void AddFaces(Surface surface)
 PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
 {
   SurfaceData *data = &surface->data;
-  PetscSF      sf   = surface->sf;
+  PetscSF      sf = surface->sf, vectors = surface->vectors;
 
   PetscFunctionBegin;
   PetscCall(UpdatePositions(surface, u));
@@ -71,18 +71,18 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
   PetscCall(PetscArrayzero(data->areas, data->n_nodes));
   for (PetscInt i = 0; i < data->n_nodes; i++) data->sizes[i] = PETSC_MAX_REAL;
   AddFaces(surface);
-  PetscCall(PetscSFReduceBegin(sf, surface->vector, data->normals, data->normals, MPIU_SUM));
-  PetscCall(PetscSFReduceEnd(sf, surface->vector, data->normals, data->normals, MPIU_SUM));
+  PetscCall(PetscSFReduceBegin(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
   PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
-  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
   PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+  PetscCall(PetscSFReduceEnd(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
   for (PetscInt i = 0; i < data->n_owned; i++) (void)Normalize(data->normals + 3 * i);
-  PetscCall(PetscSFBcastBegin(sf, surface->vector, data->normals, data->normals, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, surface->vector, data->normals, data->normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

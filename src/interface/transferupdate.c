@@ -24,24 +24,19 @@ static PetscReal LargestMotion(const SurfaceData *data, const PetscReal built[],
   return PetscSqrtReal(largest);
 }
 
-/* Whether the surfaces have moved so far relative to each other since the last build that other faces may lie opposite */
-static PetscErrorCode HasMoved(Transfer transfer, PetscBool *moved)
+/* How far the nodes of either side that this rank has are from where they were at the last build at most, but for what all have moved together */
+static PetscErrorCode GetMotion(Transfer transfer, PetscReal largest[])
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
-  PetscReal          sums[4] = {0}, mean[3] = {0}, largest[2] = {0};
+  PetscReal          sums[4] = {0}, mean[3] = {0};
 
   PetscFunctionBegin;
-  *moved = PETSC_FALSE;
-  if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (data[1]) { /* a common translation changes nothing; an obstacle stays where it is */
     for (PetscInt side = 0; side < 2; side++) SumMotion(data[side], transfer->built_x[side], sums);
     PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, transfer->comm));
     for (PetscInt d = 0; d < 3; d++) mean[d] = sums[3] > 0 ? sums[d] / sums[3] : 0;
   }
-  for (PetscInt side = 0; side < 2; side++)
-    if (data[side]) largest[side] = LargestMotion(data[side], transfer->built_x[side], mean);
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPIU_MAX, transfer->comm));
-  *moved = (PetscBool)(largest[0] + largest[1] > 0.25 * transfer->smallest_size);
+  for (PetscInt side = 0; side < 2; side++) largest[side] = data[side] ? LargestMotion(data[side], transfer->built_x[side], mean) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,22 +62,20 @@ static void SplitOffset(PetscInt dim, const PetscReal normal[], PetscReal offset
 static PetscErrorCode GetColumnPositions(Transfer transfer)
 {
   PetscFunctionBegin;
-  PetscCall(PetscSFBcastBegin(transfer->rows.sf, transfer->neumann->vector, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(transfer->rows.sf, transfer->neumann->vector, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row near contact has slipped or turned beyond the bounds */
+/* Whether a row of this rank near contact has slipped or turned beyond the bounds */
 static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 {
   const SurfaceData *data = &transfer->dirichlet->data;
   const PetscInt     dim  = transfer->dim;
   const PetscReal    turn = 2 * PetscSinReal(transfer->angle_bound / 2); /* chord of the angle */
-  PetscMPIInt        any  = 0;
 
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
-  if (dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (transfer->neumann) PetscCall(GetColumnPositions(transfer));
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscReal *normal = transfer->rows.normals + dim * row, *present = data->normals + 3 * row, size = data->sizes[row];
@@ -103,10 +96,26 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     if (PetscAbsReal(gap) >= 2 * size) continue;
     within              = (PetscBool)(slip <= PetscSqr(transfer->slip_bound * size) && turned <= turn * turn);
     transfer->keep[row] = within;
-    if (!within) any = 1;
+    if (!within) *slipped = PETSC_TRUE;
   }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, transfer->comm));
-  *slipped = (PetscBool)(any > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the surfaces have moved so far relative to each other since the last build that other faces may lie opposite, or along each other beyond
+   the bounds, on any rank */
+static PetscErrorCode HasMoved(Transfer transfer, PetscBool *moved)
+{
+  PetscReal largest[3]; /* motions of both sides, slip */
+  PetscBool slipped;
+
+  PetscFunctionBegin;
+  *moved = PETSC_FALSE;
+  if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetMotion(transfer, largest));
+  PetscCall(HasSlipped(transfer, &slipped));
+  largest[2] = slipped;
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, largest, 3, MPIU_REAL, MPIU_MAX, transfer->comm));
+  *moved = (PetscBool)(largest[0] + largest[1] > 0.25 * transfer->smallest_size || largest[2] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,13 +210,7 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   *rebuilt = (PetscBool)(!transfer->built || near > transfer->built_near);
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
-  if (!*rebuilt) {
-    PetscBool moved, slipped;
-
-    PetscCall(HasMoved(transfer, &moved));
-    PetscCall(HasSlipped(transfer, &slipped));
-    *rebuilt = (PetscBool)(moved || slipped);
-  }
+  if (!*rebuilt) PetscCall(HasMoved(transfer, rebuilt));
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetReach(transfer, near, &reach));
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));

@@ -24,6 +24,12 @@ PetscErrorCode SchwarzSetUpSecants(Contact contact)
   PetscCall(VecDuplicate(schwarz->outer.x, &secants->last_x));
   PetscCall(VecDuplicate(schwarz->outer.x, &secants->last_f));
   PetscCall(VecDuplicate(schwarz->outer.x, &secants->rest));
+  /* a vector makes room for its norms when it gets the first one, which otherwise were in the time loop */
+  for (PetscInt i = 0; i < SCHWARZ_MAX_SECANTS; i++) {
+    PetscCall(VecZeroEntries(secants->dx[i]));
+    PetscCall(VecZeroEntries(secants->df[i]));
+    PetscCall(VecZeroEntries(secants->basis[i]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

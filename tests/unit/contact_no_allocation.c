@@ -1,0 +1,349 @@
+/* Bodies in two and three dimensions that fly and touch allocate nothing in a controller step that builds nothing again. What PETSc takes for itself
+   in some solvers is counted apart. PETSc's allocator is replaced by one that counts, and on one rank the C library's too: on several, MPI takes
+   memory for messages. */
+#include "simulation.h"
+#include "count_allocations.h"
+
+static PetscErrorCode (*allocate)(size_t, PetscBool, int, const char[], const char[], void **);
+static PetscErrorCode (*reallocate)(size_t, int, const char[], const char[], void **);
+static long petsc_allocations;
+
+static PetscErrorCode CountAllocate(size_t size, PetscBool clear, int line, const char function[], const char file[], void **memory)
+{
+  petsc_allocations++;
+  return (*allocate)(size, clear, line, function, file, memory);
+}
+
+static PetscErrorCode CountReallocate(size_t size, int line, const char function[], const char file[], void **memory)
+{
+  petsc_allocations++;
+  return (*reallocate)(size, line, function, file, memory);
+}
+
+/* On one rank each of PETSc's allocations is one of the C library's */
+static long all_allocations(void)
+{
+  PetscMPIInt size;
+
+  (void)MPI_Comm_size(PETSC_COMM_WORLD, &size);
+#if defined(__SANITIZE_ADDRESS__)
+  size = 2; /* the C library's are not counted */
+#endif
+  return size == 1 ? allocations : petsc_allocations;
+}
+
+/* Whose code runs: in PETSc's log events a SNES or a preconditioner that is set up is PETSc's, until it calls what Impakt has given it */
+#define DEPTH 64
+static const char *const theirs[] = {"SNESSolve", "PCSetUp"};
+static const char *const ours[]   = {"SNESFunctionEval", "SNESJacobianEval", "PCApply", "BodyIntegrate", "ContactStep"};
+static PetscLogEvent     their_events[2], our_events[5];
+static struct {
+  PetscBool petsc;
+  long      begin; /* allocations up to then */
+} stack[DEPTH];
+static int  depth;
+static long solver_allocations, set_ups;
+
+static PetscBool find_event(PetscLogEvent event, int n, const PetscLogEvent events[])
+{
+  for (int i = 0; i < n; i++)
+    if (events[i] == event) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* What has been taken since the last change belongs to whom it was until now */
+static void settle(void)
+{
+  const long now = all_allocations();
+
+  if (stack[depth].petsc) solver_allocations += now - stack[depth].begin;
+  stack[depth].begin = now;
+}
+
+static PetscErrorCode event_begins(PetscLogEvent event, int unused, PetscObject a, PetscObject b, PetscObject c, PetscObject d)
+{
+  const PetscBool petsc = find_event(event, 2, their_events);
+
+  (void)unused, (void)a, (void)b, (void)c, (void)d;
+  if (!petsc && !find_event(event, 5, our_events)) return PETSC_SUCCESS;
+  settle();
+  set_ups += event == their_events[1];
+  if (depth + 1 == DEPTH) return PETSC_ERR_PLIB;
+  stack[++depth].petsc = petsc;
+  stack[depth].begin   = all_allocations();
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode event_ends(PetscLogEvent event, int unused, PetscObject a, PetscObject b, PetscObject c, PetscObject d)
+{
+  (void)unused, (void)a, (void)b, (void)c, (void)d;
+  if (!find_event(event, 2, their_events) && !find_event(event, 5, our_events)) return PETSC_SUCCESS;
+  settle();
+  stack[--depth].begin = all_allocations();
+  return PETSC_SUCCESS;
+}
+
+/* Two blocks with other elements each, 4 mm apart; the waves of an impact at 0.2 m/s run at 1.1 m/s, and come back to the faces after 1.8 s */
+#define BLOCK "-dm_plex_simplex 0 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 "
+static const char *const blocks[] = {
+    "-prefix_push a_ -dm_plex_dim 2 " BLOCK "-dm_plex_box_faces 10,4 -dm_plex_box_lower -1.002,0 -dm_plex_box_upper -0.002,0.4 -initial_velocity 0.1,0 -prefix_pop "
+    "-prefix_push b_ -dm_plex_dim 2 " BLOCK "-dm_plex_box_faces 8,3 -dm_plex_box_lower 0.002,0 -dm_plex_box_upper 1.002,0.4 -initial_velocity -0.1,0 -prefix_pop ",
+    "-prefix_push a_ -dm_plex_dim 3 " BLOCK "-dm_plex_box_faces 8,3,3 -dm_plex_box_lower -1.002,0,0 -dm_plex_box_upper -0.002,0.4,0.4 -initial_velocity 0.1,0,0 -prefix_pop "
+    "-prefix_push b_ -dm_plex_dim 3 " BLOCK "-dm_plex_box_faces 6,2,2 -dm_plex_box_lower 0.002,0,0 -dm_plex_box_upper 1.002,0.4,0.4 -initial_velocity -0.1,0,0 -prefix_pop "};
+
+#define IMPLICIT "-a_ts_type alpha2 -b_ts_type alpha2 -b_ts_time_step 0.01 "
+#define EXPLICIT "-a_ts_type centraldifference -b_ts_type centraldifference -b_ts_time_step 0.01 "
+#define MIXED    "-a_ts_type alpha2 -b_ts_type centraldifference -b_ts_time_step 0.005 "
+
+/* The blocks touch in the third step. In the first step PETSc's solvers make their work vectors, and again in the first ones in contact. */
+#define FREE_STEP 2
+#define SETTLED   15
+#define STEPS     22
+
+typedef struct {
+  long     free, ours, petsc; /* allocations in free flight, and in contact: of Impakt, and of PETSc's solvers for themselves */
+  long     factors;           /* preconditioners that were set up in the steps in contact */
+  PetscInt steps, sweeps;     /* those steps, and their sweeps */
+} Counted;
+
+static void count_step(Simulation *simulation, ContactFields fields, PetscReal *values[], ContactPairState *state)
+{
+  *state = Step(simulation);
+  for (PetscInt b = 0; b < simulation->n_bodies; b++) {
+    BodyMeasures measures;
+
+    ok(BodyGetMeasures(simulation->bodies[b], &measures));
+    ok(ContactFieldsCompute(fields, b, values[b]));
+  }
+}
+
+static Counted count(Simulation *simulation, PetscInt dim, const char integrators[], const char method[])
+{
+  Counted       counted = {0};
+  ContactFields fields;
+  PetscReal    *values[2];
+
+  AddOptions("-bodies a,b -contact_pairs a.xmax:b.xmin -time_step 0.01 -time_end 1");
+  AddOptions(blocks[dim - 2]);
+  AddOptions(integrators);
+  SimulationRepeat(simulation, method);
+  ok(ContactFieldsCreate(simulation->contact, &fields));
+  for (PetscInt b = 0; b < 2; b++) {
+    PetscInt n;
+    Vec      positions;
+
+    ok(BodyGetReferencePositions(simulation->bodies[b], &positions));
+    ok(VecGetLocalSize(positions, &n));
+    ok(PetscMalloc1(CONTACT_FIELDS_SIZE * (n / dim), &values[b]));
+  }
+  for (PetscInt step = 1; step <= STEPS; step++) {
+    const long       before = all_allocations(), solver_before = solver_allocations, set_ups_before = set_ups;
+    ContactPairState state;
+    ContactCounts    counts[2];
+
+    ok(ContactGetCounts(simulation->contact, &counts[0]));
+    count_step(simulation, fields, values, &state);
+    ok(ContactGetCounts(simulation->contact, &counts[1]));
+    if (step == FREE_STEP) {
+      assert_int_equal(state.active, 0);
+      counted.free = all_allocations() - before;
+    }
+    if (step < SETTLED) continue;
+    assert_true(state.active > 0 && state.force > 0);
+    assert_int_equal(counts[1].rebuilds, counts[0].rebuilds);
+    assert_int_equal(counts[1].set_changes, counts[0].set_changes);
+    counted.petsc += solver_allocations - solver_before;
+    counted.ours += all_allocations() - before - (solver_allocations - solver_before);
+    counted.factors += set_ups - set_ups_before;
+    counted.sweeps += counts[1].sweeps;
+    counted.steps++;
+  }
+  for (PetscInt b = 0; b < 2; b++) ok(PetscFree(values[b]));
+  ok(ContactFieldsDestroy(&fields));
+  assert_int_equal(depth, 0);
+  assert_true(allocations + petsc_allocations > 1000); /* both are counted */
+  return counted;
+}
+
+/* Every pairing of integrators in the plane or in space */
+static const struct {
+  PetscInt    dim;
+  const char *integrators;
+} cases[] = {
+    {2, IMPLICIT},
+    {3, EXPLICIT},
+    {2, MIXED},
+    {3, IMPLICIT},
+    {2, EXPLICIT},
+    {3, MIXED}};
+
+/* Nobody allocates anything, in the first `n` cases */
+static void expect_nothing(Simulation *simulation, int n, const char method[])
+{
+  for (int i = 0; i < n; i++) {
+    const Counted counted = count(simulation, cases[i].dim, cases[i].integrators, method);
+
+    if (counted.free || counted.ours || counted.petsc) print_error("%d dimensions, %s%s: %ld allocations in free flight, %ld of Impakt's and %ld of PETSc's in contact\n", (int)cases[i].dim, cases[i].integrators, method, counted.free, counted.ours, counted.petsc);
+    assert_int_equal(counted.free, 0);
+    assert_int_equal(counted.ours, 0);
+    assert_int_equal(counted.petsc, 0);
+  }
+}
+
+static void schwarz(void **state)
+{
+  expect_nothing((Simulation *)*state, 6, "");
+}
+
+static void schwarz_on_whole_bodies(void **state)
+{
+  expect_nothing((Simulation *)*state, 3, "-schwarz_condense 0");
+}
+
+static void schwarz_with_conjugate_gradients(void **state)
+{
+  expect_nothing((Simulation *)*state, 6, "-schwarz_dense_limit 0");
+}
+
+static void schwarz_with_aitken(void **state)
+{
+  expect_nothing((Simulation *)*state, 3, "-schwarz_snes_type nrichardson -schwarz_relaxation aitken");
+}
+
+static void robin_conditions(void **state)
+{
+  expect_nothing((Simulation *)*state, 3, "-schwarz_transmission robin");
+}
+
+static void gap_rate(void **state)
+{
+  expect_nothing((Simulation *)*state, 3, "-contact_constraint gap_rate");
+}
+
+static void penalty(void **state)
+{
+  expect_nothing((Simulation *)*state, 6, "-contact_type penalty");
+}
+
+static void augmented_lagrangian(void **state)
+{
+  expect_nothing((Simulation *)*state, 3, "-contact_type augmented_lagrangian");
+}
+
+static void expect_nothing_if_explicit(Simulation *simulation, const char method[])
+{
+  for (PetscInt dim = 2; dim <= 3; dim++) {
+    const Counted counted = count(simulation, dim, EXPLICIT, method);
+
+    assert_int_equal(counted.free, 0);
+    assert_int_equal(counted.ours, 0);
+    assert_int_equal(counted.petsc, 0);
+  }
+}
+
+/* Forward increments need mass on the contact nodes */
+static void forward_lagrange(void **state)
+{
+  expect_nothing_if_explicit((Simulation *)*state, "-contact_type lagrange -a_mass_redistribute 0 -b_mass_redistribute 0");
+}
+
+static void nonlinear_explicit_bodies(void **state)
+{
+  expect_nothing_if_explicit((Simulation *)*state, "-a_material_type neo_hookean -b_material_type neo_hookean");
+}
+
+/* From its second iteration on, SNESANDERSON calls PetscFPTrapPush() around LAPACK, which keeps the old setting in memory of its own */
+static void anderson_allocates_once_an_iteration(void **state)
+{
+  for (int i = 0; i < 3; i++) {
+    const Counted counted = count((Simulation *)*state, cases[i].dim, cases[i].integrators, "-schwarz_snes_type anderson");
+
+    assert_int_equal(counted.free, 0);
+    assert_int_equal(counted.ours, 0);
+    between(counted.petsc, 0, counted.sweeps - counted.steps);
+  }
+}
+
+/* The tangent of a nonlinear body is factored anew: MatLUFactorNumeric() takes four work arrays for that, and MatSetOptionsPrefixFactor() one for a
+   name. On more ranks it is a library's own business. */
+static void nonlinear_implicit_bodies_allocate_in_lu_alone(void **state)
+{
+  skip_beyond_ranks(1);
+  for (PetscInt dim = 2; dim <= 3; dim++) {
+    const Counted counted = count((Simulation *)*state, dim, IMPLICIT, "-a_material_type neo_hookean -b_material_type neo_hookean");
+
+    assert_int_equal(counted.ours, 0);
+    assert_true(counted.factors > 0);
+    between(counted.petsc, 0, 5 * counted.factors);
+  }
+}
+
+/* SNESVINEWTONRSLS, which finds the forces between bodies with massless contact nodes, makes index sets, scatters, submatrices and a factor anew in
+   each of its iterations: 390 allocations on one rank, 646 on two, of whatever size the problem is. An iteration is a sweep but the first. */
+static void implicit_lagrange_allocates_in_snesvi_alone(void **state)
+{
+  for (int i = 0; i < 3; i++) {
+    const Counted counted = count((Simulation *)*state, cases[i].dim, cases[i].integrators, "-contact_type lagrange");
+
+    assert_int_equal(counted.free, 0);
+    assert_int_equal(counted.ours, 0);
+    between(counted.petsc, 0, 1000 * (counted.sweeps - counted.steps));
+  }
+}
+
+static void find_events(int n, const char *const names[], PetscLogEvent events[])
+{
+  for (int i = 0; i < n; i++) {
+    ok(PetscLogEventGetId(names[i], &events[i]));
+    assert_true(events[i] >= 0);
+  }
+}
+
+/* PetscMallocSet() must not be called where an option has set another allocator */
+static int begin(void **state)
+{
+  (void)state;
+  allocate       = PetscTrMalloc;
+  reallocate     = PetscTrRealloc;
+  PetscTrMalloc  = CountAllocate;
+  PetscTrRealloc = CountReallocate;
+  ok(SNESInitializePackage());
+  ok(PCInitializePackage());
+  find_events(2, theirs, their_events);
+  find_events(5, ours, our_events);
+  ok(PetscLogLegacyCallbacksBegin(event_begins, event_ends, NULL, NULL));
+  return 0;
+}
+
+static int end(void **state)
+{
+  (void)state;
+  PetscTrMalloc  = allocate;
+  PetscTrRealloc = reallocate;
+  return 0;
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      simulation_test(schwarz),
+      simulation_test(schwarz_on_whole_bodies),
+      simulation_test(schwarz_with_conjugate_gradients),
+      simulation_test(schwarz_with_aitken),
+      simulation_test(robin_conditions),
+      simulation_test(gap_rate),
+      simulation_test(penalty),
+      simulation_test(augmented_lagrangian),
+      simulation_test(forward_lagrange),
+      simulation_test(nonlinear_explicit_bodies),
+      simulation_test(anderson_allocates_once_an_iteration),
+      simulation_test(nonlinear_implicit_bodies_allocate_in_lu_alone),
+      simulation_test(implicit_lagrange_allocates_in_snesvi_alone),
+  };
+  int failed;
+
+  if (ImpaktInitialize(&argc, &argv)) return 1;
+  failed = _cmocka_run_group_tests("no_allocation_in_contact", tests, sizeof(tests) / sizeof(tests[0]), begin, end);
+  if (ImpaktFinalize()) return 1;
+  return failed;
+}
