@@ -165,6 +165,48 @@ PetscErrorCode TransferSetValues(Transfer transfer, PetscInt row_begin, PetscInt
 }
 
 /*@
+  TransferSetNeighbours - marks which rows belong to nodes of the Dirichlet side with an edge in common
+
+  Collective
+
+  Input Parameters:
++ transfer   - the `Transfer`
+. row_begin  - global number of the first row of this rank
+. components - rows of each node
+- neighbours - all rows by all rows: gets ones where rows of one component of two such nodes meet
+
+  Level: developer
+
+  Note:
+  Assemble it afterwards. In two dimensions edges are the faces themselves; in one dimension there are none.
+
+.seealso: `Transfer`, `TransferSetValues()`
+@*/
+PetscErrorCode TransferSetNeighbours(Transfer transfer, PetscInt row_begin, PetscInt components, Mat neighbours)
+{
+  const Surface      surface = transfer->dirichlet;
+  const SurfaceData *data    = &surface->data;
+  const PetscInt     n       = data->face_nodes;
+  PetscInt          *first;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(data->n_nodes, &first));
+  for (PetscInt i = 0; i < data->n_owned; i++) first[i] = row_begin + i * components;
+  PetscCall(PetscSFBcastBegin(surface->sf, MPIU_INT, first, first, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(surface->sf, MPIU_INT, first, first, MPI_REPLACE));
+  for (PetscInt f = 0; f < data->n_faces && n > 1; f++)
+    for (PetscInt k = 0; k < n; k++)
+      for (PetscInt c = 0; c < components; c++) {
+        const PetscInt a = first[data->faces[f * n + k]] + c, b = first[data->faces[f * n + (k + 1) % n]] + c;
+
+        PetscCall(MatSetValue(neighbours, a, b, 1, INSERT_VALUES));
+        PetscCall(MatSetValue(neighbours, b, a, 1, INSERT_VALUES));
+      }
+  PetscCall(PetscFree(first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferGetCounts - what the updates have done
 
   Not Collective
