@@ -60,6 +60,7 @@ struct _p_Contact {
   PetscBool           *tied;                    /* it is held whatever its force and gap */
   PetscBool           *dropped;                 /* it would be tied, but its node is held */
   Mat                  merger;                  /* dropped rows to those of their neighbours; NULL: there are none */
+  Vec                  places, means;           /* work space of the same sizes */
   PetscBool           *changed;                 /* it has new entries */
   PetscReal           *gap_shift;               /* added to its gap when it was built again [m] */
   PetscReal           *last_gap;                /* work space: before that */
@@ -99,6 +100,8 @@ PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);

@@ -127,7 +127,7 @@ PetscErrorCode ContactMergeDroppedRows(Contact contact)
   int any = 0;
 
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&contact->merger));
+  PetscCall(ContactDestroyMerger(contact));
   for (PetscInt i = 0; i < contact->n_rows; i++) any |= contact->dropped[i];
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,6 +136,7 @@ PetscErrorCode ContactMergeDroppedRows(Contact contact)
   PetscCall(ShareAreas(contact, weights, before, scale));
   PetscCall(MatTranspose(weights, MAT_INITIAL_MATRIX, &contact->merger));
   PetscCall(MatDiagonalScale(contact->merger, scale, before));
+  PetscCall(MatCreateVecs(contact->merger, &contact->places, &contact->means));
   PetscCall(VecDestroy(&scale));
   PetscCall(VecDestroy(&before));
   PetscCall(MatDestroy(&weights));
@@ -152,5 +153,40 @@ PetscErrorCode ContactMergeMatrix(Contact contact, Mat *rows)
   PetscCall(MatMatMult(contact->merger, *rows, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &merged));
   PetscCall(MatDestroy(rows));
   *rows = merged;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's share of the moment of a pair about the origin: forces on merged rows act at the means of the places x of their nodes, dim numbers
+   for each displacement block of the first body */
+PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair, const PetscScalar reference[], const PetscScalar displacement[], PetscReal moment[])
+{
+  const PetscScalar *means;
+  PetscScalar       *places;
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < contact->dim; d++) {
+    const PetscInt next = (d + 1) % 3, last = (d + 2) % 3;
+
+    PetscCall(VecZeroEntries(contact->places));
+    PetscCall(VecGetArray(contact->places, &places));
+    for (PetscInt i = pair->begin; i < pair->end; i++) places[i] = reference[contact->row_dof[i] + d] + displacement[contact->row_dof[i] + d];
+    PetscCall(VecRestoreArray(contact->places, &places));
+    PetscCall(MatMult(contact->merger, contact->places, contact->means));
+    PetscCall(VecGetArrayRead(contact->means, &means));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      moment[last] += contact->force[i] * PetscRealPart(means[i]) * contact->row_normal[3 * i + next];
+      moment[next] -= contact->force[i] * PetscRealPart(means[i]) * contact->row_normal[3 * i + last];
+    }
+    PetscCall(VecRestoreArrayRead(contact->means, &means));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyMerger(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&contact->merger));
+  PetscCall(VecDestroy(&contact->places));
+  PetscCall(VecDestroy(&contact->means));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -335,7 +335,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
     PetscCall(TraceDestroy(&traces->reaction));
     PetscCall(TraceDestroy(&traces->force_in));
   }
-  PetscCall(MatDestroy(&contact->merger));
+  PetscCall(ContactDestroyMerger(contact));
   PetscCall(PetscFree(contact->obstacles));
   PetscCall(PetscFree(contact->pairs));
   PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite, contact->tied));
