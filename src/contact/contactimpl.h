@@ -58,7 +58,9 @@ struct _p_Contact {
   PetscReal           *row_normal;              /* its direction, 3 numbers, 0 beyond the dimension */
   PetscBool           *opposite;                /* it has anything to touch */
   PetscBool           *tied;                    /* it is held whatever its force and gap */
-  PetscBool           *dropped;                 /* it would be tied, but its node is held */
+  PetscBool           *dropped;                 /* it would be one to touch, but its node is held */
+  PetscBool           *heir;                    /* it has been merged with dropped ones */
+  PetscReal           *merged_gap;              /* added to its gap for that [m] */
   Mat                  merger;                  /* dropped rows to those of their neighbours; NULL: there are none */
   Vec                  places, means;           /* work space of the same sizes */
   PetscBool           *changed;                 /* it has new entries */

@@ -64,7 +64,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc7(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area, n, &contact->row_dof, 3 * n, &contact->row_normal, n, &contact->opposite, n, &contact->tied));
   PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n, &contact->saved_active, n, &contact->conditions));
   PetscCall(PetscCalloc5(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets));
-  PetscCall(PetscCalloc4(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap, n, &contact->dropped));
+  PetscCall(PetscCalloc6(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap, n, &contact->dropped, n, &contact->heir, n, &contact->merged_gap));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->size; total += contact->counts[r++]) contact->offsets[r] = total;
@@ -122,7 +122,8 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
       PetscCall(IsHeld(contact, pair, i, &held));
-      contact->dropped[i] = (PetscBool)(held && contact->tied[i] && !pair->obstacle);
+      contact->dropped[i]    = (PetscBool)(held && (contact->law == CONTACT_LAW_TIED ? contact->tied[i] : rows.opposite[node]) && !pair->obstacle && dim > 1);
+      contact->merged_gap[i] = 0;
       if (!held) continue;
       contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
       contact->initial_gap[i]                 = NO_GAP;
@@ -341,6 +342,6 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite, contact->tied));
   PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active, contact->conditions));
   PetscCall(PetscFree5(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets));
-  PetscCall(PetscFree4(contact->changed, contact->gap_shift, contact->last_gap, contact->dropped));
+  PetscCall(PetscFree6(contact->changed, contact->gap_shift, contact->last_gap, contact->dropped, contact->heir, contact->merged_gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -201,7 +201,7 @@ static void neighbours_share_an_edge(void **state)
     ok(MatCreate(PETSC_COMM_WORLD, &neighbours));
     ok(MatSetSizes(neighbours, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
     ok(MatSetUp(neighbours));
-    ok(TransferSetNeighbours(interface.transfer, row_begin - n, 2, neighbours));
+    ok(TransferSetNeighbours(interface.transfer, row_begin - n, 2, PETSC_MAX_REAL, neighbours));
     ok(MatAssemblyBegin(neighbours, MAT_FINAL_ASSEMBLY));
     ok(MatAssemblyEnd(neighbours, MAT_FINAL_ASSEMBLY));
     ok(MatCreateVecs(neighbours, &ones, &counts));
