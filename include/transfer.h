@@ -58,5 +58,6 @@ PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, PetscInt, PetscInt, Mat, Mat);
+PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);
 PETSC_EXTERN PetscErrorCode TransferGetCounts(Transfer, TransferCounts *);
 PETSC_EXTERN PetscErrorCode TransferDestroy(Transfer *);

@@ -209,6 +209,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscCheck(body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
   PetscCall(SetUpRows(body));
   for (size_t i = 0; i < sizeof(always) / sizeof(always[0]); i++) PetscCall(BodyCreateVec(body, always[i]));
+  PetscCall(BodySetUpDualRows(body));
   if (body->rows.global) {
     for (size_t i = 0; i < sizeof(sweeps) / sizeof(sweeps[0]); i++) PetscCall(BodyCreateVec(body, sweeps[i]));
   }
@@ -271,6 +272,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->mass_matrix));
   PetscCall(MatDestroy(&b->shifted));
   PetscCall(MatDestroy(&b->interface));
+  PetscCall(MatDestroy(&b->dual_rows));
   PetscCall(TSDestroy(&b->ts));
   PetscCall(BodyLayerElementsDestroy(&b->layer_elements));
   PetscCall(ElementDestroy(&b->element));

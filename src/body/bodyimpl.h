@@ -72,6 +72,7 @@ struct _p_Body {
   Vec          work[3];
   /* interface rows */
   Mat                     interface;
+  Mat                     dual_rows; /* nothing on held dofs, interface dual_rows^T = 1 on rows that may be prescribed; the interface itself where nothing is held */
   BodyRows                rows;
   BodyCondition          *conditions;             /* local rows */
   PetscBool              *held;                   /* those that are prescribed, or Robin rows */
@@ -166,6 +167,7 @@ PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
 PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyCreateFreeRows(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodySetUpDualRows(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[]);

@@ -81,7 +81,7 @@ PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
   Level: developer
 
   Note:
-  a -= B^T B a on these rows, which must be orthonormal. To be called before `BodySave()`.
+  a -= B*^T B a on these rows, with the dual rows B* that prescribed ones are moved by. To be called before `BodySave()`.
 
 .seealso: `Body`, `BodyAddAcceleration()`
 @*/
@@ -95,7 +95,7 @@ PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
   PetscCall(VecGetArray(body->row_vec[0], &row));
   for (PetscInt i = 0; i < body->rows.local; i++) row[i] = rows[i] ? -row[i] : 0;
   PetscCall(VecRestoreArray(body->row_vec[0], &row));
-  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], body->state.a, body->state.a));
+  PetscCall(MatMultTransposeAdd(body->dual_rows, body->row_vec[0], body->state.a, body->state.a));
   PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -114,14 +114,15 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
   if (body->inverse_mass) {
     PetscCall(DivideByMass(body, outside ? force : NULL, A));
+    PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
     if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
   } else {
     if (!outside) PetscCall(VecZeroEntries(force));
     PetscCall(VecAXPY(force, -1, body->internal_force));
     PetscCall(BodyAddHeldInertia(body, t, force, A));
     PetscCall(BodySolveMass(body, force, position, prescribed, A));
+    PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   }
-  PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,8 +200,8 @@ PetscErrorCode BodyFinishSubstepExplicit(Body body)
     PetscCall(VecRestoreArrayRead(body->state.u, &u1));
     PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   }
-  if (body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->substep + 1) / body->substeps, body->state.v));
   PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, NULL));
+  if (body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->substep + 1) / body->substeps, body->state.v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

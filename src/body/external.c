@@ -49,6 +49,21 @@ PetscErrorCode BodyEliminateHeld(Body body, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Contact forces on all nodes at the end of the substep that has been made last */
+static PetscErrorCode ComputeContactForce(Body body, Vec contact)
+{
+  PetscScalar *reaction, *force_in, *row;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(body->traces.reaction, body->step - body->saved_step, &reaction));
+  PetscCall(TraceGetLevel(body->traces.force_in, body->step - body->saved_step, &force_in));
+  PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
+  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED ? force_in[i] : reaction[i];
+  PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
+  PetscCall(MatMultTranspose(body->interface, body->row_vec[0], contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Forces from outside and the reactions that hold held dofs, at the current state: what does work on the body, beside contact */
 static PetscErrorCode ComputeApplied(Body body, Vec applied)
 {
@@ -64,7 +79,11 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
     PetscCall(BodyMultiplyMass(body, body->state.a, body->work[0]));
     PetscCall(VecAXPY(body->work[0], 1, body->internal_force));
   }
-  /* contact forces on held dofs are carried by the reaction, and do no work of their own */
+  /* contact forces on held dofs come from the partner */
+  if (body->n_prescribed || body->n_forced) {
+    PetscCall(ComputeContactForce(body, body->work[1]));
+    PetscCall(VecAXPY(body->work[0], -1, body->work[1]));
+  }
   PetscCall(VecGetArrayRead(body->work[0], &force));
   PetscCall(VecGetArray(applied, &values));
   for (PetscInt i = 0; i < body->n_held; i++) values[body->held_dofs[i]] = force[body->held_dofs[i]];

@@ -37,17 +37,19 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
   if (body->is_static) PetscCall(VecZeroEntries(F));
   else {
+    const PetscBool prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass);
+
     /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's, or the load's */
-    if (body->n_prescribed && body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
-    if (body->any_held && !body->mass_diagonal) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
+    if (body->any_held && (prescribed || !body->mass_diagonal)) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
+    if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
     PetscCall(BodyMultiplyMass(body, A, F));
   }
   if (!body->linear) PetscCall(NoteScale(body, U, F));
   PetscCall(VecAXPY(F, 1, body->internal_force));
   PetscCall(BodyAddExternalForce(body, t, -1, F));
   PetscCall(BodyAddContactForce(body, position, -1, U, F));
-  PetscCall(BodyPrescribe(body, NULL, position, F));
   PetscCall(BodyZeroHeld(body, F));
+  PetscCall(BodyPrescribe(body, NULL, position, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -261,13 +263,13 @@ PetscErrorCode BodyFinishSubstepImplicit(Body body)
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
+  if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, body->state.a));
   if (body->prescribed_mass) {
     const PetscReal position = (PetscReal)(body->substep + 1) / body->substeps;
 
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
   }
-  if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, body->state.a));
   if (body->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -163,7 +163,7 @@ PetscErrorCode BodySetUpMass(Body body)
    the start; an implicit one needs them at most once, for its first acceleration. */
 PetscErrorCode BodySetUpMassSolver(Body body)
 {
-  Mat      solvable;
+  Mat      solvable, free_rows;
   char     prefix[128];
   PetscInt rstart;
 
@@ -175,7 +175,9 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(BodyEliminateHeld(body, solvable));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(solvable, body->interface, body->dim, prefix, &body->mass_solver));
+  PetscCall(BodyCreateFreeRows(body, &free_rows));
+  PetscCall(ConstrainedSolverCreate(solvable, free_rows, body->dim, prefix, &body->mass_solver));
+  PetscCall(MatDestroy(&free_rows));
   PetscCall(BodySetConstraints(body)); /* rows may be prescribed already */
   PetscCall(MatDestroy(&solvable));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -190,29 +192,37 @@ PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode CopyHeld(Body body, Vec from, Vec to)
+{
+  const PetscScalar *source;
+  PetscScalar       *target;
+
+  PetscFunctionBegin;
+  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(from, &source));
+  PetscCall(VecGetArray(to, &target));
+  for (PetscInt i = 0; i < body->n_held; i++) target[body->held_dofs[i]] = source[body->held_dofs[i]];
+  PetscCall(VecRestoreArray(to, &target));
+  PetscCall(VecRestoreArrayRead(from, &source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Takes what held dofs with their acceleration at time t do to the others, through a mass matrix that is not diagonal, out of the force f;
    on held dofs it becomes that acceleration, for the solver which has rows of the identity there. `work` is overwritten. */
 PetscErrorCode BodyAddHeldInertia(Body body, PetscReal t, Vec f, Vec work)
 {
-  const PetscScalar *held;
-  PetscScalar       *force;
-
   PetscFunctionBegin;
   if (!body->any_held || body->mass_diagonal || body->is_static) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecZeroEntries(body->work[2]));
   PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, body->work[2]));
   PetscCall(MatMult(body->mass_matrix, body->work[2], work));
   PetscCall(VecAXPY(f, -1, work));
-  PetscCall(VecGetArrayRead(body->work[2], &held));
-  PetscCall(VecGetArray(f, &force));
-  for (PetscInt i = 0; i < body->n_held; i++) force[body->held_dofs[i]] = held[body->held_dofs[i]];
-  PetscCall(VecRestoreArray(f, &force));
-  PetscCall(VecRestoreArrayRead(body->work[2], &held));
+  PetscCall(CopyHeld(body, body->work[2], f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* a = M^{-1} f, zero on massless nodes; where `prescribed` is given, with the acceleration of prescribed rows at that
-   position of the controller step. f is used as work space. */
+   position of the controller step. f is that of BodyAddHeldInertia(), and is used as work space. */
 PetscErrorCode BodySolveMass(Body body, Vec f, PetscReal position, PetscBool prescribed, Vec a)
 {
   PetscFunctionBegin;
@@ -226,7 +236,9 @@ PetscErrorCode BodySolveMass(Body body, Vec f, PetscReal position, PetscBool pre
     if (!body->mass_solver) PetscCall(BodySetUpMassSolver(body));
     if (prescribed) {
       PetscCall(VecZeroEntries(body->work[1]));
+      PetscCall(CopyHeld(body, f, body->work[1]));
       PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->work[1]));
+      PetscCall(BodyZeroHeld(body, body->work[1]));
       PetscCall(MatMult(body->mass_matrix, body->work[1], a));
       PetscCall(VecAXPY(f, -1, a));
     }

@@ -1,7 +1,7 @@
 /* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
 #include "bodyimpl.h"
 
-static PetscErrorCode WriteTrace(Body, Vec, Trace, PetscInt);
+static PetscErrorCode WriteTrace(Body, Mat, Vec, Trace, PetscInt);
 
 const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
 
@@ -13,7 +13,7 @@ const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionTy
   Input Parameters:
 + body - the `Body`
 - B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; the rows that
-         may be prescribed must be orthonormal
+         may be prescribed must be orthogonal without what they have on held dofs, and orthonormal where none are held
 
   Level: developer
 
@@ -55,6 +55,36 @@ PetscErrorCode BodyCreateFreeRows(Body body, Mat *B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What moves prescribed rows without moving held dofs, and makes forces along them of nodal forces */
+PetscErrorCode BodySetUpDualRows(Body body)
+{
+  PetscScalar *scale;
+  Vec          squares;
+  PetscInt     begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&body->dual_rows));
+  PetscCall(BodyCreateFreeRows(body, &body->dual_rows));
+  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatCreateVecs(body->dual_rows, NULL, &squares));
+  PetscCall(MatGetOwnershipRange(body->dual_rows, &begin, &end));
+  PetscCall(VecGetArrayWrite(squares, &scale));
+  for (PetscInt i = begin; i < end; i++) {
+    const PetscScalar *values;
+    PetscInt           n;
+    PetscReal          square = 0;
+
+    PetscCall(MatGetRow(body->dual_rows, i, &n, NULL, &values));
+    for (PetscInt k = 0; k < n; k++) square += PetscSqr(PetscRealPart(values[k]));
+    PetscCall(MatRestoreRow(body->dual_rows, i, &n, NULL, &values));
+    scale[i - begin] = square > 0 ? 1 / square : 0;
+  }
+  PetscCall(VecRestoreArrayWrite(squares, &scale));
+  PetscCall(MatDiagonalScale(body->dual_rows, squares, NULL));
+  PetscCall(VecDestroy(&squares));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rows that have changed, on every rank */
 static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscMPIInt all[])
 {
@@ -74,7 +104,7 @@ static PetscErrorCode RewriteStart(Body body)
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
 
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 3; t++) PetscCall(WriteTrace(body, vecs[t], traces[t], 0));
+  for (PetscInt t = 0; t < 3; t++) PetscCall(WriteTrace(body, body->interface, vecs[t], traces[t], 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -105,17 +135,21 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->interface));
   body->interface = B;
+  PetscCall(BodySetUpDualRows(body));
   PetscCall(PetscMalloc1(body->rows.global, &all));
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall(PetscFree(all));
-  if (body->solver) {
-    if (body->is_explicit) PetscCall(BodySetUpLayerRows(body, &free_rows));
-    else PetscCall(BodyCreateFreeRows(body, &free_rows));
-    PetscCall(ConstrainedSolverSetRows(body->solver, free_rows, changed));
-    PetscCall(MatDestroy(&free_rows));
-  }
-  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, B, changed));
+  PetscCall(BodyCreateFreeRows(body, &free_rows));
+  if (body->solver && body->is_explicit) {
+    Mat layer_rows;
+
+    PetscCall(BodySetUpLayerRows(body, &layer_rows));
+    PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, changed));
+    PetscCall(MatDestroy(&layer_rows));
+  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, free_rows, changed));
+  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, free_rows, changed));
+  PetscCall(MatDestroy(&free_rows));
   if (body->response) PetscCall(BodyDestroyResponse(body));
   PetscCall(BodySetConstraints(body));
   PetscCall(RewriteStart(body));
@@ -240,7 +274,8 @@ PetscErrorCode BodySetConstraints(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* vec += B^T (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step, or 0 */
+/* vec += B*^T (x - B vec) on prescribed rows, with the dual rows B* and x from the trace at that position (0 to 1) of the controller step, or 0;
+   held dofs must be in place before, and stay there */
 PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec)
 {
   PetscScalar *row, *target;
@@ -258,7 +293,7 @@ PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec
     for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? -row[i] : 0;
   }
   PetscCall(VecRestoreArray(body->row_vec[0], &row));
-  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], vec, vec));
+  PetscCall(MatMultTransposeAdd(body->dual_rows, body->row_vec[0], vec, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,13 +321,13 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteTrace(Body body, Vec vec, Trace trace, PetscInt level)
+static PetscErrorCode WriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscInt level)
 {
   const PetscScalar *row;
   PetscScalar       *values;
 
   PetscFunctionBegin;
-  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
+  PetscCall(MatMult(rows, vec, body->row_vec[0]));
   PetscCall(TraceGetLevel(trace, level, &values));
   PetscCall(VecGetArrayRead(body->row_vec[0], &row));
   PetscCall(PetscArraycpy(values, row, body->rows.local));
@@ -307,9 +342,9 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WriteTrace(body, body->state.u, body->traces.displacement, level));
-  PetscCall(WriteTrace(body, body->state.v, body->traces.velocity, level));
-  PetscCall(WriteTrace(body, body->state.a, body->traces.acceleration, level));
+  PetscCall(WriteTrace(body, body->interface, body->state.u, body->traces.displacement, level));
+  PetscCall(WriteTrace(body, body->interface, body->state.v, body->traces.velocity, level));
+  PetscCall(WriteTrace(body, body->interface, body->state.a, body->traces.acceleration, level));
   if (body->n_prescribed) {
     Vec force = body->internal_force;
 
@@ -323,7 +358,7 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
       PetscCall(BodyAddExternalForce(body, body->time, -1, force));
       PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, body->state.u, force));
     }
-    PetscCall(WriteTrace(body, force, body->traces.reaction, level));
+    PetscCall(WriteTrace(body, body->dual_rows, force, body->traces.reaction, level));
   }
   PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));

@@ -58,6 +58,11 @@ struct _p_Contact {
   PetscReal           *row_normal;              /* its direction, 3 numbers, 0 beyond the dimension */
   PetscBool           *opposite;                /* it has anything to touch */
   PetscBool           *tied;                    /* it is held whatever its force and gap */
+  PetscBool           *dropped;                 /* it would be one to touch, but its node is held */
+  PetscBool           *heir;                    /* it has been merged with dropped ones */
+  PetscReal           *merged_gap;              /* added to its gap for that [m] */
+  Mat                  merger;                  /* dropped rows to those of their neighbours; NULL: there are none */
+  Vec                  places, means;           /* work space of the same sizes */
   PetscBool           *changed;                 /* it has new entries */
   PetscReal           *gap_shift;               /* added to its gap when it was built again [m] */
   PetscReal           *last_gap;                /* work space: before that */
@@ -97,6 +102,10 @@ PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
+PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);

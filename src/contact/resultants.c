@@ -81,7 +81,8 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscCall(BodyGetSolution(body, &u, NULL, NULL));
   PetscCall(VecGetArrayRead(positions, &reference));
   PetscCall(VecGetArrayRead(u, &displacement));
-  for (PetscInt i = pair->begin; i < pair->end; i++) {
+  if (contact->merger) PetscCall(ContactSumMergedMoments(contact, pair, reference, displacement, moment));
+  for (PetscInt i = pair->begin; i < pair->end && !contact->merger; i++) {
     const PetscReal *normal = contact->row_normal + 3 * i;
     const PetscInt   dof    = contact->row_dof[i];
     PetscReal        x[3]   = {0};
@@ -106,14 +107,18 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   maxima[MAX_PENETRATION] = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]     = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++) {
-    const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+    const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+    const PetscReal along = contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
 
-    sums[SUM_FORCE] += (contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1) * contact->force[i];
+    sums[SUM_FORCE] += along * contact->force[i];
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->gap[i]);
     if (!contact->tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
-    if (!contact->active[i] || contact->row_dof[i] == counted) continue;
+    if (!contact->active[i]) continue;
+    /* the rows of a node may have different areas then */
+    if (contact->merger) sums[SUM_AREA] += PetscSqr(along) * contact->area[i] * contact->cross_section[p];
+    if (contact->row_dof[i] == counted) continue;
     sums[SUM_ACTIVE] += 1;
-    sums[SUM_AREA] += contact->area[i] * contact->cross_section[p];
+    if (!contact->merger) sums[SUM_AREA] += contact->area[i] * contact->cross_section[p];
     counted = contact->row_dof[i];
   }
   SumForces(contact, pair, sums + SUM_VECTOR);

@@ -64,7 +64,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc7(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area, n, &contact->row_dof, 3 * n, &contact->row_normal, n, &contact->opposite, n, &contact->tied));
   PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n, &contact->saved_active, n, &contact->conditions));
   PetscCall(PetscCalloc5(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets));
-  PetscCall(PetscCalloc3(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap));
+  PetscCall(PetscCalloc6(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap, n, &contact->dropped, n, &contact->heir, n, &contact->merged_gap));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->size; total += contact->counts[r++]) contact->offsets[r] = total;
@@ -122,6 +122,8 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
       PetscCall(IsHeld(contact, pair, i, &held));
+      contact->dropped[i]    = (PetscBool)(held && (contact->law == CONTACT_LAW_TIED ? contact->tied[i] : rows.opposite[node]) && !pair->obstacle && dim > 1);
+      contact->merged_gap[i] = 0;
       if (!held) continue;
       contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
       contact->initial_gap[i]                 = NO_GAP;
@@ -171,6 +173,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
+    PetscCall(ContactMergeMatrix(contact, &contact->interfaces[b]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -266,6 +269,7 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
     PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
     PetscCall(CheckHeld(contact, &contact->pairs[p]));
   }
+  PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
   /* what a converged outer iteration leaves of the gap must not count as penetration in the next trial */
@@ -318,11 +322,12 @@ PetscErrorCode ContactDestroyRows(Contact contact)
     PetscCall(TraceDestroy(&traces->reaction));
     PetscCall(TraceDestroy(&traces->force_in));
   }
+  PetscCall(ContactDestroyMerger(contact));
   PetscCall(PetscFree(contact->obstacles));
   PetscCall(PetscFree(contact->pairs));
   PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite, contact->tied));
   PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active, contact->conditions));
   PetscCall(PetscFree5(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets));
-  PetscCall(PetscFree3(contact->changed, contact->gap_shift, contact->last_gap));
+  PetscCall(PetscFree6(contact->changed, contact->gap_shift, contact->last_gap, contact->dropped, contact->heir, contact->merged_gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -165,6 +165,60 @@ PetscErrorCode TransferSetValues(Transfer transfer, PetscInt row_begin, PetscInt
 }
 
 /*@
+  TransferSetNeighbours - marks which rows belong to nodes of the Dirichlet side with an edge in common
+
+  Collective
+
+  Input Parameters:
++ transfer   - the `Transfer`
+. row_begin  - global number of the first row of this rank
+. components - rows of each node
+. slope      - nodes whose gaps differ by more than this part of their distance are left out
+- neighbours - all rows by all rows: gets ones where rows of one component of two such nodes meet
+
+  Level: developer
+
+  Note:
+  Assemble it afterwards. In two dimensions edges are the faces themselves; in one dimension there are none.
+
+.seealso: `Transfer`, `TransferSetValues()`
+@*/
+PetscErrorCode TransferSetNeighbours(Transfer transfer, PetscInt row_begin, PetscInt components, PetscReal slope, Mat neighbours)
+{
+  const Surface      surface = transfer->dirichlet;
+  const SurfaceData *data    = &surface->data;
+  const PetscInt     n       = data->face_nodes;
+  PetscInt          *first;
+  PetscReal         *gap;
+
+  PetscFunctionBegin;
+  PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
+  PetscCall(PetscMalloc2(data->n_nodes, &first, data->n_nodes, &gap));
+  for (PetscInt i = 0; i < data->n_owned; i++) {
+    first[i] = row_begin + i * components;
+    gap[i]   = transfer->rows.gap[i];
+  }
+  PetscCall(PetscSFBcastBegin(surface->sf, MPIU_REAL, gap, gap, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(surface->sf, MPIU_REAL, gap, gap, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(surface->sf, MPIU_INT, first, first, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(surface->sf, MPIU_INT, first, first, MPI_REPLACE));
+  for (PetscInt f = 0; f < data->n_faces && n > 1; f++)
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt   a = data->faces[f * n + k], b = data->faces[f * n + (k + 1) % n];
+      const PetscReal *x = data->positions + 3 * a, *y = data->positions + 3 * b;
+      const PetscReal  way[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
+
+      if (PetscAbsReal(gap[b] - gap[a]) / PetscSqrtReal(Dot(way, way)) > slope) continue;
+      for (PetscInt c = 0; c < components; c++) {
+        PetscCall(MatSetValue(neighbours, first[a] + c, first[b] + c, 1, INSERT_VALUES));
+        PetscCall(MatSetValue(neighbours, first[b] + c, first[a] + c, 1, INSERT_VALUES));
+      }
+    }
+  PetscCall(PetscFree2(first, gap));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferGetCounts - what the updates have done
 
   Not Collective

@@ -182,6 +182,40 @@ static void ends_are_covered_in_part(void **state)
   interface_destroy(&interface);
 }
 
+/* Two entries for each edge of the Dirichlet surface and each component */
+static void neighbours_share_an_edge(void **state)
+{
+  const PetscInt edges[PAIRS] = {2, 3, 12, 24, 17};
+
+  (void)state;
+  for (PetscInt pair = 0; pair < PAIRS; pair++) {
+    PetscInt    row_begin = 0, n;
+    PetscScalar sum;
+    Interface   interface;
+    Mat         neighbours;
+    Vec         ones, counts;
+
+    open_pair(&interface, pair, PETSC_FALSE, map_nothing);
+    n = 2 * interface.rows.n;
+    assert_int_equal(MPI_Scan(&n, &row_begin, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+    ok(MatCreate(PETSC_COMM_WORLD, &neighbours));
+    ok(MatSetSizes(neighbours, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+    ok(MatSetUp(neighbours));
+    ok(TransferSetNeighbours(interface.transfer, row_begin - n, 2, PETSC_MAX_REAL, neighbours));
+    ok(MatAssemblyBegin(neighbours, MAT_FINAL_ASSEMBLY));
+    ok(MatAssemblyEnd(neighbours, MAT_FINAL_ASSEMBLY));
+    ok(MatCreateVecs(neighbours, &ones, &counts));
+    ok(VecSet(ones, 1));
+    ok(MatMult(neighbours, ones, counts));
+    ok(VecSum(counts, &sum));
+    assert_int_equal((PetscInt)PetscRealPart(sum), 2 * 2 * edges[pair]);
+    ok(VecDestroy(&ones));
+    ok(VecDestroy(&counts));
+    ok(MatDestroy(&neighbours));
+    interface_destroy(&interface);
+  }
+}
+
 /* Twice as many faces in each direction, four times as many pairs that are compared, but for the edges */
 static void search_costs_in_proportion(void **state)
 {
@@ -211,6 +245,7 @@ int main(int argc, char **argv)
       simulation_test(force_and_moment_are_conserved),
       simulation_test(rows_are_built_when_needed),
       simulation_test(ends_are_covered_in_part),
+      simulation_test(neighbours_share_an_edge),
       simulation_test(search_costs_in_proportion),
   };
 

@@ -69,13 +69,13 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes everything that the time loop needs once all nodes are in contact, so that it need not be made there */
+/* Makes everything that the time loop needs once all nodes are in contact that ever can be, so that it need not be made there */
 static PetscErrorCode PrepareContact(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = schwarz->jacobian_active[i] = PETSC_TRUE;
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = schwarz->jacobian_active[i] = contact->opposite[i];
   for (PetscInt time = 0; time < (schwarz->swap ? 2 : 1); time++) {
     if (schwarz->swap) PetscCall(SchwarzSwapSides(contact)); /* twice */
     PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));

@@ -76,7 +76,8 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces over the substeps of a body that makes others than its partner */
+/* Forces over the substeps of a body that makes others than its partner. Held at F' where the partner takes the trapezium of F and F', they bring
+   more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that part of the present force, they give it back as it falls. */
 PetscErrorCode SchwarzResampleForce(const Schwarz *schwarz, Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
 {
   PetscFunctionBegin;
