@@ -214,6 +214,7 @@ PetscErrorCode BodySetUp(Body body)
   }
   PetscCall(BodySetUpMass(body));
   PetscCall(BodyCheckHeld(body));
+  PetscCall(BodySetUpFreeRows(body));
   PetscCall(BodySetUpSubsteps(body));
   body->keeps_start = (PetscBool)(!body->is_explicit || body->n_layer_dofs > 0 || body->loads);
   PetscCall(BodyAnyRank(body, &body->keeps_start));
@@ -271,6 +272,8 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->mass_matrix));
   PetscCall(MatDestroy(&b->shifted));
   PetscCall(MatDestroy(&b->interface));
+  PetscCall(MatDestroy(&b->free_rows));
+  PetscCall(BodyGramDestroy(&b->gram));
   PetscCall(TSDestroy(&b->ts));
   PetscCall(BodyLayerElementsDestroy(&b->layer_elements));
   PetscCall(ElementDestroy(&b->element));

@@ -18,6 +18,7 @@ typedef struct {
 } BodyRows;
 
 typedef struct _n_LayerElements *LayerElements;
+typedef struct _n_BodyGram      *BodyGram;
 
 struct _p_Body {
   PETSCHEADER(int);
@@ -72,6 +73,8 @@ struct _p_Body {
   Vec          work[3];
   /* interface rows */
   Mat                     interface;
+  Mat                     free_rows; /* without held dofs; the same matrix where none is held */
+  BodyGram                gram;      /* of prescribed rows that are not orthonormal */
   BodyRows                rows;
   BodyCondition          *conditions;             /* local rows */
   PetscBool              *held;                   /* those that are prescribed, or Robin rows */
@@ -164,7 +167,12 @@ PETSC_INTERN PetscErrorCode BodyDestroyResponse(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
 PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
-PETSC_INTERN PetscErrorCode BodyCreateFreeRows(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
+PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
+PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);
+PETSC_INTERN void           BodyLeaveOutDependent(Body, PetscBool[]);
+PETSC_INTERN void           BodyDivideByGram(Body, PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodyGramDestroy(BodyGram *);
 PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[]);

@@ -1,7 +1,7 @@
 /* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
 #include "bodyimpl.h"
 
-static PetscErrorCode WriteTrace(Body, Vec, Trace, PetscInt);
+static PetscErrorCode WriteTrace(Body, Mat, Vec, Trace, PetscInt);
 
 const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
 
@@ -12,10 +12,14 @@ const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionTy
 
   Input Parameters:
 + body - the `Body`
-- B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; the rows that
-         may be prescribed must be orthonormal
+- B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; a row that may be
+         prescribed is a unit vector on one node of this rank
 
   Level: developer
+
+  Note:
+  Rows of one node may have any directions. Of prescribed ones that depend on each other the first are prescribed, and the others have no
+  reaction.
 
 .seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
 @*/
@@ -35,23 +39,25 @@ PetscErrorCode BodySetInterface(Body body, Mat B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of the interface without held dofs, which no contact force moves */
-PetscErrorCode BodyCreateFreeRows(Body body, Mat *B)
+/* The rows of the interface without held dofs, which no contact force moves, and what prescribing them takes */
+PetscErrorCode BodySetUpFreeRows(Body body)
 {
   Vec mask;
 
   PetscFunctionBegin;
-  if (!body->any_held) {
+  PetscCall(MatDestroy(&body->free_rows));
+  if (body->any_held) {
+    PetscCall(MatDuplicate(body->interface, MAT_COPY_VALUES, &body->free_rows));
+    PetscCall(VecDuplicate(body->state.u, &mask));
+    PetscCall(VecSet(mask, 1));
+    PetscCall(BodyZeroHeld(body, mask));
+    PetscCall(MatDiagonalScale(body->free_rows, NULL, mask));
+    PetscCall(VecDestroy(&mask));
+  } else {
     PetscCall(PetscObjectReference((PetscObject)body->interface));
-    *B = body->interface;
-    PetscFunctionReturn(PETSC_SUCCESS);
+    body->free_rows = body->interface;
   }
-  PetscCall(MatDuplicate(body->interface, MAT_COPY_VALUES, B));
-  PetscCall(VecDuplicate(body->state.u, &mask));
-  PetscCall(VecSet(mask, 1));
-  PetscCall(BodyZeroHeld(body, mask));
-  PetscCall(MatDiagonalScale(*B, NULL, mask));
-  PetscCall(VecDestroy(&mask));
+  PetscCall(BodySetUpGram(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,7 +80,7 @@ static PetscErrorCode RewriteStart(Body body)
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
 
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 3; t++) PetscCall(WriteTrace(body, vecs[t], traces[t], 0));
+  for (PetscInt t = 0; t < 3; t++) PetscCall(WriteTrace(body, body->interface, vecs[t], traces[t], 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,23 +104,23 @@ static PetscErrorCode RewriteStart(Body body)
 PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
 {
   PetscMPIInt *all;
-  Mat          free_rows;
+  Mat          layer_rows;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->interface));
   body->interface = B;
+  PetscCall(BodySetUpFreeRows(body));
   PetscCall(PetscMalloc1(body->rows.global, &all));
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall(PetscFree(all));
-  if (body->solver) {
-    if (body->is_explicit) PetscCall(BodySetUpLayerRows(body, &free_rows));
-    else PetscCall(BodyCreateFreeRows(body, &free_rows));
-    PetscCall(ConstrainedSolverSetRows(body->solver, free_rows, changed));
-    PetscCall(MatDestroy(&free_rows));
-  }
+  if (body->solver && body->is_explicit) {
+    PetscCall(BodySetUpLayerRows(body, &layer_rows));
+    PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, changed));
+    PetscCall(MatDestroy(&layer_rows));
+  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, changed));
   if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, B, changed));
   if (body->response) PetscCall(BodyDestroyResponse(body));
   PetscCall(BodySetConstraints(body));
@@ -228,26 +234,30 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 PetscErrorCode BodySetConstraints(Body body)
 {
   PetscFunctionBegin;
+  PetscCall(BodyUpdateGram(body));
   for (PetscInt i = 0; i < body->rows.local; i++) {
     body->held[i]        = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN);
     body->flexibility[i] = body->conditions[i] == BODY_ROBIN ? 1 / body->robin[i] : 0;
   }
+  BodyLeaveOutDependent(body, body->held);
   if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held, body->flexibility));
   if (body->mass_solver && body->is_explicit && body->prescribed_mass) {
     for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
+    BodyLeaveOutDependent(body, body->held);
     PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held, NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* vec += B^T (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step, or 0 */
+/* vec += B^T G^{-1} (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step; held dofs stay as they
+   are. Without a trace `vec` is a force, and its part along the rows, what holds dofs left aside, becomes zero. */
 PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec)
 {
   PetscScalar *row, *target;
 
   PetscFunctionBegin;
   if (!body->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
+  PetscCall(MatMult(trace ? body->interface : body->free_rows, vec, body->row_vec[0]));
   PetscCall(VecGetArray(body->row_vec[0], &row));
   if (trace) {
     PetscCall(VecGetArrayWrite(body->row_vec[1], &target));
@@ -257,8 +267,9 @@ PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec
   } else {
     for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? -row[i] : 0;
   }
+  BodyDivideByGram(body, row);
   PetscCall(VecRestoreArray(body->row_vec[0], &row));
-  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], vec, vec));
+  PetscCall(MatMultTransposeAdd(body->free_rows, body->row_vec[0], vec, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,13 +297,13 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteTrace(Body body, Vec vec, Trace trace, PetscInt level)
+static PetscErrorCode WriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscInt level)
 {
   const PetscScalar *row;
   PetscScalar       *values;
 
   PetscFunctionBegin;
-  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
+  PetscCall(MatMult(rows, vec, body->row_vec[0]));
   PetscCall(TraceGetLevel(trace, level, &values));
   PetscCall(VecGetArrayRead(body->row_vec[0], &row));
   PetscCall(PetscArraycpy(values, row, body->rows.local));
@@ -307,9 +318,9 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WriteTrace(body, body->state.u, body->traces.displacement, level));
-  PetscCall(WriteTrace(body, body->state.v, body->traces.velocity, level));
-  PetscCall(WriteTrace(body, body->state.a, body->traces.acceleration, level));
+  PetscCall(WriteTrace(body, body->interface, body->state.u, body->traces.displacement, level));
+  PetscCall(WriteTrace(body, body->interface, body->state.v, body->traces.velocity, level));
+  PetscCall(WriteTrace(body, body->interface, body->state.a, body->traces.acceleration, level));
   if (body->n_prescribed) {
     Vec force = body->internal_force;
 
@@ -323,9 +334,10 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
       PetscCall(BodyAddExternalForce(body, body->time, -1, force));
       PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, body->state.u, force));
     }
-    PetscCall(WriteTrace(body, force, body->traces.reaction, level));
+    PetscCall(WriteTrace(body, body->free_rows, force, body->traces.reaction, level));
   }
   PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
+  if (body->n_prescribed) BodyDivideByGram(body, reaction);
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
   for (PetscInt i = 0; i < body->rows.local; i++) {
