@@ -27,6 +27,19 @@ typedef struct {
   PetscReal normal[3];  /* mean outward normal of the first */
 } ContactPair;
 
+/* The gap of a row without anything opposite [m] */
+#define CONTACT_NO_GAP 1e30
+
+/* Nodes of this rank with rows of several pairs */
+typedef struct {
+  PetscInt   n, *offsets, *rows;
+  PetscBool *free_dofs; /* per node: 3, whether the user leaves its displacement along an axis free */
+  PetscBool *left_out;  /* per entry of `rows`: it is of an obstacle that lies behind another */
+  PetscReal *unit;      /* per pair: stiffness for each unit of area that makes forces of unknowns in metres [N/m^3] */
+  PetscBool *answers;   /* per pair: displacements of the partner answer to forces in the same controller step */
+  PetscInt  *sorted;    /* work space */
+} SharedNodes;
+
 /* What the rows mean to the bodies */
 typedef enum {
   CONDITIONS_FREE,         /* no row means anything */
@@ -54,10 +67,12 @@ struct _p_Contact {
   PetscInt             n_rows, row_begin, n_all_rows;
   PetscInt            *row_pair;
   PetscReal           *initial_gap, *area;
-  PetscInt            *row_dof;                 /* first displacement of its node in the pair's first body, rank numbering */
-  PetscReal           *row_normal;              /* its direction, 3 numbers, 0 beyond the dimension */
-  PetscBool           *opposite;                /* it has anything to touch */
-  PetscBool           *tied;                    /* it is held whatever its force and gap */
+  PetscInt            *row_dof;    /* first displacement of its node in the pair's first body, rank numbering */
+  PetscReal           *row_normal; /* its direction, 3 numbers, 0 beyond the dimension */
+  PetscBool           *opposite;   /* it has anything to touch */
+  PetscBool           *tied;       /* it is held whatever its force and gap */
+  PetscBool           *by_force;   /* its force is an unknown of the method, on both sides; NULL: of none */
+  SharedNodes          shared;
   PetscBool           *changed;                 /* it has new entries */
   PetscReal           *gap_shift;               /* added to its gap when it was built again [m] */
   PetscReal           *last_gap;                /* work space: before that */
@@ -94,6 +109,13 @@ PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactFindSharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroySharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactLeaveOutObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
+PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
+PETSC_INTERN void           ContactArrangeShared(Contact);
+PETSC_INTERN PetscErrorCode ContactGetElementStiffness(Body, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
