@@ -73,8 +73,9 @@ struct _p_Body {
   Vec          work[3];
   /* interface rows */
   Mat                     interface;
-  Mat                     free_rows; /* without held dofs; the same matrix where none is held */
-  BodyGram                gram;      /* of prescribed rows that are not orthonormal */
+  Mat                     free_rows;   /* without held dofs; the same matrix where none is held */
+  BodyGram                gram;        /* of prescribed rows that are not orthonormal */
+  const PetscReal        *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
   BodyRows                rows;
   BodyCondition          *conditions;             /* local rows */
   PetscBool              *held;                   /* those that are prescribed, or Robin rows */
@@ -170,7 +171,7 @@ PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
 PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);
-PETSC_INTERN void           BodyLeaveOutDependent(Body, PetscBool[]);
+PETSC_INTERN void           BodyUnmarkDependent(Body, PetscBool[]);
 PETSC_INTERN void           BodyDivideByGram(Body, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGramDestroy(BodyGram *);
 PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);

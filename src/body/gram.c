@@ -5,10 +5,15 @@
 
      u + B^T G^{-1} (x - B u)  is the nearest to u that has B u = x, and   G^{-1} B f  are the forces along the rows that amount to f.
 
-   Rows couple only where they share a node, so that G falls into a small block for each such node; the other rows are orthonormal. Of rows
-   of a node that depend on each other, the first are prescribed, and the others left out.
+   Rows couple only where they share a node, so that G falls into a small block for each such node; the other rows are orthonormal.
+
+   Rows of a node that depend on each other are prescribed as well as can be, by least squares with a weight w for each row, and share the force
+   according to their weights: with A = diag(w) the inverse becomes A^{1/2} (A^{1/2} G A^{1/2})^+ A^{1/2}, which is G^{-1} where there is one. Two
+   with one direction are prescribed their weighted mean, and each takes its part of the force; so the work of the force is that of its parts, and
+   with the areas that two partners cover for weights this is the mortar condition of both together.
 */
 #include "bodyimpl.h"
+#include <petscblaslapack.h>
 
 /* Of a row, what is not along the rows before it, squared: less is nothing. Normals within 1e-4 of each other count as parallel. */
 #define DEPENDENT 1e-8
@@ -22,16 +27,17 @@ struct _n_BodyGram {
   PetscInt     n_blocks, *offsets, *rows;
   PetscInt    *starts; /* of each block in: */
   PetscScalar *inverses;
-  PetscBool   *left_out; /* per candidate, as they are ordered in `rows`: it depends on those before it */
-  PetscScalar *work;
+  PetscBool   *dependent; /* of each of `rows`: on those before it in its block */
+  PetscScalar *work;      /* room for a row vector, and for the eigenvalues of a block */
 };
 
 PetscErrorCode BodyGramDestroy(BodyGram *gram)
 {
   PetscFunctionBegin;
   if (!*gram) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree4((*gram)->run_offsets, (*gram)->candidates, (*gram)->directions, (*gram)->work));
-  PetscCall(PetscFree5((*gram)->offsets, (*gram)->rows, (*gram)->left_out, (*gram)->starts, (*gram)->inverses));
+  PetscCall(PetscFree3((*gram)->run_offsets, (*gram)->candidates, (*gram)->directions));
+  PetscCall(PetscFree((*gram)->work));
+  PetscCall(PetscFree5((*gram)->offsets, (*gram)->rows, (*gram)->dependent, (*gram)->starts, (*gram)->inverses));
   PetscCall(PetscFree(*gram));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -68,15 +74,16 @@ static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Rows sorted by node: those that share one, or are alone and no unit vectors, become candidates. Returns the sum of squares of their numbers. */
-static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt order[], const PetscReal directions[], PetscInt *size)
+/* Rows sorted by node: those that share one, or are alone and no unit vectors, become candidates. Returns the sum of squares of their numbers, and
+   the largest one. */
+static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt order[], const PetscReal directions[], PetscInt *size, PetscInt *most)
 {
   BodyGram       gram  = body->gram;
   const PetscInt n     = body->rows.local;
   PetscInt       count = 0;
 
   PetscFunctionBegin;
-  *size = 0;
+  *size = *most = 0;
   for (PetscInt begin = 0, end; begin < n; begin = end) {
     const PetscReal *first = directions + 3 * order[begin];
 
@@ -89,6 +96,7 @@ static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt
     }
     gram->run_offsets[++gram->n_runs] = count;
     *size += PetscSqr(end - begin);
+    *most = PetscMax(*most, end - begin);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,7 +105,7 @@ static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt
 PetscErrorCode BodySetUpGram(Body body)
 {
   const PetscInt n = body->rows.local;
-  PetscInt      *nodes, *order, size;
+  PetscInt      *nodes, *order, size, most;
   PetscReal     *directions;
   BodyGram       gram;
 
@@ -111,23 +119,27 @@ PetscErrorCode BodySetUpGram(Body body)
     order[i] = i;
   }
   PetscCall(PetscSortIntWithArray(n, nodes, order));
-  PetscCall(PetscCalloc4(n + 1, &gram->run_offsets, n, &gram->candidates, 3 * n, &gram->directions, n, &gram->work));
-  PetscCall(FindCandidates(body, nodes, order, directions, &size));
+  PetscCall(PetscCalloc3(n + 1, &gram->run_offsets, n, &gram->candidates, 3 * n, &gram->directions));
+  PetscCall(FindCandidates(body, nodes, order, directions, &size, &most));
+  PetscCall(PetscMalloc1(most * (most + 5), &gram->work));
   PetscCall(PetscFree3(nodes, order, directions));
-  PetscCall(PetscCalloc5(gram->n_runs + 1, &gram->offsets, n, &gram->rows, n, &gram->left_out, gram->n_runs, &gram->starts, size, &gram->inverses));
+  PetscCall(PetscCalloc5(gram->n_runs + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, gram->n_runs, &gram->starts, size, &gram->inverses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The inverse of a symmetric matrix by sweeping its pivots (Goodnight, The American Statistician 33 (1979) 149-158), without the rows and columns
-   that depend on those before them, which become zero */
-static void Invert(PetscInt n, PetscScalar A[], PetscScalar diagonal[], PetscBool left_out[])
+/* The inverse of a symmetric matrix by sweeping its pivots (Goodnight, The American Statistician 33 (1979) 149-158); false if there is none, with the
+   rows that depend on those before them */
+static PetscBool Invert(PetscInt n, PetscScalar A[], PetscScalar diagonal[], PetscBool dependent[])
 {
+  PetscBool any = PETSC_FALSE;
+
   for (PetscInt i = 0; i < n; i++) diagonal[i] = A[i * n + i];
   for (PetscInt k = 0; k < n; k++) {
     const PetscScalar pivot = A[k * n + k];
 
-    left_out[k] = (PetscBool) !(PetscRealPart(pivot) > DEPENDENT * PetscRealPart(diagonal[k]));
-    if (left_out[k]) continue;
+    dependent[k] = (PetscBool) !(PetscRealPart(pivot) > DEPENDENT * PetscRealPart(diagonal[k]));
+    any          = (PetscBool)(any || dependent[k]);
+    if (dependent[k]) continue;
     for (PetscInt i = 0; i < n; i++)
       for (PetscInt j = 0; j < n; j++)
         if (i != k && j != k) A[i * n + j] -= A[i * n + k] * A[k * n + j] / pivot;
@@ -135,8 +147,42 @@ static void Invert(PetscInt n, PetscScalar A[], PetscScalar diagonal[], PetscBoo
       if (i != k) A[i * n + k] = A[k * n + i] = A[i * n + k] / pivot;
     A[k * n + k] = -1 / pivot;
   }
+  for (PetscInt i = 0; i < n * n; i++) A[i] = -A[i];
+  return (PetscBool)!any;
+}
+
+/* G of some candidates, with the square roots of weights on both sides */
+static void FillBlock(const BodyGram gram, PetscInt n, const PetscInt candidates[], const PetscReal weights[], PetscScalar block[])
+{
   for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) A[i * n + j] = left_out[i] || left_out[j] ? 0 : -A[i * n + j];
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscInt  a = candidates[i], b = candidates[j];
+      const PetscReal scale = weights ? PetscSqrtReal(weights[gram->candidates[a]] * weights[gram->candidates[b]]) : 1;
+
+      block[i * n + j] = scale * Dot(gram->directions + 3 * a, gram->directions + 3 * b);
+    }
+}
+
+/* A^{1/2} M^+ A^{1/2} of such a block M with weights */
+static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscInt candidates[], const PetscReal weights[], PetscScalar block[])
+{
+  PetscScalar *vectors = gram->work, *values = vectors + n * n, *work = values + n;
+  PetscBLASInt order, lwork, info;
+
+  PetscFunctionBegin;
+  PetscCall(PetscBLASIntCast(n, &order));
+  PetscCall(PetscBLASIntCast(4 * n, &lwork));
+  FillBlock(gram, n, candidates, weights, vectors);
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &order, vectors, &order, values, work, &lwork, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev info %d", (int)info);
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      block[i * n + j] = 0;
+      for (PetscInt k = 0; k < n; k++)
+        if (values[k] > DEPENDENT * values[n - 1]) block[i * n + j] += vectors[k * n + i] * vectors[k * n + j] / values[k];
+      if (weights) block[i * n + j] *= PetscSqrtReal(weights[gram->candidates[candidates[i]]] * weights[gram->candidates[candidates[j]]]);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The blocks of the rows that are prescribed now */
@@ -155,14 +201,13 @@ PetscErrorCode BodyUpdateGram(Body body)
     for (PetscInt k = gram->run_offsets[run]; k < gram->run_offsets[run + 1]; k++)
       if (body->conditions[gram->candidates[k]] == BODY_PRESCRIBED) gram->rows[count++] = k;
     n = count - first;
-    for (PetscInt i = 0; i < n; i++)
-      for (PetscInt j = 0; j < n; j++) block[i * n + j] = Dot(gram->directions + 3 * gram->rows[first + i], gram->directions + 3 * gram->rows[first + j]);
+    FillBlock(gram, n, gram->rows + first, NULL, block);
     if (!n || (n == 1 && PetscAbsReal(PetscRealPart(block[0]) - 1) <= UNIT)) {
       count = first;
       continue;
     }
+    if (!Invert(n, block, gram->work, gram->dependent + first)) PetscCall(PseudoInvert(gram, n, gram->rows + first, body->row_weights, block));
     for (PetscInt i = first; i < count; i++) gram->rows[i] = gram->candidates[gram->rows[i]];
-    Invert(n, block, gram->work, gram->left_out + first);
     gram->starts[gram->n_blocks++] = size;
     gram->offsets[gram->n_blocks]  = count;
     size += n * n;
@@ -170,13 +215,13 @@ PetscErrorCode BodyUpdateGram(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes marks from prescribed rows that depend on others of their node */
-void BodyLeaveOutDependent(Body body, PetscBool marked[])
+/* Takes marks from prescribed rows that depend on others of their node: where those are zero, they are too */
+void BodyUnmarkDependent(Body body, PetscBool marked[])
 {
   const BodyGram gram = body->gram;
 
   for (PetscInt k = 0; gram->n_blocks && k < gram->offsets[gram->n_blocks]; k++)
-    if (gram->left_out[k]) marked[gram->rows[k]] = PETSC_FALSE;
+    if (gram->dependent[k]) marked[gram->rows[k]] = PETSC_FALSE;
 }
 
 /* row <- G^{-1} row, on prescribed rows */

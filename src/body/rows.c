@@ -18,8 +18,7 @@ const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionTy
   Level: developer
 
   Note:
-  Rows of one node may have any directions. Of prescribed ones that depend on each other the first are prescribed, and the others have no
-  reaction.
+  Rows of one node may have any directions; of those that depend on each other see `BodySetRowWeights()`.
 
 .seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
 @*/
@@ -156,6 +155,31 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 }
 
 /*@
+  BodySetRowWeights - says how prescribed rows of one node that depend on each other share its displacement and force
+
+  Logically Collective
+
+  Input Parameters:
++ body    - the `Body`, set up
+- weights - one for each row of this rank, positive on rows that are prescribed; not copied, and looked at whenever rows or conditions change
+
+  Level: developer
+
+  Note:
+  Two rows with one direction are prescribed the weighted mean of their displacements, and each has its part of the force. Without this call
+  all weights are equal.
+
+.seealso: `Body`, `BodySetInterface()`, `BodySetConditions()`
+@*/
+PetscErrorCode BodySetRowWeights(Body body, const PetscReal weights[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  body->row_weights = weights;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodySetRobin - sets the springs of Robin rows
 
   Logically Collective
@@ -239,11 +263,11 @@ PetscErrorCode BodySetConstraints(Body body)
     body->held[i]        = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN);
     body->flexibility[i] = body->conditions[i] == BODY_ROBIN ? 1 / body->robin[i] : 0;
   }
-  BodyLeaveOutDependent(body, body->held);
+  BodyUnmarkDependent(body, body->held);
   if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held, body->flexibility));
   if (body->mass_solver && body->is_explicit && body->prescribed_mass) {
     for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
-    BodyLeaveOutDependent(body, body->held);
+    BodyUnmarkDependent(body, body->held);
     PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held, NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -37,6 +37,7 @@ typedef struct {
   PetscBool *left_out;  /* per entry of `rows`: it is of an obstacle that lies behind another */
   PetscReal *unit;      /* per pair: stiffness for each unit of area that makes forces of unknowns in metres [N/m^3] */
   PetscBool *answers;   /* per pair: displacements of the partner answer to forces in the same controller step */
+  PetscBool  arranges;  /* rows that depend on each other are told apart */
   PetscInt  *sorted;    /* work space */
 } SharedNodes;
 

@@ -1,8 +1,8 @@
 /*
    Nodes with rows of several pairs, whose directions may depend on each other: a block that stands astride two others, or on two plane obstacles
-   side by side. What must hold is that of each pair on its own: no gap is negative, no force pulls, and a force is there where the gap is closed.
-   Forces are defined as long as one of two partners can give way, and the gaps always. But a body can be prescribed only where its rows are
-   independent. So, of the active rows of a node,
+   side by side. What must hold is that of each pair on its own, whatever the method: no gap is negative, no force pulls, and a force is there
+   where the gap is closed. This defines the gaps, and the forces too if of the partners of a node all but one give way. But a body can be
+   prescribed only where its rows are independent. So, where Schwarz's method runs on the bodies' compliance, of the active rows of a node
 
    - the first that are independent are prescribed;
    - the others with a partner that answers to forces have their force for an unknown, on both sides, and the condition that their gap is closed:
@@ -10,7 +10,8 @@
    - the others with a partner that does not (an obstacle, or an explicit body whose contact nodes have mass) are let go: their gap is closed by
      the rows before them, unless their partner is deeper inside, and then it comes first.
 
-   Of obstacles with one normal at a node only the nearest counts, whatever the method.
+   Elsewhere rows that depend on each other are prescribed by least squares, weighted by the areas that the partners cover: see BodySetRowWeights().
+   Of obstacles with one normal at a node only the nearest counts.
 */
 #include "contactimpl.h"
 
@@ -173,8 +174,8 @@ static PetscErrorCode GetUnit(Contact contact, const ContactPair *pair, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For a method that prescribes displacements; `forces`: it may have forces for unknowns. After the bodies have been set up. */
-PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool forces)
+/* For a method that prescribes displacements; `arranges`: it may have forces for unknowns. After the bodies have been set up. */
+PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool arranges)
 {
   SharedNodes *shared = &contact->shared;
   PetscInt     most   = 0;
@@ -186,9 +187,10 @@ PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool forces)
     const ContactPair *pair = &contact->pairs[p];
 
     PetscCall(GetUnit(contact, pair, &shared->unit[p]));
-    if (pair->obstacle || !forces) continue;
-    PetscCall(BodyFeelsEndForce(contact->bodies[pair->body[1]], &shared->answers[p]));
+    if (!pair->obstacle) PetscCall(BodyFeelsEndForce(contact->bodies[pair->body[1]], &shared->answers[p]));
   }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRowWeights(contact->bodies[b], contact->area));
+  shared->arranges = arranges;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -239,7 +241,7 @@ void ContactArrangeShared(Contact contact)
 {
   SharedNodes *shared = &contact->shared;
 
-  for (PetscInt node = 0; node < shared->n; node++) {
+  for (PetscInt node = 0; node < shared->n && shared->arranges; node++) {
     const PetscInt count = SortActive(contact, node);
     PetscReal      basis[3][3];
     PetscInt       n = 0;
