@@ -107,6 +107,7 @@ static PetscErrorCode Reconsider(Contact contact, PetscInt i)
   if (contact->opposite[i]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TransferGetRows(pair->transfer, &rows));
   contact->opposite[i] = rows.opposite[node];
+  contact->area[i]     = rows.area[node];
   if (rows.opposite[node]) contact->initial_gap[i] = rows.gap[node];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -130,9 +131,12 @@ PetscErrorCode ContactLeaveOutObstacles(Contact contact)
       for (PetscInt l = begin; l < end && !shared->left_out[k]; l++) shared->left_out[k] = IsBehind(contact, i, shared->rows[l]);
     }
     for (PetscInt k = begin; k < end; k++) {
+      const PetscInt i = shared->rows[k];
+
       if (!shared->left_out[k]) continue;
-      contact->opposite[shared->rows[k]] = contact->tied[shared->rows[k]] = PETSC_FALSE;
-      contact->initial_gap[shared->rows[k]]                               = CONTACT_NO_GAP;
+      contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
+      contact->initial_gap[i]                 = CONTACT_NO_GAP;
+      contact->area[i]                        = 0;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
