@@ -44,6 +44,7 @@ def same(first, second, tolerance, bodies, pairs):
 
 # A block pressed into a corner by the displacement of its far faces: its strain is uniform, so that any mesh has the exact solution.
 
+FACES = (3, 2, 2)
 SIZE = np.array((0.6, 0.5, 0.4))
 STRAIN = np.array((-0.02, -0.01, -0.015))
 TURNS = {2: ((0, 0, 1), 37), 3: ((1, -2, 0.7), 71)}
@@ -71,7 +72,7 @@ def pressed(shape, kind):
     exact = linear(across @ np.diag(STRAIN[:dim]) @ across.T, np.zeros(dim), "t*")
     names = "lmn"[:dim]
     far = [f"{x}max" for x in "xyz"[:dim]]
-    parts = [box("a", (3, 2, 2)[:dim], (0,) * dim, SIZE[:dim], simplex or "-a_dm_plex_simplex 0"), material("a", more=f"-a_material_type {kind} -a_ts_type static")]
+    parts = [box("a", FACES[:dim], (0,) * dim, SIZE[:dim], simplex or "-a_dm_plex_simplex 0"), material("a", more=f"-a_material_type {kind} -a_ts_type static")]
     parts.append(f"-a_rotate {degrees if dim == 2 else words((*axis, degrees))} -a_rotate_centre {words((0,) * dim)}")
     parts.append(f"-a_boundary_displacement {','.join(far)} " + " ".join(f"-a_boundary_displacement_{side} {exact}" for side in far))
     parts.append(f"-a_exact_displacement {exact} -bodies a -obstacles {','.join(names)} {FIELDS} -time_step 1 -time_end 1")
@@ -83,6 +84,7 @@ def check_pressed(run, dim, names, across, pressure):
     """What the walls carry of the uniform stress: where nodes of the far faces are held, which contact could not move, they carry nothing."""
     for i, name in enumerate(names):
         pair = f"a:{name}"
+        assert last(run, pair, "active") == np.prod(np.delete(FACES[:dim], i))  # nodes but those of far faces
         assert last(run, pair, "force") == pytest.approx(-pressure[i] * last(run, pair, "area"), rel=1e-9)
         np.testing.assert_allclose(last(run, pair, "force_vector")[:dim], -last(run, pair, "force") * across[:, i], rtol=1e-9, atol=1e-12)
     assert run.summary["bodies"]["a"]["displacement_error"] <= 1e-9
@@ -100,3 +102,230 @@ def test_pressed_into_a_corner(shape, kind, shared_run):
     runs = [shared_run(options), shared_run(f"{options} -schwarz_condense 0"), shared_run(options, 2)]
     for run in runs:
         check_pressed(run, dim, names, across, pressure)
+
+
+# A block flies into a corner, and turns back in both directions.
+
+INTEGRATORS = {"implicit": "", "implicit-substeps": "-a_ts_time_step 0.01", "explicit": EXPLICIT, "explicit-substeps": f"{EXPLICIT} -a_ts_time_step 0.01"}
+
+
+def thrown(degrees, more="", dim=2):
+    """The corner is at the origin; the block reaches one wall after the other."""
+    axis = (0, 0, 1) if dim == 2 else (1, -2, 0.7)
+    across = rotation(axis, degrees)[:dim, :dim]
+    lower, velocity = np.array((0.02, 0.03, 0.025))[:dim], across @ np.array((-0.1, -0.1, -0.07))[:dim]
+    names = "lmn"[:dim]
+    parts = [box("a", (4, 4, 3)[:dim], lower, lower + 1, f"-a_dm_plex_simplex 0 -a_initial_velocity {words(velocity)}"), material("a")]
+    parts.append(f"-a_rotate {degrees if dim == 2 else words((*axis, degrees))} -bodies a -obstacles {','.join(names)} -time_step 0.02 -time_end 2.4")
+    parts += [plane(name, (0,) * 3, (*across[:, i], *(0,) * (3 - dim))) for i, name in enumerate(names)]
+    return joined(*parts, more)
+
+
+def check_impulse(run, pairs, body="a"):
+    """What the walls have given is what the body has got: the forces of each step act in the middle of two, so that round-off is left."""
+    momentum = run.history[f"body/{body}/momentum"][()]
+    given = -sum(run.history[f"contact/{pair}/impulse"][()][-1] for pair in pairs)[: momentum.shape[1]]
+    np.testing.assert_allclose(given, momentum[-1] - momentum[0], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_thrown_into_a_corner(integrator, dim, shared_run):
+    options = thrown(23, INTEGRATORS[integrator], dim)
+    pairs = [f"a:{name}" for name in "lmn"[:dim]]
+    run = shared_run(options)
+    both = sum(run.history[f"contact/{pair}/active"][()] > 0 for pair in pairs)
+    assert both.max() == dim  # at once
+    assert worst_energy_error(run.summary) <= 5e-4  # of steps of 0.02 s, in proportion to their square; measured: 1e-4 to 2e-4
+    assert run.summary["contact"]["tension_max"] == 0
+    assert run.summary["contact"]["max_penetration"] <= 1e-11
+    same(run, shared_run(f"{options} -schwarz_condense 0"), SAME, "a", pairs)
+    same(run, shared_run(options, 2), SAME, "a", pairs)
+    same(run, shared_run(thrown(0, INTEGRATORS[integrator], dim)), SAME, "a", pairs)
+    if "substeps" not in integrator:
+        check_impulse(run, pairs)
+
+
+@pytest.mark.parametrize("kind", ["saint_venant_kirchhoff", "neo_hookean"])
+@pytest.mark.parametrize("integrator", ["implicit", "explicit"])
+def test_nonlinear_thrown_into_a_corner(integrator, kind, shared_run):
+    options = thrown(23, f"{INTEGRATORS[integrator]} -a_material_type {kind}")
+    run = shared_run(options)
+    assert worst_energy_error(run.summary) <= 5e-4  # measured: 1e-4 to 3.3e-4
+    assert run.summary["schwarz"]["mean_contact_steps"] <= 5
+    check_impulse(run, ("a:l", "a:m"))
+    # Newton's method of the body leaves 1e-12 of its forces, the sweeps 1e-12 m of 0.1 m
+    same(run, shared_run(thrown(0, f"{INTEGRATORS[integrator]} -a_material_type {kind}")), 1e-8, "a", ("a:l", "a:m"))
+    same(run, shared_run(f"{options} -schwarz_snes_type anderson"), 1e-8, "a", ("a:l", "a:m"))
+
+
+# A square stands on its corner in a groove, whose walls are not square to each other: one node touches both.
+
+GROOVE = 100  # degrees between the walls
+
+
+def grooved(more=""):
+    lean = np.radians(GROOVE / 2)
+    walls = [plane("l", (0, 0, 0), (np.cos(lean), np.sin(lean), 0)), plane("r", (0, 0, 0), (-np.cos(lean), np.sin(lean), 0))]
+    return joined(box("a", (4, 4), (0.02, 0.02), (1.02, 1.02), "-a_dm_plex_simplex 0 -a_rotate 45 -a_initial_velocity 0,-0.1"), material("a"), "-bodies a -obstacles l,r -time_step 0.02 -time_end 3", *walls, more)
+
+
+@pytest.mark.parametrize("more", ["", EXPLICIT, "-a_material_type neo_hookean", f"{EXPLICIT} -a_material_type neo_hookean"])
+def test_groove(more, shared_run):
+    """By symmetry both walls push alike: twice the force times the sine of half the angle is what turns the square back."""
+    run = shared_run(grooved(more))
+    left, right = (run.history[f"contact/{pair}/force"][()] for pair in ("a:l", "a:r"))
+    assert left.max() > 0
+    np.testing.assert_allclose(left, right, rtol=0, atol=1e-9 * left.max())
+    momentum = run.history["body/a/momentum"][()]
+    impulse = 2 * np.sin(np.radians(GROOVE / 2)) * np.sum(0.02 * (left[1:] + left[:-1]) / 2)
+    assert momentum[-1, 1] - momentum[0, 1] == pytest.approx(impulse, rel=1e-9)
+    np.testing.assert_allclose(momentum[:, 0], 0, atol=1e-11)
+    assert worst_energy_error(run.summary) <= 5e-4  # measured: 1e-4 to 3.3e-4
+    if "neo" not in more:
+        same(run, shared_run(grooved(f"{more} -schwarz_condense 0")), SAME, "a", ("a:l", "a:r"))
+    same(run, shared_run(grooved(more), 2), SAME, "a", ("a:l", "a:r"))
+
+
+# A block astride two others: the nodes over the joint touch both, with one normal.
+
+JOINT = 0.0
+UNDER = {"II": "", "IE": "b c", "EI": "a", "EE": "a b c"}
+
+
+def explicit(bodies):
+    return " ".join(f"-{b}_ts_type centraldifference" for b in bodies.split())
+
+
+def stack(halves, pairing="II", more="", dim=2, nu=0, widths=(-1, 1)):
+    """Block a falls on blocks b and c, or on b alone, which is as wide as both."""
+    last_axis = (4,) if dim == 2 else (2, 4)
+    depth = () if dim == 2 else (0.5,)
+    low, high = (lambda x, y: (x, *((0,) if depth else ()), y)), (lambda x, y: (x, *depth, y))
+    fly = words((*(0,) * (dim - 1), -0.1))
+    parts = [box("a", (4, *last_axis), low(widths[0], 0.02), high(widths[1], 1.02), f"-a_dm_plex_simplex 0 -a_initial_velocity {fly}"), material("a", nu=nu)]
+    ends = (widths[0], JOINT, widths[1]) if halves else widths
+    for name, left, right in zip("bc", ends, ends[1:]):
+        parts.append(box(name, (3 if halves else 6, *last_axis), low(left, -1), high(right, 0), f"-{name}_dm_plex_simplex 0"))
+        parts.append(material(name, nu=nu))
+    bodies = "abc" if halves else "ab"
+    parts.append(f"-bodies {','.join(bodies)} -contact_pairs {'a:b,a:c' if halves else 'a:b'} -time_step 0.02 -time_end 2.6")
+    return joined(*parts, explicit(" ".join(b for b in UNDER[pairing].split() if b in bodies)), more)
+
+
+def both(run, name):
+    return run.history[f"contact/a:b/{name}"][()] + run.history[f"contact/a:c/{name}"][()]
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("pairing", UNDER)
+def test_astride_two_blocks(pairing, dim, shared_run):
+    """Without lateral strain the joint makes no difference. The meshes do not match, but the joint lies under a node."""
+    halves, whole = shared_run(stack(True, pairing, dim=dim)), shared_run(stack(False, pairing, dim=dim))
+    for name in ("force", "area"):
+        values = whole.history[f"contact/a:b/{name}"][()]
+        np.testing.assert_allclose(both(halves, name), values, rtol=0, atol=1e-8 * values.max(), err_msg=name)
+    assert halves.summary["system"]["energy_error_final"] == pytest.approx(whole.summary["system"]["energy_error_final"], abs=1e-9)
+    assert worst_energy_error(halves.summary) <= 5e-4
+    assert halves.summary["system"]["momentum_error_max"] <= 1e-12
+    assert halves.summary["contact"]["max_penetration"] <= 1e-11
+    assert halves.summary["contact"]["tension_max"] == 0
+    assert halves.summary["schwarz"]["set_cycles"] == 0
+    assert halves.summary["schwarz"]["mean_contact_steps"] <= 2.5
+
+
+UNLIKE = "-b_poissons_ratio 0.3 -c_poissons_ratio 0.2 -c_youngs_modulus 0.5"
+
+
+@pytest.mark.parametrize("law", ["frictionless", "tied"])
+@pytest.mark.parametrize("pairing", ["II", "IE", "EE"])
+def test_astride_unlike_blocks(pairing, law, shared_run):
+    """Each presses back as it can: what both take is what Lagrange multipliers, and Robin conditions, say, which know nothing of which row is prescribed."""
+    options = stack(True, pairing, f"{UNLIKE} -contact_law {law}", nu=0.25)
+    pairs = ("a:b", "a:c")
+    run = shared_run(options)
+    assert worst_energy_error(run.summary) <= (1e-10 if law == "tied" and pairing == "II" else 5e-4)
+    assert run.summary["system"]["momentum_error_max"] <= 1e-12
+    for more in ("-schwarz_condense 0", "-schwarz_dense_limit 0"):
+        same(run, shared_run(f"{options} {more}"), 1e-8 if "limit" in more else SAME, "abc", pairs)
+    same(run, shared_run(options, 2), SAME, "abc", pairs)
+    same(run, shared_run(f"{options} -schwarz_snes_type anderson"), 1e-7, "abc", pairs)
+    same(run, shared_run(f"{options} -schwarz_transmission robin"), 1e-7, "abc", pairs)
+    if pairing == "II" and law == "frictionless":
+        same(run, shared_run(f"{options} -contact_type lagrange"), 1e-7, "abc", pairs)
+
+
+@pytest.mark.parametrize("more", [explicit("b c") + " -b_ts_time_step 0.01 -c_ts_time_step 0.005", explicit("a b c") + " -a_ts_time_step 0.01 -b_ts_time_step 0.005 -c_ts_time_step 0.01", explicit("c")])
+def test_astride_with_substeps(more, shared_run):
+    options = stack(True, more=f"{UNLIKE} {more}", nu=0.25)
+    run = shared_run(options)
+    assert worst_energy_error(run.summary) <= 1e-3
+    assert run.summary["system"]["momentum_error_max"] <= 1e-12
+    same(run, shared_run(f"{options} -schwarz_condense 0"), SAME, "abc", ("a:b", "a:c"))
+
+
+@pytest.mark.parametrize("mass", [" ".join(f"-{b}_mass_redistribute 0" for b in "abc")])
+@pytest.mark.parametrize("pairing", ["II", "EE"])
+def test_astride_with_mass(pairing, mass, shared_run):
+    """Rows are shared by area: again the joint makes no difference."""
+    halves = shared_run(stack(True, pairing, mass))
+    whole = shared_run(stack(False, pairing, mass.replace("-c_mass_redistribute 0", "")))
+    force = whole.history["contact/a:b/force"][()]
+    np.testing.assert_allclose(both(halves, "force"), force, rtol=0, atol=1e-8 * force.max())
+    assert halves.summary["contact"]["max_penetration"] <= 1e-11
+
+
+@pytest.mark.parametrize("law", ["frictionless", "tied"])
+@pytest.mark.parametrize("shape", ["quad4", "hex8"])
+def test_patch_astride(shape, law, shared_run):
+    """Pressed on two blocks of unlike widths and meshes, the pressure is uniform, and each takes as much as its width."""
+    dim, _ = CORNERS[shape]
+    widths, split, pressure = (0.6, 0.4), 0.24, 0.01  # a node of the upper block lies over the joint: 5 elements
+    depth = (widths[1],) if dim == 3 else ()
+    boxes = {"a": ((5, 2, 2), (0, 0.3), (widths[0], 0.5)), "b": ((3, 3, 2), (0, 0), (split, 0.3)), "c": ((4, 1, 3), (split, 0), (widths[0], 0.3))}
+    gradient = np.diag([0] * (dim - 1) + [-pressure])  # of E = 1 without lateral strain
+    exact = linear(gradient, np.zeros(dim), "t*")
+    parts = []
+    for name, (faces, lower, upper) in boxes.items():
+        side = "xyz"[dim - 1] + ("max" if name == "a" else "min")
+        faces = faces if dim == 3 else (faces[0], faces[2])
+        parts.append(box(name, faces, (lower[0], *(0 for _ in depth), lower[1]), (upper[0], *depth, upper[1]), f"-{name}_dm_plex_simplex 0"))
+        parts.append(material(name, nu=0, more=f"-{name}_ts_type static -{name}_boundary_displacement {side} -{name}_boundary_displacement_{side} {exact} -{name}_exact_displacement {exact}"))
+    run = shared_run(f"{' '.join(parts)} -bodies a,b,c -contact_pairs a:b,a:c -contact_law {law} -time_step 1 -time_end 1 {FIELDS}")
+    across = widths[1] if dim == 3 else 1
+    assert last(run, "a:b", "force") == pytest.approx(pressure * split * across, rel=1e-8)
+    assert last(run, "a:c", "force") == pytest.approx(pressure * (widths[0] - split) * across, rel=1e-8)
+    for name in boxes:
+        assert run.summary["bodies"][name]["displacement_error"] <= 1e-8
+    with h5py.File(run.folder / "fields.h5") as fields:
+        frame = max(fields["displacement"])
+        active = fields["contact_active"][frame][()] > 0
+        np.testing.assert_allclose(fields["contact_pressure"][frame][()][active], pressure, rtol=1e-8)
+
+
+# Plane obstacles side by side, or one behind the other
+
+FLAT = {"one": [(0, 0, 0)], "two": [(0, 0, 0), (1, 0, 0)], "behind": [(0, -0.001, 0), (0, 0, 0)]}
+
+
+def fallen(planes, more=""):
+    names = "lr"[: len(FLAT[planes])]
+    walls = [plane(name, point, (0, 1, 0)) for name, point in zip(names, FLAT[planes])]
+    return joined(box("a", (4, 4), (-1, 0.02), (1, 1.02), "-a_dm_plex_simplex 0 -a_initial_velocity 0,-0.1"), material("a"), f"-bodies a -obstacles {','.join(names)} -time_step 0.02 -time_end 3 {FIELDS.replace('1000000', '50')}", *walls, more)
+
+
+@pytest.mark.parametrize("more", ["", EXPLICIT, "-a_material_type neo_hookean", "-schwarz_condense 0", "-contact_type penalty", "-contact_type lagrange", f"{EXPLICIT} -contact_type lagrange"])
+@pytest.mark.parametrize("planes", ["two", "behind"])
+def test_obstacles_beside_each_other(planes, more, shared_run):
+    """Only the nearest counts: nothing changes."""
+    one, two = shared_run(fallen("one", more)), shared_run(fallen(planes, more))
+    nearest, other = ("r", "l") if planes == "behind" else ("l", "r")
+    force = one.history["contact/a:l/force"][()]
+    assert force.max() > 0
+    np.testing.assert_allclose(two.history[f"contact/a:{nearest}/force"][()], force, rtol=0, atol=1e-12 * force.max())
+    assert not two.history[f"contact/a:{other}/force"][()].any()
+    with h5py.File(one.folder / "fields.h5") as first, h5py.File(two.folder / "fields.h5") as second:
+        frame = sorted(first["contact_pressure"])[1]
+        pressure = first["contact_pressure"][frame][()]
+        assert pressure.max() > 0
+        np.testing.assert_allclose(second["contact_pressure"][frame][()], pressure, rtol=0, atol=1e-12 * pressure.max())
