@@ -148,7 +148,6 @@ PetscErrorCode ContactGetElementStiffness(Body body, PetscReal *stiffness)
   PetscReal impedance, density, size, cross_section;
   Material  material;
   PetscInt  dim;
-  DM        dm;
 
   PetscFunctionBegin;
   PetscCall(BodyGetImpedance(body, &impedance));
@@ -156,8 +155,7 @@ PetscErrorCode ContactGetElementStiffness(Body body, PetscReal *stiffness)
   PetscCall(MaterialGetDensity(material, &density));
   PetscCall(BodyGetElementSize(body, &size));
   PetscCall(BodyGetCrossSection(body, &cross_section));
-  PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetDimension(body, &dim));
   *stiffness = PetscSqr(impedance / cross_section) / density / size * (dim == 1 ? cross_section : 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
