@@ -87,7 +87,7 @@ struct _p_Body {
   BodyTractionType        traction;
   BodyTraces              traces;
   PetscInt                substep; /* 0 to substeps - 1 */
-  Vec                     row_vec[2];
+  Vec                     row_vec[3];
   Mat                     shifted; /* implicit: stiffness + shift mass */
   PetscReal               shift;
   PetscReal               force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
