@@ -212,6 +212,13 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 
    Level: beginner
 
+   Note:
+   A node may belong to several pairs: in a corner, or over the joint of two bodies side by side. The gap to each partner is closed by a force of
+   its own, as under Lagrange multipliers, momentum and energy being kept; of the rows of a node that depend on each other the first are
+   prescribed, and the others have their force for an unknown. Where partners do not answer to forces, as obstacles and explicit bodies with mass
+   on their contact nodes, the nearest ones count. Where the Dirichlet side has mass on its contact nodes, partners side by side share
+   displacement and force by the areas that they cover, and the mean of their gaps is closed.
+
    Reference:
 .  * - J. Hoy, I. Tezaur, A. Mota, The Schwarz alternating method for multiscale contact mechanics, 2021
 
