@@ -120,6 +120,7 @@ PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
 PETSC_EXTERN PetscErrorCode BodySetTractionType(Body, BodyTractionType);
+PETSC_EXTERN PetscErrorCode BodySetRowWeights(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *), void *);
 

@@ -180,8 +180,7 @@ static PetscErrorCode SetUpRows(Body body)
   PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
   PetscCall(PetscCalloc4(rows->local, &body->conditions, rows->local, &body->held, rows->local, &body->flexibility, rows->local, &body->robin));
-  PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[0]));
-  PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[1]));
+  for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[k]));
   body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute && !body->is_static);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -209,10 +208,10 @@ PetscErrorCode BodySetUp(Body body)
   PetscCheck(body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
   PetscCall(SetUpRows(body));
   for (size_t i = 0; i < sizeof(always) / sizeof(always[0]); i++) PetscCall(BodyCreateVec(body, always[i]));
-  PetscCall(BodySetUpDualRows(body));
   if (body->rows.global) {
     for (size_t i = 0; i < sizeof(sweeps) / sizeof(sweeps[0]); i++) PetscCall(BodyCreateVec(body, sweeps[i]));
   }
+  PetscCall(BodySetUpFreeRows(body));
   PetscCall(BodySetUpMass(body));
   PetscCall(BodyCheckHeld(body));
   PetscCall(BodySetUpSubsteps(body));
@@ -254,7 +253,7 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec   *vecs[]   = {&b->state.u, &b->state.v, &b->state.a, &b->saved.u, &b->saved.v, &b->saved.a, &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u, &b->work[0], &b->work[1], &b->work[2], &b->positions, &b->mass_row_sum, &b->orphan_mass, &b->applied, &b->saved_applied, &b->mass_diagonal, &b->inverse_mass, &b->row_vec[0], &b->row_vec[1], &b->layer_rhs, &b->layer_solution, &b->kept[0], &b->kept[1], &b->kept[2], &b->kept[3]};
+    Vec   *vecs[]   = {&b->state.u, &b->state.v, &b->state.a, &b->saved.u, &b->saved.v, &b->saved.a, &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u, &b->work[0], &b->work[1], &b->work[2], &b->positions, &b->mass_row_sum, &b->orphan_mass, &b->applied, &b->saved_applied, &b->mass_diagonal, &b->inverse_mass, &b->row_vec[0], &b->row_vec[1], &b->row_vec[2], &b->layer_rhs, &b->layer_solution, &b->kept[0], &b->kept[1], &b->kept[2], &b->kept[3]};
     Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in, &b->traces.displacement, &b->traces.velocity, &b->traces.acceleration, &b->traces.reaction};
 
     PetscCall(BodyDestroyResponse(b));
@@ -272,7 +271,8 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->mass_matrix));
   PetscCall(MatDestroy(&b->shifted));
   PetscCall(MatDestroy(&b->interface));
-  PetscCall(MatDestroy(&b->dual_rows));
+  PetscCall(MatDestroy(&b->free_rows));
+  PetscCall(BodyGramDestroy(&b->gram));
   PetscCall(TSDestroy(&b->ts));
   PetscCall(BodyLayerElementsDestroy(&b->layer_elements));
   PetscCall(ElementDestroy(&b->element));

@@ -18,6 +18,7 @@ typedef struct {
 } BodyRows;
 
 typedef struct _n_LayerElements *LayerElements;
+typedef struct _n_BodyGram      *BodyGram;
 
 struct _p_Body {
   PETSCHEADER(int);
@@ -72,7 +73,9 @@ struct _p_Body {
   Vec          work[3];
   /* interface rows */
   Mat                     interface;
-  Mat                     dual_rows; /* nothing on held dofs, interface dual_rows^T = 1 on rows that may be prescribed; the interface itself where nothing is held */
+  Mat                     free_rows;   /* without held dofs; the same matrix where none is held */
+  BodyGram                gram;        /* of prescribed rows that are not orthonormal */
+  const PetscReal        *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
   BodyRows                rows;
   BodyCondition          *conditions;             /* local rows */
   PetscBool              *held;                   /* those that are prescribed, or Robin rows */
@@ -84,7 +87,7 @@ struct _p_Body {
   BodyTractionType        traction;
   BodyTraces              traces;
   PetscInt                substep; /* 0 to substeps - 1 */
-  Vec                     row_vec[2];
+  Vec                     row_vec[3];
   Mat                     shifted; /* implicit: stiffness + shift mass */
   PetscReal               shift;
   PetscReal               force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
@@ -166,8 +169,12 @@ PETSC_INTERN PetscErrorCode BodyDestroyResponse(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
 PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
-PETSC_INTERN PetscErrorCode BodyCreateFreeRows(Body, Mat *);
-PETSC_INTERN PetscErrorCode BodySetUpDualRows(Body);
+PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
+PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
+PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);
+PETSC_INTERN void           BodyUnmarkDependent(Body, PetscBool[]);
+PETSC_INTERN void           BodyDivideByGram(Body, PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodyGramDestroy(BodyGram *);
 PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[]);

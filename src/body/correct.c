@@ -1,6 +1,10 @@
 /* Corrections of a state by impulses on the rows: at the end of a controller step, before it is accepted, or at its start. */
 #include "bodyimpl.h"
 
+/* Part of the acceleration of rows that may be left, and iterations to get there at most: rows that depend on each other leave round-off */
+#define LEFT_OVER      1e-14
+#define MAX_ITERATIONS 1000
+
 /* The rows of a corrected vector, at the end of the controller step */
 static PetscErrorCode WriteEnd(Body body, Vec vec, Trace trace)
 {
@@ -69,6 +73,20 @@ PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* B x on some rows, zero on the others */
+static PetscErrorCode MultiplyMarked(Body body, const PetscBool marked[], Vec x, Vec y)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(body->interface, x, y));
+  PetscCall(VecGetArray(y, &row));
+  for (PetscInt i = 0; i < body->rows.local; i++)
+    if (!marked[i]) row[i] = 0;
+  PetscCall(VecRestoreArray(y, &row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyClearAcceleration - takes some rows out of the acceleration at the end of the controller step
 
@@ -81,21 +99,32 @@ PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
   Level: developer
 
   Note:
-  a -= B*^T B a on these rows, with the dual rows B* that prescribed ones are moved by. To be called before `BodySave()`.
+  a -= B^T (B B^T)^{-1} B a on these rows, the nearest that has none of them: by conjugate gradients, in one iteration if they are orthonormal.
+  To be called before `BodySave()`.
 
 .seealso: `Body`, `BodyAddAcceleration()`
 @*/
 PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
 {
-  PetscScalar *row;
+  Vec         residual = body->row_vec[0], direction = body->row_vec[1], product = body->row_vec[2], change = body->work[2];
+  PetscScalar square, first, last, curvature;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(MatMult(body->interface, body->state.a, body->row_vec[0]));
-  PetscCall(VecGetArray(body->row_vec[0], &row));
-  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = rows[i] ? -row[i] : 0;
-  PetscCall(VecRestoreArray(body->row_vec[0], &row));
-  PetscCall(MatMultTransposeAdd(body->dual_rows, body->row_vec[0], body->state.a, body->state.a));
+  PetscCall(MultiplyMarked(body, rows, body->state.a, residual));
+  PetscCall(VecCopy(residual, direction));
+  PetscCall(VecDot(residual, residual, &first));
+  square = first;
+  for (PetscInt k = 0; k < MAX_ITERATIONS && PetscRealPart(square) > PetscSqr(LEFT_OVER) * PetscRealPart(first); k++) {
+    PetscCall(MatMultTranspose(body->interface, direction, change));
+    PetscCall(MultiplyMarked(body, rows, change, product));
+    PetscCall(VecDot(direction, product, &curvature));
+    PetscCall(VecAXPY(body->state.a, -square / curvature, change));
+    PetscCall(VecAXPY(residual, -square / curvature, product));
+    last = square;
+    PetscCall(VecDot(residual, residual, &square));
+    PetscCall(VecAYPX(direction, square / last, residual));
+  }
   PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

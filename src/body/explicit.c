@@ -131,15 +131,12 @@ PetscErrorCode BodySetUpLayerRows(Body body, Mat *B)
 {
   IS       rows;
   PetscInt row_begin;
-  Mat      free_rows;
 
   PetscFunctionBegin;
-  PetscCall(BodyCreateFreeRows(body, &free_rows));
-  PetscCall(MatGetOwnershipRange(free_rows, &row_begin, NULL));
+  PetscCall(MatGetOwnershipRange(body->free_rows, &row_begin, NULL));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
-  PetscCall(MatCreateSubMatrix(free_rows, rows, body->layer_is, MAT_INITIAL_MATRIX, B));
+  PetscCall(MatCreateSubMatrix(body->free_rows, rows, body->layer_is, MAT_INITIAL_MATRIX, B));
   PetscCall(ISDestroy(&rows));
-  PetscCall(MatDestroy(&free_rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

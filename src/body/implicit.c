@@ -195,7 +195,6 @@ PetscErrorCode BodySetUpImplicit(Body body)
   KSP         ksp;
   PC          pc;
   Vec         residual;
-  Mat         rows;
   char        outer[128];
 
   PetscFunctionBegin;
@@ -203,9 +202,7 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(BodyCreateMatrix(body, &body->shifted));
   PetscCall(AssembleShifted(body, NULL));
   PetscCall(SetNearNullSpace(body));
-  PetscCall(BodyCreateFreeRows(body, &rows));
-  PetscCall(ConstrainedSolverCreate(body->shifted, rows, body->dim, prefix, &body->solver));
-  PetscCall(MatDestroy(&rows));
+  PetscCall(ConstrainedSolverCreate(body->shifted, body->free_rows, body->dim, prefix, &body->solver));
 
   PetscCall(BodyCreateVec(body, &residual));
   PetscCall(TSSetI2Function(body->ts, residual, ComputeResidual, body));

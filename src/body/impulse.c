@@ -22,19 +22,17 @@ PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[])
 /* B D B^T with a diagonal D that is not negative, without held dofs: sparse */
 static PetscErrorCode MultiplyRows(Body body, Vec diagonal, Mat *matrix)
 {
-  Mat free_rows, scaled;
+  Mat scaled;
   Vec root;
 
   PetscFunctionBegin;
   PetscCall(VecDuplicate(diagonal, &root));
   PetscCall(VecCopy(diagonal, root));
   PetscCall(VecSqrtAbs(root));
-  PetscCall(BodyCreateFreeRows(body, &free_rows));
-  PetscCall(MatDuplicate(free_rows, MAT_COPY_VALUES, &scaled));
+  PetscCall(MatDuplicate(body->free_rows, MAT_COPY_VALUES, &scaled));
   PetscCall(MatDiagonalScale(scaled, NULL, root));
   PetscCall(MatMatTransposeMult(scaled, scaled, MAT_INITIAL_MATRIX, PETSC_DETERMINE, matrix));
   PetscCall(MatDestroy(&scaled));
-  PetscCall(MatDestroy(&free_rows));
   PetscCall(VecDestroy(&root));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -163,7 +163,7 @@ PetscErrorCode BodySetUpMass(Body body)
    the start; an implicit one needs them at most once, for its first acceleration. */
 PetscErrorCode BodySetUpMassSolver(Body body)
 {
-  Mat      solvable, free_rows;
+  Mat      solvable;
   char     prefix[128];
   PetscInt rstart;
 
@@ -175,9 +175,7 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(BodyEliminateHeld(body, solvable));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
-  PetscCall(BodyCreateFreeRows(body, &free_rows));
-  PetscCall(ConstrainedSolverCreate(solvable, free_rows, body->dim, prefix, &body->mass_solver));
-  PetscCall(MatDestroy(&free_rows));
+  PetscCall(ConstrainedSolverCreate(solvable, body->free_rows, body->dim, prefix, &body->mass_solver));
   PetscCall(BodySetConstraints(body)); /* rows may be prescribed already */
   PetscCall(MatDestroy(&solvable));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -12,10 +12,13 @@ const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionTy
 
   Input Parameters:
 + body - the `Body`
-- B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; the rows that
-         may be prescribed must be orthogonal without what they have on held dofs, and orthonormal where none are held
+- B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; a row that may be
+         prescribed is a vector on one node of this rank, a unit vector where nothing is held, but for what it has on held dofs
 
   Level: developer
+
+  Note:
+  Rows of one node may have any directions; of those that depend on each other see `BodySetRowWeights()`.
 
 .seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
 @*/
@@ -35,53 +38,25 @@ PetscErrorCode BodySetInterface(Body body, Mat B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of the interface without held dofs, which no contact force moves */
-PetscErrorCode BodyCreateFreeRows(Body body, Mat *B)
+/* The rows of the interface without held dofs, which no contact force moves, and what prescribing them takes */
+PetscErrorCode BodySetUpFreeRows(Body body)
 {
   Vec mask;
 
   PetscFunctionBegin;
-  if (!body->any_held) {
+  PetscCall(MatDestroy(&body->free_rows));
+  if (body->any_held) {
+    PetscCall(MatDuplicate(body->interface, MAT_COPY_VALUES, &body->free_rows));
+    PetscCall(VecDuplicate(body->state.u, &mask));
+    PetscCall(VecSet(mask, 1));
+    PetscCall(BodyZeroHeld(body, mask));
+    PetscCall(MatDiagonalScale(body->free_rows, NULL, mask));
+    PetscCall(VecDestroy(&mask));
+  } else {
     PetscCall(PetscObjectReference((PetscObject)body->interface));
-    *B = body->interface;
-    PetscFunctionReturn(PETSC_SUCCESS);
+    body->free_rows = body->interface;
   }
-  PetscCall(MatDuplicate(body->interface, MAT_COPY_VALUES, B));
-  PetscCall(VecDuplicate(body->state.u, &mask));
-  PetscCall(VecSet(mask, 1));
-  PetscCall(BodyZeroHeld(body, mask));
-  PetscCall(MatDiagonalScale(*B, NULL, mask));
-  PetscCall(VecDestroy(&mask));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What moves prescribed rows without moving held dofs, and makes forces along them of nodal forces */
-PetscErrorCode BodySetUpDualRows(Body body)
-{
-  PetscScalar *scale;
-  Vec          squares;
-  PetscInt     begin, end;
-
-  PetscFunctionBegin;
-  PetscCall(MatDestroy(&body->dual_rows));
-  PetscCall(BodyCreateFreeRows(body, &body->dual_rows));
-  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatCreateVecs(body->dual_rows, NULL, &squares));
-  PetscCall(MatGetOwnershipRange(body->dual_rows, &begin, &end));
-  PetscCall(VecGetArrayWrite(squares, &scale));
-  for (PetscInt i = begin; i < end; i++) {
-    const PetscScalar *values;
-    PetscInt           n;
-    PetscReal          square = 0;
-
-    PetscCall(MatGetRow(body->dual_rows, i, &n, NULL, &values));
-    for (PetscInt k = 0; k < n; k++) square += PetscSqr(PetscRealPart(values[k]));
-    PetscCall(MatRestoreRow(body->dual_rows, i, &n, NULL, &values));
-    scale[i - begin] = square > 0 ? 1 / square : 0;
-  }
-  PetscCall(VecRestoreArrayWrite(squares, &scale));
-  PetscCall(MatDiagonalScale(body->dual_rows, squares, NULL));
-  PetscCall(VecDestroy(&squares));
+  PetscCall(BodySetUpGram(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,28 +103,24 @@ static PetscErrorCode RewriteStart(Body body)
 PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
 {
   PetscMPIInt *all;
-  Mat          free_rows;
+  Mat          layer_rows;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->interface));
   body->interface = B;
-  PetscCall(BodySetUpDualRows(body));
+  PetscCall(BodySetUpFreeRows(body));
   PetscCall(PetscMalloc1(body->rows.global, &all));
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall(PetscFree(all));
-  PetscCall(BodyCreateFreeRows(body, &free_rows));
   if (body->solver && body->is_explicit) {
-    Mat layer_rows;
-
     PetscCall(BodySetUpLayerRows(body, &layer_rows));
     PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, changed));
     PetscCall(MatDestroy(&layer_rows));
-  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, free_rows, changed));
-  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, free_rows, changed));
-  PetscCall(MatDestroy(&free_rows));
+  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, changed));
+  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, body->free_rows, changed));
   if (body->response) PetscCall(BodyDestroyResponse(body));
   PetscCall(BodySetConstraints(body));
   PetscCall(RewriteStart(body));
@@ -180,6 +151,31 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   body->traction = type;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetRowWeights - says how prescribed rows of one node that depend on each other share its displacement and force
+
+  Logically Collective
+
+  Input Parameters:
++ body    - the `Body`, set up
+- weights - one for each row of this rank, positive on rows that are prescribed; not copied, and looked at whenever rows or conditions change
+
+  Level: developer
+
+  Note:
+  Two rows with one direction are prescribed the weighted mean of their displacements, and each has its part of the force. Without this call
+  all weights are equal.
+
+.seealso: `Body`, `BodySetInterface()`, `BodySetConditions()`
+@*/
+PetscErrorCode BodySetRowWeights(Body body, const PetscReal weights[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  body->row_weights = weights;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,27 +258,30 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 PetscErrorCode BodySetConstraints(Body body)
 {
   PetscFunctionBegin;
+  PetscCall(BodyUpdateGram(body));
   for (PetscInt i = 0; i < body->rows.local; i++) {
     body->held[i]        = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN);
     body->flexibility[i] = body->conditions[i] == BODY_ROBIN ? 1 / body->robin[i] : 0;
   }
+  BodyUnmarkDependent(body, body->held);
   if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held, body->flexibility));
   if (body->mass_solver && body->is_explicit && body->prescribed_mass) {
     for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
+    BodyUnmarkDependent(body, body->held);
     PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held, NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* vec += B*^T (x - B vec) on prescribed rows, with the dual rows B* and x from the trace at that position (0 to 1) of the controller step, or 0;
-   held dofs must be in place before, and stay there */
+/* vec += B^T G^{-1} (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step; held dofs must be in place
+   before, and stay there. Without a trace `vec` is a force, and its part along the rows, what holds dofs left aside, becomes zero. */
 PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec)
 {
   PetscScalar *row, *target;
 
   PetscFunctionBegin;
   if (!body->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
+  PetscCall(MatMult(trace ? body->interface : body->free_rows, vec, body->row_vec[0]));
   PetscCall(VecGetArray(body->row_vec[0], &row));
   if (trace) {
     PetscCall(VecGetArrayWrite(body->row_vec[1], &target));
@@ -292,8 +291,9 @@ PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec
   } else {
     for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? -row[i] : 0;
   }
+  BodyDivideByGram(body, row);
   PetscCall(VecRestoreArray(body->row_vec[0], &row));
-  PetscCall(MatMultTransposeAdd(body->dual_rows, body->row_vec[0], vec, vec));
+  PetscCall(MatMultTransposeAdd(body->free_rows, body->row_vec[0], vec, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,9 +358,10 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
       PetscCall(BodyAddExternalForce(body, body->time, -1, force));
       PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, body->state.u, force));
     }
-    PetscCall(WriteTrace(body, body->dual_rows, force, body->traces.reaction, level));
+    PetscCall(WriteTrace(body, body->free_rows, force, body->traces.reaction, level));
   }
   PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
+  if (body->n_prescribed) BodyDivideByGram(body, reaction);
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
   for (PetscInt i = 0; i < body->rows.local; i++) {

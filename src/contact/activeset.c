@@ -42,7 +42,7 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
     if (RowFades(contact, i) && (conditions == CONDITIONS_SCHWARZ || conditions == CONDITIONS_ACTIVE_FORCES)) rows[i] = BODY_FORCED;
     if (!contact->active[i]) continue;
     if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
-    if (conditions == CONDITIONS_SCHWARZ) rows[i] = pair->body[pair->dirichlet] == b ? BODY_PRESCRIBED : BODY_FORCED;
+    if (conditions == CONDITIONS_SCHWARZ) rows[i] = pair->body[pair->dirichlet] == b && !contact->by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
     if (conditions == CONDITIONS_ROBIN) rows[i] = BODY_ROBIN;
   }
 }

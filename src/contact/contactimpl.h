@@ -27,6 +27,20 @@ typedef struct {
   PetscReal normal[3];  /* mean outward normal of the first */
 } ContactPair;
 
+/* The gap of a row without anything opposite [m] */
+#define CONTACT_NO_GAP 1e30
+
+/* Nodes of this rank with rows of several pairs */
+typedef struct {
+  PetscInt   n, *offsets, *rows;
+  PetscBool *free_dofs; /* per node: 3, whether the user leaves its displacement along an axis free */
+  PetscBool *left_out;  /* per entry of `rows`: it is of an obstacle that lies behind another */
+  PetscReal *unit;      /* per pair: stiffness for each unit of area that makes forces of unknowns in metres [N/m^3] */
+  PetscBool *answers;   /* per pair: displacements of the partner answer to forces in the same controller step */
+  PetscBool  arranges;  /* rows that depend on each other are told apart */
+  PetscInt  *sorted;    /* work space */
+} SharedNodes;
+
 /* What the rows mean to the bodies */
 typedef enum {
   CONDITIONS_FREE,         /* no row means anything */
@@ -54,15 +68,17 @@ struct _p_Contact {
   PetscInt             n_rows, row_begin, n_all_rows;
   PetscInt            *row_pair;
   PetscReal           *initial_gap, *area;
-  PetscInt            *row_dof;                 /* first displacement of its node in the pair's first body, rank numbering */
-  PetscReal           *row_normal;              /* its direction, 3 numbers, 0 beyond the dimension */
-  PetscBool           *opposite;                /* it has anything to touch */
-  PetscBool           *tied;                    /* it is held whatever its force and gap */
-  PetscBool           *dropped;                 /* it would be one to touch, but its node is held */
-  PetscBool           *heir;                    /* it has been merged with dropped ones */
-  PetscReal           *merged_gap;              /* added to its gap for that [m] */
-  Mat                  merger;                  /* dropped rows to those of their neighbours; NULL: there are none */
-  Vec                  places, means;           /* work space of the same sizes */
+  PetscInt            *row_dof;       /* first displacement of its node in the pair's first body, rank numbering */
+  PetscReal           *row_normal;    /* its direction, 3 numbers, 0 beyond the dimension */
+  PetscBool           *opposite;      /* it has anything to touch */
+  PetscBool           *tied;          /* it is held whatever its force and gap */
+  PetscBool           *dropped;       /* it would be one to touch, but its node is held */
+  PetscBool           *heir;          /* it has been merged with dropped ones */
+  PetscReal           *merged_gap;    /* added to its gap for that [m] */
+  Mat                  merger;        /* dropped rows to those of their neighbours; NULL: there are none */
+  Vec                  places, means; /* work space of the same sizes */
+  PetscBool           *by_force;      /* its force is an unknown of the method, on both sides; NULL: of none */
+  SharedNodes          shared;
   PetscBool           *changed;                 /* it has new entries */
   PetscReal           *gap_shift;               /* added to its gap when it was built again [m] */
   PetscReal           *last_gap;                /* work space: before that */
@@ -101,6 +117,13 @@ PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactFindSharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroySharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactLeaveOutObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
+PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
+PETSC_INTERN void           ContactArrangeShared(Contact);
+PETSC_INTERN PetscErrorCode ContactGetElementStiffness(Body, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);

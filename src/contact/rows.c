@@ -1,8 +1,6 @@
 /* The rows of all pairs: from surfaces and transfers to matrices. */
 #include "contactimpl.h"
 
-/* The gap of a row without anything opposite [m] */
-#define NO_GAP 1e30
 /* Rows whose bodies lie closer than this part of a face are tied */
 #define TIE_DISTANCE 0.5
 /* Directions along which a row moves less than this part of the displacement do not count */
@@ -112,12 +110,12 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 
       contact->row_dof[i]     = rows.dofs[node] - first;
       contact->opposite[i]    = rows.opposite[node];
-      contact->initial_gap[i] = rows.opposite[node] ? rows.gap[node] + (rows.changed[node] ? 0 : contact->gap_shift[i]) : NO_GAP;
+      contact->initial_gap[i] = rows.opposite[node] ? rows.gap[node] + (rows.changed[node] ? 0 : contact->gap_shift[i]) : CONTACT_NO_GAP;
       contact->area[i]        = rows.area[node];
       contact->changed[i]     = rows.changed[node];
       if (contact->law == CONTACT_LAW_TIED) {
         contact->tied[i]               = (PetscBool)(rows.opposite[node] && PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * rows.size[node]);
-        contact->initial_gap[i]        = contact->tied[i] ? 0 : NO_GAP;
+        contact->initial_gap[i]        = contact->tied[i] ? 0 : CONTACT_NO_GAP;
         contact->row_normal[3 * i + k] = 1;
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
@@ -126,7 +124,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       contact->merged_gap[i] = 0;
       if (!held) continue;
       contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
-      contact->initial_gap[i]                 = NO_GAP;
+      contact->initial_gap[i]                 = CONTACT_NO_GAP;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -270,6 +268,8 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
     PetscCall(CheckHeld(contact, &contact->pairs[p]));
   }
   PetscCall(ContactMergeDroppedRows(contact));
+  PetscCall(ContactFindSharedNodes(contact));
+  PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
   /* what a converged outer iteration leaves of the gap must not count as penetration in the next trial */
@@ -329,5 +329,6 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active, contact->conditions));
   PetscCall(PetscFree5(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets));
   PetscCall(PetscFree6(contact->changed, contact->gap_shift, contact->last_gap, contact->dropped, contact->heir, contact->merged_gap));
+  PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -126,6 +126,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   contact->counts_made.rebuilds++;
   PetscCall(ContactMergeDroppedRows(contact));
+  PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->changed));
   for (PetscInt i = 0; i < contact->n_rows; i++) {

@@ -26,24 +26,6 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What an element of a body has to set against pressure: modulus of plane waves over edge length [N/m^3; N/m in one dimension] */
-static PetscErrorCode GetElementStiffness(Body body, PetscReal *stiffness)
-{
-  PetscReal impedance, density, size, cross_section;
-  Material  material;
-  PetscInt  dim;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(BodyGetMaterial(body, &material));
-  PetscCall(MaterialGetDensity(material, &density));
-  PetscCall(BodyGetElementSize(body, &size));
-  PetscCall(BodyGetCrossSection(body, &cross_section));
-  PetscCall(BodyGetDimension(body, &dim));
-  *stiffness = PetscSqr(impedance / cross_section) / density / size * (dim == 1 ? cross_section : 1);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The penalty parameter of a pair: as given, or from an element on each side, one behind the other, and a scale */
 static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, PetscReal *parameter, PetscReal *scale)
 {
@@ -59,7 +41,7 @@ static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, P
     PetscReal stiffness = 0;
     PetscBool massless;
 
-    PetscCall(GetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
+    PetscCall(ContactGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
     PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
     if (!massless) all_massless = PETSC_FALSE;
     flexibility += 1 / stiffness;

@@ -49,14 +49,16 @@ static PetscErrorCode FindObstacle(Contact contact, const char *why[], PetscBool
 }
 
 /* Whether Newton's method uses the bodies' compliance, and whether sweeps run on it. In one dimension the response to whole conditions, which
-   is there already, is as good. */
+   is there already, is as good, unless a node has several partners, whose forces are unknowns then. */
 PetscErrorCode SchwarzChooseCondensation(Contact contact)
 {
   Schwarz    *schwarz = (Schwarz *)contact->data;
   const char *why;
   PetscBool   newton, substeps = PETSC_FALSE;
+  int         shared = contact->shared.n > 0;
 
   PetscFunctionBegin;
+  PetscCall(ContactOr(contact, &shared));
   PetscCall(FindObstacle(contact, &why, &newton));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt n;
@@ -65,7 +67,7 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
     if (n > 1) substeps = PETSC_TRUE;
   }
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
-  schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || schwarz->condense == CONDENSE_ALWAYS));
+  schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || shared || schwarz->condense == CONDENSE_ALWAYS));
   schwarz->exact         = (PetscBool)!why;
   schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);

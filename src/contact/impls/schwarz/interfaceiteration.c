@@ -72,7 +72,7 @@ static PetscErrorCode SolveLevel(Contact contact, PetscInt most, PetscInt k, Vec
   Schwarz           *schwarz = (Schwarz *)contact->data;
   InterfaceProblem  *problem = &schwarz->problem;
   PetscInt           iterations;
-  const PetscScalar *f, *moved;
+  const PetscScalar *f, *moved, *force;
   PetscScalar       *residual, *y;
 
   PetscFunctionBegin;
@@ -90,13 +90,15 @@ static PetscErrorCode SolveLevel(Contact contact, PetscInt most, PetscInt k, Vec
   contact->counts_made.inner_iterations += iterations;
   PetscCall(MultiplyBodies(contact, PETSC_TRUE, problem->force_vec, problem->residual_vec));
   PetscCall(VecGetArrayRead(problem->residual_vec, &moved));
+  PetscCall(VecGetArrayRead(problem->force_vec, &force));
   PetscCall(VecGetArray(Y, &y));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
     const PetscInt level = LevelOfPair(schwarz, contact->row_pair[i], most, k);
 
-    if (level >= 0) y[schwarz->offset[i] + level] = moved[i];
+    if (level >= 0) y[schwarz->offset[i] + level] = ByForce(contact, i) ? force[i] / ContactForceUnit(contact, i) : moved[i];
   }
   PetscCall(VecRestoreArray(Y, &y));
+  PetscCall(VecRestoreArrayRead(problem->force_vec, &force));
   PetscCall(VecRestoreArrayRead(problem->residual_vec, &moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,7 +4,7 @@
 
      S d = F,   S = sum over bodies of t_b W_b t_b,   t_b = 1 on rows whose Dirichlet side is b, -1 on those whose Neumann side it is,
 
-   move the Dirichlet sides by W_b t_b d: the step of Newton's method in x, whatever the order of the bodies. With several times in the
+   move the Dirichlet sides by W_b t_b d: the step of Newton's method in x, whatever the order of the bodies; where x is a force it is d. With several times in the
    controller step the matrices are those of a convolution in time. With more active rows than a dense matrix is good for, S is only
    multiplied with, by solutions with the bodies' factors, and d comes from conjugate gradients, for one time after the other; where there are
    several, or bodies make substeps, that is not the whole Jacobian, and secants do the rest.
@@ -284,7 +284,7 @@ static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
     for (PetscInt i = 0; i < problem->n; i++) {
       const PetscInt local = problem->rows[i] - contact->row_begin;
 
-      if (local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]) y[schwarz->offset[local] + k] = problem->change[k * problem->n + i];
+      if (local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]) y[schwarz->offset[local] + k] = !problem->chain && ByForce(contact, local) ? problem->force[k * problem->n + i] / ContactForceUnit(contact, local) : problem->change[k * problem->n + i];
     }
   PetscCall(VecRestoreArray(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);

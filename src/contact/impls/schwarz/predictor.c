@@ -75,7 +75,8 @@ PetscErrorCode SchwarzPredict(Contact contact)
 
       PetscCall(PredictNeumann(contact, i, level * width, part, &position));
       position += sign * SchwarzOffset(contact, i, part);
-      if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
+      if (ByForce(contact, i)) unknown[level - 1] = -sign * contact->saved_force[i] / ContactForceUnit(contact, i);
+      else if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
       else unknown[level - 1] = -sign * contact->saved_force[i] + schwarz->weight[i] * position;
     }
     /* what has been a Neumann side until now has no reaction yet */

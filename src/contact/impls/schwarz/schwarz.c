@@ -65,7 +65,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
   PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
-  PetscCall(PetscCalloc1(contact->n_rows, &schwarz->known));
+  PetscCall(PetscCalloc2(contact->n_rows, &schwarz->known, contact->n_rows, &schwarz->interpolated));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -120,6 +120,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(SetUpUnknowns(contact, &unknowns));
   PetscCall(SchwarzChooseCondensation(contact));
   PetscCall(SchwarzSetUpTransmission(contact));
+  PetscCall(ContactSetUpSharedNodes(contact, schwarz->by_compliance));
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
@@ -179,7 +180,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->jacobian_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
   PetscCall(PetscFree3(schwarz->tried, schwarz->kept_force, schwarz->previous));
-  PetscCall(PetscFree(schwarz->known));
+  PetscCall(PetscFree2(schwarz->known, schwarz->interpolated));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -210,6 +211,13 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 -  -schwarz_unconverged (error|accept)                          - what to do with a step that does not converge
 
    Level: beginner
+
+   Note:
+   A node may belong to several pairs: in a corner, or over the joint of two bodies side by side. The gap to each partner is closed by a force of
+   its own, as under Lagrange multipliers, momentum and energy being kept; of the rows of a node that depend on each other the first are
+   prescribed, and the others have their force for an unknown. Where partners do not answer to forces, as obstacles and explicit bodies with mass
+   on their contact nodes, the nearest ones count. Where the Dirichlet side has mass on its contact nodes, partners side by side share
+   displacement and force by the areas that they cover, and the mean of their gaps is closed.
 
    Reference:
 .  * - J. Hoy, I. Tezaur, A. Mota, The Schwarz alternating method for multiscale contact mechanics, 2021

@@ -112,6 +112,7 @@ typedef struct {
   PetscBool          *kinematic;          /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
   PetscReal          *weight;             /* per row: Robin stiffness [N/m] */
   PetscReal          *mass[2];            /* per row: of the contact element of its body and of the partner's [kg] */
+  PetscScalar        *interpolated;       /* work space: per row */
   PetscScalar        *previous;           /* displacements of the rows of both bodies of each pair in the last sweep */
   PetscBool           swept;              /* they are of this step */
   PetscBool           stale;              /* the Jacobian belongs to another active set */
@@ -145,6 +146,12 @@ static inline PetscInt NeumannBody(const ContactPair *pair)
 static inline PetscReal NeumannSign(const ContactPair *pair)
 {
   return pair->dirichlet == 0 ? 1 : -1;
+}
+
+/* Whether the unknown of an active row is the force that holds its Dirichlet side, in units of ContactForceUnit() */
+static inline PetscBool ByForce(Contact contact, PetscInt i)
+{
+  return (PetscBool)(contact->active[i] && contact->by_force[i]);
 }
 
 /* Index of a pair in arrays that have an entry for each choice of sides */

@@ -95,6 +95,12 @@ static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
     contact->active[i] = joins;
     any                = 1;
   }
+  if (contact->shared.n && any) {
+    /* rows of shared nodes may have been let go again */
+    ContactArrangeShared(contact);
+    any = 0;
+    for (PetscInt i = 0; i < contact->n_rows; i++) any |= contact->active[i] != schwarz->tried[(schwarz->n_tried - 1) * contact->n_rows + i];
+  }
   PetscCall(ContactOr(contact, &any));
   *changed = (PetscBool)(any > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -109,6 +115,7 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
   schwarz->responding = PETSC_FALSE;
   PetscCall(ContactIntegrateFree(contact, in_contact));
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || contact->gap[i] < -contact->tolerance);
+  ContactArrangeShared(contact);
   if (!schwarz->condensed || !*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetBase(contact->bodies[b]));
   schwarz->have_base = PETSC_TRUE;
@@ -155,6 +162,7 @@ static PetscErrorCode Finish(Contact contact, PetscBool *changed)
   if (!*changed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->n_rows; i++)
     if (contact->gap[i] < -contact->tolerance) contact->active[i] = PETSC_TRUE;
+  ContactArrangeShared(contact);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,6 +178,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || (contact->saved_active[i] && contact->saved_force[i] > 0));
+  ContactArrangeShared(contact);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
   while (in_contact) {
@@ -195,6 +204,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
       /* the alternation ends with all nodes held that were held in either of the last two sets: no penetration */
       contact->counts_made.set_cycles++;
       for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->active[i] || schwarz->tried[(schwarz->n_tried - 1) * contact->n_rows + i]);
+      ContactArrangeShared(contact);
       final = PETSC_TRUE;
     }
   }

@@ -76,6 +76,49 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rows whose unknown is a force: it holds the Dirichlet side */
+static PetscErrorCode LoadByForce(Contact contact, PetscInt p, const PetscScalar x[])
+{
+  Schwarz           *schwarz = (Schwarz *)contact->data;
+  const ContactPair *pair    = &contact->pairs[p];
+  const BodyTraces  *to      = &contact->traces[DirichletBody(pair)];
+  Trace              trace   = schwarz->trace[SideIndex(schwarz, p)];
+  PetscScalar       *start, *values;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(to->reaction, 0, &start));
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    if (!ByForce(contact, i)) continue;
+    PetscCall(TraceGetLevel(trace, 0, &values));
+    values[i] = start[i];
+    for (PetscInt level = 1; level <= schwarz->levels[p]; level++) {
+      PetscCall(TraceGetLevel(trace, level, &values));
+      values[i] = x[schwarz->offset[i] + level - 1] * ContactForceUnit(contact, i);
+    }
+    PetscCall(TraceResample(trace, i, i + 1, 1, to->force_in));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After the body has been integrated: to its partner, that force is as good as a reaction */
+static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
+{
+  const BodyTraces *traces = &contact->traces[b];
+  PetscInt          levels;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetSizes(traces->reaction, NULL, &levels));
+  for (PetscInt level = 1; level <= levels && contact->shared.n; level++) {
+    PetscScalar *reaction, *force;
+
+    PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
+    PetscCall(TraceGetLevel(traces->force_in, level, &force));
+    for (PetscInt i = 0; i < contact->n_rows; i++)
+      if (ByForce(contact, i) && DirichletBody(&contact->pairs[contact->row_pair[i]]) == b) reaction[i] = force[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Forces over the substeps of a body that makes others than its partner. Held at F' where the partner takes the trapezium of F and F', they bring
    more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that part of the present force, they give it back as it falls. */
 PetscErrorCode SchwarzResampleForce(const Schwarz *schwarz, Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
@@ -137,7 +180,10 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
     const ContactPair *pair = &contact->pairs[p];
 
     if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) {
-      if (DirichletBody(pair) == b) PetscCall(PrescribePair(contact, p, x));
+      if (DirichletBody(pair) == b) {
+        PetscCall(PrescribePair(contact, p, x));
+        if (contact->shared.n) PetscCall(LoadByForce(contact, p, x));
+      }
       /* the reaction holds the Dirichlet side; the Neumann side gets its opposite */
       if (NeumannBody(pair) == b) PetscCall(SchwarzResampleForce(schwarz, contact->traces[DirichletBody(pair)].reaction, pair->begin, pair->end, -1, contact->traces[b].force_in));
     } else {
@@ -146,6 +192,31 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
     }
   }
   PetscCall(ContactLoadReleased(contact, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the Dirichlet side of a row has got at a part of the controller step, as far as it answers to its unknown there. One that makes fewer
+   substeps than there are unknowns feels the force at the end alone, and the others are on the way there. */
+static PetscErrorCode GetAnswer(Contact contact, PetscInt i, PetscReal part, const PetscScalar x[], PetscBool *answers, PetscScalar *position)
+{
+  const Schwarz     *schwarz = (const Schwarz *)contact->data;
+  const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];
+  const ContactPair *pair = &contact->pairs[p];
+  const BodyTraces  *from = &contact->traces[DirichletBody(pair)];
+  PetscInt           substeps;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetSizes(from->displacement, NULL, &substeps));
+  *answers = (PetscBool)(part == 1 || substeps >= levels);
+  if (*answers) {
+    PetscCall(TraceInterpolate(from->displacement, part, i, i + 1, schwarz->interpolated));
+    *position = schwarz->interpolated[i];
+  } else {
+    PetscScalar *start;
+
+    PetscCall(TraceGetLevel(from->reaction, 0, &start));
+    *position = (1 - part) * start[i] / ContactForceUnit(contact, i) + part * x[schwarz->offset[i] + levels - 1];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,7 +229,8 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   const PetscInt     levels  = schwarz->levels[p];
   const PetscReal    sign    = NeumannSign(pair);
   PetscInt           from_levels;
-  PetscScalar       *displacement, *r, *force;
+  PetscBool          answers = PETSC_FALSE;
+  PetscScalar       *displacement, *r, *force, position = 0;
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(from->displacement, NULL, &from_levels));
@@ -176,6 +248,10 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
       if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) answer = displacement[i] + sign * SchwarzOffset(contact, i, part);
       else answer = r[i] - 2 * force[i] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
       f[unknown] = contact->active[i] ? x[unknown] - answer : 0;
+      if (!ByForce(contact, i)) continue;
+      /* the gap, or what keeps unknowns without an answer in line */
+      PetscCall(GetAnswer(contact, i, part, x, &answers, &position));
+      f[unknown] = answers ? position - answer : x[unknown] - position;
     }
   }
   for (PetscInt i = pair->begin; i < pair->end; i++)
@@ -201,6 +277,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
     PetscCall(LoadBody(contact, contact->order[k], x));
     if (schwarz->responding) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
     else PetscCall(BodyIntegrate(contact->bodies[contact->order[k]]));
+    PetscCall(ReportByForce(contact, contact->order[k]));
   }
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
