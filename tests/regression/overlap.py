@@ -1,0 +1,80 @@
+"""True overlap of bodies in two dimensions, point by point, from the fields of a run (-output_fields, -output_fields_precision double).
+
+Contact rows keep means of the gap over a Dirichlet node's faces from becoming negative. What is measured here is another thing: how deep a
+boundary node of one body lies inside the outline of another, which is its distance from the nearest edge of that, both as deformed. As edges are
+straight, no other point of them lies deeper, if nodes of both bodies are looked at.
+"""
+
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+
+
+def cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def outline(cells, positions):
+    """Edges that belong to one cell alone, in the direction that has the body on the left."""
+    corners = positions[cells]
+    clockwise = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) < 0
+    cells = np.where(clockwise[:, None], cells[:, ::-1], cells)
+    edges = np.stack((cells, np.roll(cells, -1, axis=1)), axis=-1).reshape(-1, 2)
+    _, first, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
+    return edges[first[count == 1]]
+
+
+class Bodies:
+    """Positions of all nodes in each frame, and the outline of each body."""
+
+    def __init__(self, path):
+        with h5py.File(path, "r") as file:
+            body, cells = file["mesh/body"][()], file["mesh/cells"][()]
+            self.reference = file["mesh/positions"][:, :2]
+            self.times = file["time"][()]
+            self.frames = [self.reference + file["displacement"][frame][:, :2] for frame in sorted(file["displacement"])]
+        self.outlines = [outline(cells[body == b], self.reference) for b in range(body.max() + 1)]
+
+    def size(self):
+        """Length of the shortest edge of any outline, before anything moves."""
+        return min(np.linalg.norm(np.diff(self.reference[edges], axis=1), axis=-1).min() for edges in self.outlines)
+
+
+def depths(points, start, end):
+    """How deep points lie inside a closed outline, 0 outside, and which edge is nearest."""
+    along = end - start
+    to = points[:, None] - start
+    part = np.clip((to * along).sum(-1) / (along**2).sum(-1), 0, 1)
+    distance = np.linalg.norm(to - part[..., None] * along, axis=-1)
+    nearest = distance.argmin(axis=1)
+    above = start[:, 1] > points[:, 1, None]
+    crossed = (above != (end[:, 1] > points[:, 1, None])) & ((cross(along, to) > 0) == (along[:, 1] > 0))
+    inside = crossed.sum(axis=1) % 2 == 1
+    return np.where(inside, distance[np.arange(len(points)), nearest], 0), nearest
+
+
+def near(a, b):
+    """Whether the boxes about two sets of points meet."""
+    return np.all(a.max(axis=0) > b.min(axis=0)) and np.all(b.max(axis=0) > a.min(axis=0))
+
+
+def overlaps(bodies):
+    """For each ordered pair of bodies and each frame in which a node of the first is inside the second: the deepest of them."""
+    found = []
+    for frame, x in enumerate(bodies.frames):
+        for a, mine in enumerate(bodies.outlines):
+            for b, other in enumerate(bodies.outlines):
+                nodes = mine[:, 0]
+                if a == b or not near(x[nodes], x[other[:, 0]]):
+                    continue
+                depth, edge = depths(x[nodes], x[other[:, 0]], x[other[:, 1]])
+                i = depth.argmax()
+                if depth[i] > 0:
+                    found.append(SimpleNamespace(frame=frame, time=bodies.times[frame], body=a, other=b, node=nodes[i], edge=other[edge[i]], depth=depth[i]))
+    return found
+
+
+def largest(path):
+    """The deepest overlap of a run [m]."""
+    return max((each.depth for each in overlaps(Bodies(path))), default=0)
