@@ -1,8 +1,6 @@
 /* The rows of all pairs: from surfaces and transfers to matrices. */
 #include "contactimpl.h"
 
-/* The gap of a row without anything opposite [m] */
-#define NO_GAP 1e30
 /* Rows whose bodies lie closer than this part of a face are tied */
 #define TIE_DISTANCE 0.5
 /* Directions along which a row moves less than this part of the displacement do not count */
@@ -242,6 +240,7 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->slip_bound, contact->angle_bound));
+  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,16 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include "contactimpl.h"
 
+#define PARALLEL 0.9 /* cosine of the angle between normals beyond which two rows of a node say much the same */
+
+static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
+{
+  PetscReal cosine = 0;
+
+  for (PetscInt d = 0; d < 3; d++) cosine += contact->row_normal[3 * i + d] * contact->row_normal[3 * j + d];
+  return cosine;
+}
+
 /* Gaps at the start of the controller step, from what the bodies tell of it */
 PetscErrorCode ContactComputeStartGaps(Contact contact)
 {
@@ -12,6 +22,53 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
     PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
     PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
     contact->gap[i] = contact->saved_gap[i] = contact->initial_gap[i] + neumann[i] - dirichlet[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a node that guards the end of a pair's partner touches, or nearly, with another row that says much the same; of two that guard, the
+   first pair's counts */
+static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const TransferRows *rows, PetscBool *shared)
+{
+  const PetscInt i = contact->pairs[p].begin + node;
+
+  PetscFunctionBegin;
+  *shared = PETSC_FALSE;
+  for (PetscInt q = 0; q < contact->n_pairs && !*shared; q++) {
+    const ContactPair *other = &contact->pairs[q];
+    PetscInt           place, j;
+    TransferRows       others;
+
+    if (q == p || other->body[0] != contact->pairs[p].body[0]) continue;
+    PetscCall(TransferGetRows(other->transfer, &others));
+    PetscCall(PetscFindInt(rows->dofs[node], others.n, others.dofs, &place));
+    if (place < 0) continue;
+    j = other->begin + place;
+    if (!contact->opposite[j] || contact->gap[j] > rows->size[node] || (others.beyond[place] && q > p)) continue;
+    *shared = (PetscBool)(PetscAbsReal(RowCosine(contact, i, j)) > PARALLEL);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A node that another partner touches cannot guard the end of this one too: prescribed twice, it would have two displacements. Needs the gaps. */
+PetscErrorCode ContactDropShared(Contact contact)
+{
+  PetscFunctionBegin;
+  if (contact->law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    TransferRows rows;
+
+    PetscCall(TransferGetRows(contact->pairs[p].transfer, &rows));
+    for (PetscInt node = 0; node < rows.n; node++) {
+      const PetscInt i = contact->pairs[p].begin + node;
+      PetscBool      shared;
+
+      if (!rows.beyond[node] || !contact->opposite[i]) continue;
+      PetscCall(IsShared(contact, p, node, &rows, &shared));
+      if (!shared) continue;
+      contact->opposite[i]    = PETSC_FALSE;
+      contact->initial_gap[i] = contact->gap[i] = contact->saved_gap[i] = NO_GAP;
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,13 +160,14 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   contact->counts_made.rebuilds++;
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->changed));
+  PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
+  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactDropShared(contact));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
     if (contact->opposite[i]) continue;
     contact->saved_active[i] = PETSC_FALSE;
     contact->saved_force[i]  = 0;
   }
-  PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
-  PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ShiftGaps(contact));
   PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);

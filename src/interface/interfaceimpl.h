@@ -44,9 +44,16 @@ typedef struct {
   PetscReal   value;
 } Share;
 
+/* What lies opposite to a Dirichlet node */
+enum {
+  MARK_NONE,
+  MARK_BEYOND, /* nothing, but the partner ends on a face beside it */
+  MARK_COVERED
+};
+
 /* The rows of a transfer */
 typedef struct {
-  PetscBool *opposite, *changed;
+  PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -61,6 +68,7 @@ struct _n_Transfer {
   Obstacle       obstacle;
   PetscInt       dim, n;
   PetscReal      slip_bound, angle_bound;
+  PetscBool      guards; /* nodes beyond the end of the partner have rows too */
   RowSet         rows;
   PetscBool      built;
   PetscReal      built_near, smallest_size;
@@ -114,7 +122,7 @@ PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, PetscReal *);
 
-PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscReal[], PetscInt *, Share *[]);
+PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
