@@ -8,7 +8,7 @@ typedef struct {
   PetscReal polygon[8][2];
   PetscReal partner_corners[4][2]; /* of the whole partner, projected on that plane */
   PetscReal gap;                   /* at the centroid [m] */
-  PetscBool hidden;
+  PetscBool hidden, steep;
 } Segment;
 
 typedef struct {
