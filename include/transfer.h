@@ -39,6 +39,7 @@ typedef struct {
   const PetscReal *normals;  /* dim each: outward unit normal of the Dirichlet side; against that of an obstacle */
   const PetscReal *size;     /* edge length of the smallest face at the node [m; 1 in one dimension] */
   const PetscBool *changed;  /* the last build has changed the row */
+  const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
 } TransferRows;
 
 /*S

@@ -1,7 +1,9 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include "contactimpl.h"
 
-#define PARALLEL 0.9 /* cosine of the angle between normals beyond which two rows of a node say much the same */
+#define APART    0.05 /* parts of a face by which gaps may hold surfaces apart for good */
+#define RETURN   3    /* what is beyond goes back within a slip of one face: that many times */
+#define PARALLEL 0.9  /* cosine of the angle between normals beyond which two rows of a node say much the same */
 
 static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
 {
@@ -93,6 +95,14 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What remains of a shift that lets a gap go on from where it was. Where surfaces slide far without losing contact, shifts add up: between two
+   builds a row goes along the plane across its normal, from which the partner bends away, and surfaces would come to be held apart by more and more. Of what is more
+   than a small part of a face, some is given back in proportion to the slip [parts of a face], which loses energy. The opposite would gain it: surfaces that overlap. */
+static PetscReal GiveBack(PetscReal shift, PetscReal size, PetscReal slip)
+{
+  return shift - PetscMin(shift + APART * size, 0) * PetscMin(1, RETURN * slip);
+}
+
 /* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of nothing.
    So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, until the row is
    open again. Between bodies without inertia nothing is a blow. */
@@ -102,15 +112,18 @@ static PetscErrorCode ShiftGaps(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair              = &contact->pairs[p];
     PetscBool          without_inertia[] = {PETSC_TRUE, PETSC_TRUE};
+    TransferRows       rows;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &without_inertia[side]));
     if (without_inertia[0] && without_inertia[1]) continue;
+    PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscBool held = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+      const PetscInt  node = (i - pair->begin) / pair->components;
 
       if (!contact->changed[i]) continue;
       if (!contact->opposite[i]) contact->gap_shift[i] = 0;
-      else contact->gap_shift[i] = held ? contact->last_gap[i] - contact->gap[i] : PetscMax(-contact->gap[i], 0);
+      else contact->gap_shift[i] = held ? GiveBack(contact->last_gap[i] - contact->gap[i], rows.size[node], rows.slip[node]) : PetscMax(-contact->gap[i], 0);
       contact->initial_gap[i] += contact->gap_shift[i];
       contact->gap[i] += contact->gap_shift[i];
       contact->saved_gap[i] = contact->gap[i];

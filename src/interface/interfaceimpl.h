@@ -74,6 +74,7 @@ struct _n_Transfer {
   PetscReal      built_near, smallest_size;
   PetscReal     *built_x[2]; /* positions of the owned nodes of both sides at the last build */
   PetscReal     *built_slip; /* per row: part of sum_j P_ij x_j - x_i across the normal at the last build, 3 each */
+  PetscReal     *slip;       /* per row: by how much the partner had slipped since the row was built, in parts of the face size, when that was last looked at */
   PetscBool     *keep;       /* per row: it is near contact and within the bounds, and stays as it is in the next build */
   PetscReal     *column_x;   /* work space: present positions of the columns */
   TransferCounts counts;

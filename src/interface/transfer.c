@@ -36,7 +36,7 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->angle_bound = 0.02;
   t->guards      = PETSC_TRUE;
   if (neumann) PetscCheck(t->dim == neumann->data.dim, comm, PETSC_ERR_USER_INPUT, "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
-  PetscCall(PetscCalloc4(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n, &t->keep));
+  PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n, &t->slip, t->n, &t->keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,7 +57,7 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   PetscFunctionBegin;
   if (!*transfer) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RowSetDestroy(&(*transfer)->rows));
-  PetscCall(PetscFree4((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->keep));
+  PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree((*transfer)->column_x));
   PetscCall(PetscFree(*transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,6 +144,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->normals  = set->normals;
   rows->size     = transfer->dirichlet->data.sizes;
   rows->changed  = set->changed;
+  rows->slip     = transfer->slip;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

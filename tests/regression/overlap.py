@@ -54,6 +54,15 @@ def depths(points, start, end):
     return np.where(inside, distance[np.arange(len(points)), nearest], 0), nearest
 
 
+def distances(points, start, end):
+    """Of points from a closed outline, negative inside."""
+    along = end - start
+    to = points[:, None] - start
+    part = np.clip((to * along).sum(-1) / (along**2).sum(-1), 0, 1)
+    distance = np.linalg.norm(to - part[..., None] * along, axis=-1).min(axis=1)
+    return np.where(depths(points, start, end)[0] > 0, -distance, distance)
+
+
 def near(a, b):
     """Whether the boxes about two sets of points meet."""
     return np.all(a.max(axis=0) > b.min(axis=0)) and np.all(b.max(axis=0) > a.min(axis=0))
