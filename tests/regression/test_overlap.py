@@ -1,17 +1,18 @@
-"""How deep bodies lie inside each other at any point of their surfaces, which is more than what contact rows say: see overlap.py.
+"""How deep bodies lie inside each other at any point of their surfaces, which is more than what contact rows say: see plots/overlap.py.
 
 On a rigid plane rows are gaps of nodes, and so are they between surfaces whose nodes lie on each other: nothing overlaps. Between other meshes rows
 are means, and faces that are bent by h^2/8 of their curvature overlap by that; rows that are kept while surfaces slide by less than
 -contact_slip_bound of a face are off by that slip times the angle between the surfaces.
 """
 
+import os
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(ROOT / "plots"))
 
 import overlap
 
@@ -109,3 +110,18 @@ def test_side_by_side(left, right, shared_run):
     forces = [-contact["force_vector"][-1][1] for contact in run.history["contact"].values()]
     assert forces[0] / (left + 0.6) == pytest.approx(forces[1] / (0.6 - right), rel=0.05)
     assert overlap.largest(run.folder / "fields.h5") <= 0.2e-3
+
+
+def test_figure(shared_run, launch, tmp_path):
+    figure = tmp_path / "figure.png"
+    fields = shared_run(f"{STACK} -time_end 0.3").folder / "fields.h5"
+    command = [sys.executable, ROOT / "plots/overlap.py"]
+    run = launch([*command, fields, figure], env={**os.environ, "MPLBACKEND": "Agg"})
+    assert run.returncode == 0, run.stderr
+    assert not run.stderr
+    assert figure.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    for path, complaint in ((tmp_path / "nowhere.h5", "nowhere.h5"), (fields.parent / "history.h5", "no fields of an Impakt run")):
+        run = launch([*command, path, figure])
+        assert run.returncode > 0
+        assert complaint in run.stderr
+        assert "Traceback" not in run.stderr

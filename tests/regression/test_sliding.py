@@ -5,13 +5,13 @@ On a flat the contact force is normal to it but for the tilt of the pressed surf
 """
 
 import sys
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from conftest import ROOT
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(ROOT / "plots"))
 
 import overlap
 
@@ -92,13 +92,13 @@ def true_gaps(run):
 
 def test_gaps_do_not_drift(shared_run):
     """With inertia, gaps of rows in contact go on when the rows are built again; what that adds up to is given back. Over 10 widths of the base's elements, of
-    39 mm, the surfaces come to be 1.4 mm apart (0.1 mm without inertia, of rows that start anew), which is 0.05 of the slider's faces of 59 mm and
-    less than half of that again; else it was 10 mm at that time, and the force rose by a fifth rather than 4 %."""
+    39 mm, the surfaces come to be 1.4 mm apart, 0.05 of the slider's faces of 29 mm, and stay so (over 20 widths as well; 0.1 mm without inertia, where rows
+    start anew). Else it was 10 mm by then, growing, and the force rose by a fifth rather than by 4 %."""
     fields = "-output_fields fields.h5 -output_fields_precision double -output_fields_interval 5"
     static, dynamic = (shared_run(f"{CURVED} {more} {fields}") for more in ("-time_end 0.6", DYNAMIC))
     assert np.abs(true_gaps(static)).max() <= 0.2e-3
     gaps = true_gaps(dynamic)
-    assert np.abs(gaps).max() <= 0.05 * 0.059
+    assert np.abs(gaps).max() <= 0.1 * 0.029
     halves = np.array_split(gaps, 2)
     assert halves[1].mean() <= 1.5 * halves[0].mean()
     forces = [np.linalg.norm(run.history["contact"]["slider.surface:base.surface"]["force_vector"][()][run.history["time"][()] > PRESSED + 0.05], axis=1).mean() for run in (static, dynamic)]

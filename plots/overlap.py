@@ -1,14 +1,25 @@
-"""True overlap of bodies in two dimensions, point by point, from the fields of a run (-output_fields, -output_fields_precision double).
+"""Draws how deep bodies in two dimensions lie inside each other, at any point of their surfaces, over time: a line for each run.
+
+    python plots/overlap.py fields.h5 [fields.h5 ...] figure.png
+
+The files are those of -output_fields (with -output_fields_precision double overlaps below 1e-7 of the size mean something too).
 
 Contact rows keep means of the gap over a Dirichlet node's faces from becoming negative. What is measured here is another thing: how deep a
 boundary node of one body lies inside the outline of another, which is its distance from the nearest edge of that, both as deformed. As edges are
 straight, no other point of them lies deeper, if nodes of both bodies are looked at.
 """
 
+import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import h5py
+import matplotlib
 import numpy as np
+from impact import COLOURS, NoHistory
+from matplotlib.figure import Figure
+
+FLOOR = 1e-9  # of an element: what is drawn of frames without overlap
 
 
 def cross(a, b):
@@ -29,11 +40,19 @@ class Bodies:
     """Positions of all nodes in each frame, and the outline of each body."""
 
     def __init__(self, path):
-        with h5py.File(path, "r") as file:
-            body, cells = file["mesh/body"][()], file["mesh/cells"][()]
-            self.reference = file["mesh/positions"][:, :2]
-            self.times = file["time"][()]
-            self.frames = [self.reference + file["displacement"][frame][:, :2] for frame in sorted(file["displacement"])]
+        if not Path(path).is_file():
+            raise NoHistory(f"there is no file {path}")
+        try:
+            with h5py.File(path, "r") as file:
+                body, cells = file["mesh/body"][()], file["mesh/cells"][()]
+                flat = np.ptp(file["mesh/positions"][:, 2]) == 0
+                self.reference = file["mesh/positions"][:, :2]
+                self.times = file["time"][()]
+                self.frames = [self.reference + file["displacement"][frame][:, :2] for frame in sorted(file["displacement"])]
+        except (KeyError, OSError) as error:
+            raise NoHistory(f"{path} has no fields of an Impakt run: {error}") from error
+        if not flat or cells.ndim != 2 or cells.shape[1] < 3:
+            raise NoHistory(f"{path}: overlaps are measured in two dimensions, and between bodies of one kind of element")
         self.outlines = [outline(cells[body == b], self.reference) for b in range(body.max() + 1)]
 
     def size(self):
@@ -87,3 +106,45 @@ def overlaps(bodies):
 def largest(path):
     """The deepest overlap of a run [m]."""
     return max((each.depth for each in overlaps(Bodies(path))), default=0)
+
+
+def deepest(bodies):
+    """In each frame, by the size of an element."""
+    depth = np.zeros(len(bodies.frames))
+    for each in overlaps(bodies):
+        depth[each.frame] = max(depth[each.frame], each.depth)
+    return depth / bodies.size()
+
+
+def draw(runs, path):
+    matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 9, "lines.linewidth": 1.0, "axes.axisbelow": True})
+    figure = Figure(figsize=(7, 3.4), layout="constrained")
+    axes = figure.subplots()
+    for colour, (name, bodies) in zip(COLOURS, runs, strict=False):
+        depth = deepest(bodies)
+        axes.semilogy(bodies.times, np.maximum(depth, FLOOR), color=colour, label=f"{name}: elements of {1e3 * bodies.size():.3g} mm, at most {depth.max():.1e} of one")
+    axes.axhline(1e-6, color="0.5", linewidth=0.8, linestyle=":")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("deepest overlap / element")
+    axes.grid(color="0.9", linewidth=0.6)
+    axes.legend(frameon=True, framealpha=0.9, edgecolor="0.8", loc="lower right")
+    figure.savefig(path, dpi=110)
+
+
+def main(arguments):
+    if not 2 <= len(arguments) <= 1 + len(COLOURS):
+        print(f"usage: python plots/overlap.py fields.h5 [fields.h5 ...] figure.png, {len(COLOURS)} runs at most", file=sys.stderr)
+        return 1
+    try:
+        runs = [(Path(path).stem, Bodies(path)) for path in arguments[:-1]]
+        Path(arguments[-1]).parent.mkdir(parents=True, exist_ok=True)
+        draw(runs, arguments[-1])
+    except (NoHistory, OSError, ValueError) as error:
+        print(f"plots/overlap.py: {error}", file=sys.stderr)
+        return 1
+    print(arguments[-1])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
