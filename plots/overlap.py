@@ -127,7 +127,7 @@ def draw(runs, path):
     axes.set_xlabel("time [s]")
     axes.set_ylabel("deepest overlap / element")
     axes.grid(color="0.9", linewidth=0.6)
-    axes.legend(frameon=True, framealpha=0.9, edgecolor="0.8", loc="lower right")
+    figure.legend(frameon=False, loc="outside upper center")
     figure.savefig(path, dpi=110)
 
 
