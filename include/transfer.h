@@ -32,12 +32,14 @@ typedef struct {
   PetscInt         n;        /* the same over the whole run */
   const PetscInt  *dofs;     /* global number of the first displacement */
   const PetscBool *opposite; /* something of the partner lies opposite */
+  const PetscBool *beyond;   /* the partner ends before the node, see TransferSetGuards() */
   const PetscReal *gap;      /* n_i . (sum_j P_ij X_j - X_i) with reference positions X: the present gap is that + B_N u_N - B_D u_D [m] */
   const PetscReal *area;     /* integral of the node's shape function over the part of the surface that has something opposite
                                 [m^2; m in two dimensions; 1 in one] */
   const PetscReal *normals;  /* dim each: outward unit normal of the Dirichlet side; against that of an obstacle */
   const PetscReal *size;     /* edge length of the smallest face at the node [m; 1 in one dimension] */
   const PetscBool *changed;  /* the last build has changed the row */
+  const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
 } TransferRows;
 
 /*S
@@ -56,6 +58,7 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, PetscInt, PetscInt, Mat, Mat);
 PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);

@@ -52,6 +52,7 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactDropShared(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     ContactPairState   state;

@@ -243,6 +243,7 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->slip_bound, contact->angle_bound));
+  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);

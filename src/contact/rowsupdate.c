@@ -1,6 +1,18 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include "contactimpl.h"
 
+#define APART    0.05 /* parts of a face by which gaps may hold surfaces apart for good */
+#define RETURN   3    /* what is beyond goes back within a slip of one face: that many times */
+#define PARALLEL 0.9  /* cosine of the angle between normals beyond which two rows of a node say much the same */
+
+static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
+{
+  PetscReal cosine = 0;
+
+  for (PetscInt d = 0; d < 3; d++) cosine += contact->row_normal[3 * i + d] * contact->row_normal[3 * j + d];
+  return cosine;
+}
+
 /* Gaps at the start of the controller step, from what the bodies tell of it */
 PetscErrorCode ContactComputeStartGaps(Contact contact)
 {
@@ -38,6 +50,53 @@ static PetscErrorCode GetLargest(Vec vec, PetscReal *largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a node that guards the end of a pair's partner touches, or nearly, with another row that says much the same; of two that guard, the
+   first pair's counts */
+static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const TransferRows *rows, PetscBool *shared)
+{
+  const PetscInt i = contact->pairs[p].begin + node;
+
+  PetscFunctionBegin;
+  *shared = PETSC_FALSE;
+  for (PetscInt q = 0; q < contact->n_pairs && !*shared; q++) {
+    const ContactPair *other = &contact->pairs[q];
+    PetscInt           place, j;
+    TransferRows       others;
+
+    if (q == p || other->body[0] != contact->pairs[p].body[0]) continue;
+    PetscCall(TransferGetRows(other->transfer, &others));
+    PetscCall(PetscFindInt(rows->dofs[node], others.n, others.dofs, &place));
+    if (place < 0) continue;
+    j = other->begin + place;
+    if (!contact->opposite[j] || contact->gap[j] > rows->size[node] || (others.beyond[place] && q > p)) continue;
+    *shared = (PetscBool)(PetscAbsReal(RowCosine(contact, i, j)) > PARALLEL);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A node that another partner touches cannot guard the end of this one too: prescribed twice, it would have two displacements. Needs the gaps. */
+PetscErrorCode ContactDropShared(Contact contact)
+{
+  PetscFunctionBegin;
+  if (contact->law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    TransferRows rows;
+
+    PetscCall(TransferGetRows(contact->pairs[p].transfer, &rows));
+    for (PetscInt node = 0; node < rows.n; node++) {
+      const PetscInt i = contact->pairs[p].begin + node;
+      PetscBool      shared;
+
+      if (!rows.beyond[node] || !contact->opposite[i]) continue;
+      PetscCall(IsShared(contact, p, node, &rows, &shared));
+      if (!shared) continue;
+      contact->opposite[i]    = PETSC_FALSE;
+      contact->initial_gap[i] = contact->gap[i] = contact->saved_gap[i] = CONTACT_NO_GAP;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Surfaces further apart than this do not touch in the next controller step: twice the way that the fastest nodes of all bodies make towards each
    other */
 static PetscErrorCode GetReach(Contact contact, PetscReal *near)
@@ -60,6 +119,14 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What remains of a shift that lets a gap go on from where it was. Where surfaces slide far without losing contact, shifts add up: between two
+   builds a row goes along the plane across its normal, from which the partner bends away, and surfaces would come to be held apart by more and more. Of what is more
+   than a small part of a face, some is given back in proportion to the slip [parts of a face], which loses energy. The opposite would gain it: surfaces that overlap. */
+static PetscReal GiveBack(PetscReal shift, PetscReal size, PetscReal slip)
+{
+  return shift - PetscMin(shift + APART * size, 0) * PetscMin(1, RETURN * slip);
+}
+
 /* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of nothing.
    So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, until the row is
    open again. Between bodies without inertia nothing is a blow. */
@@ -69,15 +136,18 @@ static PetscErrorCode ShiftGaps(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair              = &contact->pairs[p];
     PetscBool          without_inertia[] = {PETSC_TRUE, PETSC_TRUE};
+    TransferRows       rows;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &without_inertia[side]));
     if (without_inertia[0] && without_inertia[1]) continue;
+    PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscBool held = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+      const PetscInt  node = (i - pair->begin) / pair->components;
 
       if (!contact->changed[i]) continue;
       if (!contact->opposite[i]) contact->gap_shift[i] = 0;
-      else contact->gap_shift[i] = held ? contact->last_gap[i] - contact->gap[i] : PetscMax(-contact->gap[i], 0);
+      else contact->gap_shift[i] = held ? GiveBack(contact->last_gap[i] - contact->gap[i], rows.size[node], rows.slip[node]) : PetscMax(-contact->gap[i], 0);
       contact->initial_gap[i] += contact->gap_shift[i];
       contact->gap[i] += contact->gap_shift[i];
       contact->saved_gap[i] = contact->gap[i];
@@ -129,13 +199,14 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->changed));
+  PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
+  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactDropShared(contact));
   for (PetscInt i = 0; i < contact->n_rows; i++) {
     if (contact->opposite[i]) continue;
     contact->saved_active[i] = PETSC_FALSE;
     contact->saved_force[i]  = 0;
   }
-  PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
-  PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ShiftGaps(contact));
   PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);

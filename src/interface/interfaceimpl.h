@@ -44,9 +44,16 @@ typedef struct {
   PetscReal   value;
 } Share;
 
+/* What lies opposite to a Dirichlet node */
+enum {
+  MARK_NONE,
+  MARK_BEYOND, /* nothing, but the partner ends on a face beside it */
+  MARK_COVERED
+};
+
 /* The rows of a transfer */
 typedef struct {
-  PetscBool *opposite, *changed;
+  PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -61,11 +68,13 @@ struct _n_Transfer {
   Obstacle       obstacle;
   PetscInt       dim, n;
   PetscReal      slip_bound, angle_bound;
+  PetscBool      guards; /* nodes beyond the end of the partner have rows too */
   RowSet         rows;
   PetscBool      built;
   PetscReal      built_near, smallest_size;
   PetscReal     *built_x[2]; /* positions of the owned nodes of both sides at the last build */
   PetscReal     *built_slip; /* per row: part of sum_j P_ij x_j - x_i across the normal at the last build, 3 each */
+  PetscReal     *slip;       /* per row: by how much the partner had slipped since the row was built, in parts of the face size, when that was last looked at */
   PetscBool     *keep;       /* per row: it is near contact and within the bounds, and stays as it is in the next build */
   PetscReal     *column_x;   /* work space: present positions of the columns */
   TransferCounts counts;
@@ -115,7 +124,7 @@ PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, PetscReal *);
 
-PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscReal[], PetscInt *, Share *[]);
+PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);

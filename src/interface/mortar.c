@@ -2,7 +2,8 @@
    Popp, Gee, Wall 2009), with dual functions on the covered part of each face (Cichosz, Bischoff 2011). */
 #include "segments.h"
 
-#define SINGULAR 1e-3 /* smallest pivot of the mass matrix of a face, scaled to a unit diagonal */
+#define SAME_POINT 1e-9 /* shape functions that differ by less */
+#define SINGULAR   1e-3 /* smallest pivot of the mass matrix of a face, scaled to a unit diagonal */
 
 /* Integrals over the covered part of one Dirichlet face */
 typedef struct {
@@ -13,21 +14,21 @@ typedef struct {
   PetscReal mass[4][4];    /* int phi_k phi_l */
 } Patch;
 
-/* Nodes beyond the end of the partner have no row: their neighbours on the face take over, so that the functions still sum to one */
+/* Nodes without a row, far beyond the end of the partner: their neighbours on the face take over, so that the functions still sum to one */
 static void CombineFunctions(PetscInt n, const PetscInt nodes[], const PetscInt marks[], PetscReal combine[4][4])
 {
   PetscInt all = 0;
 
-  for (PetscInt k = 0; k < n; k++) all += marks[nodes[k]];
+  for (PetscInt k = 0; k < n; k++) all += marks[nodes[k]] != MARK_NONE;
   for (PetscInt l = 0; l < n; l++) {
     PetscInt heirs[4] = {0}, count = 0;
 
     if (marks[nodes[l]]) {
       heirs[l] = count = 1;
     } else {
-      for (PetscInt k = 0; k < n; k++) heirs[k] = marks[nodes[k]] && (k == (l + 1) % n || l == (k + 1) % n);
+      for (PetscInt k = 0; k < n; k++) heirs[k] = marks[nodes[k]] != MARK_NONE && (k == (l + 1) % n || l == (k + 1) % n);
       for (PetscInt k = 0; k < n; k++) count += heirs[k];
-      for (PetscInt k = 0; k < n && !count; k++) heirs[k] = marks[nodes[k]];
+      for (PetscInt k = 0; k < n && !count; k++) heirs[k] = marks[nodes[k]] != MARK_NONE;
       if (!count) count = PetscMax(all, 1);
     }
     for (PetscInt k = 0; k < n; k++) combine[k][l] = (PetscReal)heirs[k] / count;
@@ -126,10 +127,43 @@ static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Fac
   }
 }
 
-/* The segments begin to end - 1 of one face */
-static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[], const PetscInt marks[], PetscReal lumped[], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+/* Gap at a point of the face's plane, along the normal of one of its nodes */
+static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt nodes[], const Patch *patch, const Segment *segment, PetscInt n_partner, const Face *partner, const PetscReal s[])
 {
-  const PetscInt n = surface->data.face_nodes, f = segments->list[begin].face, n_partner = segments->face_nodes;
+  const PetscReal *normal = data->normals + 3 * node;
+  PetscReal        shapes[4], gap = 0;
+
+  FaceShapes(n_partner, (const PetscReal(*)[2])segment->partner_corners, s, shapes);
+  for (PetscInt j = 0; j < n_partner; j++) gap += shapes[j] * Dot(normal, partner->x[j]);
+  FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, s, shapes);
+  for (PetscInt k = 0; k < patch->n; k++) gap -= shapes[k] * Dot(normal, data->positions + 3 * nodes[k]);
+  return gap;
+}
+
+/* Where the partner ends before node k of the face: the smallest gap where the node's shape function is largest on the covered part */
+static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[])
+{
+  PetscReal largest = 0, smallest = PETSC_MAX_REAL;
+
+  for (PetscInt pass = 0; pass < 2; pass++)
+    for (PetscInt i = begin; i < end; i++) {
+      const Segment *segment = &segments->list[i];
+
+      for (PetscInt v = 0; v < segment->n; v++) {
+        PetscReal shapes[4];
+
+        FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, segment->polygon[v], shapes);
+        if (!pass) largest = PetscMax(largest, shapes[k]);
+        else if (shapes[k] >= largest - SAME_POINT) smallest = PetscMin(smallest, GapAt(data, nodes[k], nodes, patch, segment, segments->face_nodes, &faces[segment->partner], segment->polygon[v]));
+      }
+    }
+  return smallest;
+}
+
+/* The segments begin to end - 1 of one face */
+static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[], const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+{
+  const PetscInt n = surface->data.face_nodes, f = segments->list[begin].face, n_partner = segments->face_nodes, *nodes = surface->data.faces + f * n;
   PetscReal(*cross)[4][4], dual[4][4];
   Patch patch;
 
@@ -142,8 +176,10 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
     SetUpPatch(&surface->data, f, marks, &patch);
     for (PetscInt i = begin; i < end; i++) IntegrateSegment(&patch, &segments->list[i], n_partner, cross[i - begin]);
     ComputeDual(&patch, dual);
+    for (PetscInt k = 0; k < n; k++)
+      if (marks[nodes[k]] == MARK_BEYOND) ends[nodes[k]] = PetscMin(ends[nodes[k]], GapAtEnd(&surface->data, k, nodes, &patch, segments, begin, end, faces));
   }
-  for (PetscInt k = 0; k < n; k++) lumped[surface->data.faces[f * n + k]] += patch.lumped[k];
+  for (PetscInt k = 0; k < n; k++) lumped[nodes[k]] += patch.lumped[k];
   for (PetscInt i = begin; i < end; i++) {
     PetscReal values[4][4] = {{0}};
 
@@ -156,12 +192,13 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* lumped: D_i of the nodes that this rank has, summed on those it owns; shares: M_ij of the rows of this rank, in pieces, free with PetscFree() */
-PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscReal lumped[], PetscInt *n_shares, Share *shares[])
+/* marks: what lies opposite to the nodes that this rank has; lumped: their D_i, summed on those it owns; ends: gaps where the partner ends, of owned
+   nodes beyond; shares: M_ij of the rows of this rank, in pieces, free with PetscFree() */
+PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscInt *n_shares, Share *shares[])
 {
   Surface      dirichlet = transfer->dirichlet;
-  Segments     segments  = {.ahead = ahead, .behind = behind, .face_nodes = transfer->neumann->data.face_nodes};
-  PetscInt     n_faces, n_mine = 0, *marks;
+  Segments     segments  = {.ahead = ahead, .behind = behind, .guards = transfer->guards, .face_nodes = transfer->neumann->data.face_nodes};
+  PetscInt     n_faces, n_mine = 0;
   Face        *faces;
   Share       *mine;
   PetscMPIInt *owners;
@@ -169,7 +206,10 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
 
   PetscFunctionBegin;
   PetscCall(ExchangeFaces(transfer->comm, dirichlet, transfer->neumann, ahead, behind, &n_faces, &faces));
-  PetscCall(PetscCalloc1(dirichlet->data.n_nodes, &marks));
+  for (PetscInt i = 0; i < dirichlet->data.n_nodes; i++) {
+    marks[i] = MARK_NONE;
+    ends[i]  = PETSC_MAX_REAL;
+  }
   PetscCall(SegmentsFind(&dirichlet->data, n_faces, faces, marks, &segments));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_INT, marks, marks, MPI_MAX));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_INT, marks, marks, MPI_MAX));
@@ -179,10 +219,12 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   PetscCall(PetscArrayzero(lumped, dirichlet->data.n_nodes));
   for (PetscInt begin = 0, end; begin < segments.n; begin = end) {
     for (end = begin + 1; end < segments.n && segments.list[end].face == segments.list[begin].face;) end++;
-    PetscCall(IntegrateFace(dirichlet, &segments, begin, end, faces, marks, lumped, &n_mine, mine, owners));
+    PetscCall(IntegrateFace(dirichlet, &segments, begin, end, faces, marks, lumped, ends, &n_mine, mine, owners));
   }
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
+  PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
+  PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
   PetscCall(ExchangeRecords(transfer->comm, sizeof(Share), n_mine, owners, mine, n_shares, (void **)shares));
   counts[0] = segments.candidates;
   counts[1] = segments.n;
@@ -191,7 +233,6 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   transfer->counts.segments   = counts[1];
   PetscCall(PetscFree2(mine, owners));
   PetscCall(PetscFree(segments.list));
-  PetscCall(PetscFree(marks));
   PetscCall(PetscFree(faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,7 +9,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
 {
   PetscFunctionBegin;
   PetscCall(PetscMemzero(set, sizeof(*set)));
-  PetscCall(PetscCalloc6(n, &set->opposite, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1, &set->offsets));
+  PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1, &set->offsets));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -17,7 +17,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
 PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree6(set->opposite, set->changed, set->gap, set->area, set->normals, set->offsets));
+  PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,8 +136,9 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
   }
 }
 
-/* Corrects a row, and takes it if its gap is within the limits */
-static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal ahead, PetscReal behind, RowSet *set)
+/* Corrects a row, and takes it if its gap is within the limits. That of a node beyond the end of the partner, which is on the straight line
+   through what the face has opposite, is counted from where it ends: at `end`. So nothing touches before the partner does, nor overlaps it there. */
+static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal ahead, PetscReal behind, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
@@ -167,6 +168,10 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   }
   for (PetscInt j = 0; j < n; j++) set->shares[first + j].value = weights[j];
   PetscCall(PetscFree2(weights, partners));
+  if (set->beyond[row]) {
+    gap += end - present;
+    present = end;
+  }
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -behind);
   if (set->opposite[row]) set->gap[row] = gap;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -209,11 +214,12 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
 }
 
 /* Whether a row says the same in both sets */
-static PetscBool SameRow(PetscInt dim, const RowSet *a, const RowSet *b, PetscInt row)
+static PetscBool SameRow(PetscInt dim, PetscReal size, const RowSet *a, const RowSet *b, PetscInt row)
 {
   const PetscInt n = a->offsets[row + 1] - a->offsets[row];
 
-  if (a->opposite[row] != b->opposite[row]) return PETSC_FALSE;
+  if (a->opposite[row] != b->opposite[row] || a->beyond[row] != b->beyond[row]) return PETSC_FALSE;
+  if (b->beyond[row] && b->opposite[row] && PetscAbsReal(a->gap[row] - b->gap[row]) > SAME * size) return PETSC_FALSE;
   for (PetscInt d = 0; d < dim; d++)
     if (PetscAbsReal(a->normals[dim * row + d] - b->normals[dim * row + d]) > SAME) return PETSC_FALSE;
   if (!a->opposite[row]) return PETSC_TRUE;
@@ -227,10 +233,10 @@ static PetscBool SameRow(PetscInt dim, const RowSet *a, const RowSet *b, PetscIn
 }
 
 /* Marks what has changed; rows that have not keep their numbers to the last bit */
-static void CompareRows(PetscInt dim, PetscInt n, PetscBool first, const RowSet *old, RowSet *set)
+static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], PetscBool first, const RowSet *old, RowSet *set)
 {
   for (PetscInt row = 0; row < n; row++) {
-    set->changed[row] = (PetscBool)(first || !SameRow(dim, old, set, row));
+    set->changed[row] = (PetscBool)(first || !SameRow(dim, sizes[row], old, set, row));
     if (set->changed[row]) continue;
     set->gap[row]  = old->gap[row];
     set->area[row] = old->area[row];
@@ -252,15 +258,15 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
-  PetscReal         *lumped, *x, *reference, behind;
-  PetscInt           n_shares;
+  PetscReal         *lumped, *ends, *x, *reference, behind;
+  PetscInt           n_shares, *marks;
   Share             *shares;
   RowSet             set;
 
   PetscFunctionBegin;
   PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, &behind));
-  PetscCall(PetscMalloc1(dirichlet->n_nodes, &lumped));
-  PetscCall(TransferIntegrate(transfer, near, behind, lumped, &n_shares, &shares));
+  PetscCall(PetscMalloc3(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends));
+  PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, &n_shares, &shares));
   PetscCall(KeepShares(transfer, lumped, &n_shares, &shares));
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
@@ -272,17 +278,18 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
   for (PetscInt row = 0; row < transfer->n; row++) {
+    set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
-    else PetscCall(FinishRow(transfer, row, x, reference, near, behind, &set));
+    else PetscCall(FinishRow(transfer, row, x, reference, ends[row], near, behind, &set));
     set.area[row] = set.opposite[row] ? lumped[row] : 0;
   }
-  CompareRows(transfer->dim, transfer->n, (PetscBool)!transfer->built, &transfer->rows, &set);
+  CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
   PetscCall(PetscFree(transfer->column_x));
   PetscCall(PetscMalloc1(3 * set.n_columns, &transfer->column_x));
   PetscCall(PetscFree2(x, reference));
-  PetscCall(PetscFree(lumped));
+  PetscCall(PetscFree3(marks, lumped, ends));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -313,7 +320,7 @@ PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
       if (set.opposite[row]) set.gap[row] -= gradient[d] * (x[d] - reference[d]);
     }
   }
-  CompareRows(dim, transfer->n, (PetscBool)!transfer->built, &transfer->rows, &set);
+  CompareRows(dim, transfer->n, data->sizes, (PetscBool)!transfer->built, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
   PetscFunctionReturn(PETSC_SUCCESS);

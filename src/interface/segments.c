@@ -1,8 +1,10 @@
 /* Which parts of the Dirichlet faces of this rank lie opposite to which faces of the Neumann side. */
 #include "segments.h"
 
-#define MARGIN  0.05  /* nodes this far beyond the end of the partner, in parts of the face size, still have a row */
+#define MARGIN  0.05  /* nodes this far beyond the end of the partner, in parts of the face size, count as covered */
+#define REACH   0.95  /* and those up to here guard that end */
 #define SLIVER  1e-10 /* parts of a face smaller than this, relative to its area, are left out */
+#define STEEP   -0.8  /* normals whose scalar product is more are far from parallel */
 #define OPPOSED -0.1  /* normals whose scalar product is less are opposed */
 
 /* What is the same for all candidates of one Dirichlet face */
@@ -61,6 +63,7 @@ static PetscErrorCode CompareFaces(const Target *target, const Segments *range, 
 
   PetscFunctionBegin;
   if (Dot(target->frame.normal, face->normal) >= OPPOSED) PetscFunctionReturn(PETSC_SUCCESS);
+  segment.steep = (PetscBool)(Dot(target->frame.normal, face->normal) >= STEEP);
   for (PetscInt j = 0; j < n; j++) FrameProject(&target->frame, face->x[j], segment.partner_corners[j]);
   segment.n = PolygonClip(n, (const PetscReal(*)[2])segment.partner_corners, target->n, (const PetscReal(*)[2])target->corners, segment.polygon);
   if (!segment.n || PolygonMeasure(segment.n, (const PetscReal(*)[2])segment.polygon, centroid) < SLIVER * target->area) PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,14 +118,22 @@ static PetscErrorCode ComparePoints(const SurfaceData *data, PetscInt f, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes that have something opposite to them get the mark 1 */
+/* Nodes that have something opposite to them, and those just beyond its end, unless the partner turns away there */
 static void MarkNodes(const Target *target, const Segments *segments, PetscInt begin, PetscInt marks[])
 {
+  PetscBool guards = segments->guards;
+
+  for (PetscInt i = begin; i < segments->n; i++)
+    if (segments->list[i].steep) guards = PETSC_FALSE;
   for (PetscInt k = 0; k < target->n; k++) {
     const PetscInt node = target->data->faces[target->face * target->n + k];
 
-    for (PetscInt i = begin; i < segments->n && !marks[node]; i++)
-      if (PolygonDistance(segments->face_nodes, (const PetscReal(*)[2])segments->list[i].partner_corners, target->corners[k]) <= MARGIN * target->size) marks[node] = 1;
+    for (PetscInt i = begin; i < segments->n && marks[node] < MARK_COVERED; i++) {
+      const PetscReal distance = PolygonDistance(segments->face_nodes, (const PetscReal(*)[2])segments->list[i].partner_corners, target->corners[k]);
+
+      if (distance <= MARGIN * target->size) marks[node] = MARK_COVERED;
+      else if (guards && distance <= REACH * target->size) marks[node] = MARK_BEYOND;
+    }
   }
 }
 
@@ -148,7 +159,7 @@ static PetscErrorCode CompareWithTree(const Target *target, Tree *tree, const Fa
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Compares the Dirichlet faces of this rank with those given. marks, one for each node, must be zero; segments->ahead and behind say how
+/* Compares the Dirichlet faces of this rank with those given. marks, one for each node, must be MARK_NONE; segments->ahead and behind say how
    far a partner may be. */
 PetscErrorCode SegmentsFind(const SurfaceData *data, PetscInt n_faces, const Face faces[], PetscInt marks[], Segments *segments)
 {
@@ -157,7 +168,7 @@ PetscErrorCode SegmentsFind(const SurfaceData *data, PetscInt n_faces, const Fac
   PetscFunctionBegin;
   if (data->dim == 1) {
     for (PetscInt f = 0; f < data->n_faces; f++) PetscCall(ComparePoints(data, f, n_faces, faces, segments));
-    for (PetscInt i = 0; i < segments->n; i++) marks[data->faces[segments->list[i].face]] = 1;
+    for (PetscInt i = 0; i < segments->n; i++) marks[data->faces[segments->list[i].face]] = MARK_COVERED;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(TreeCreate(segments->face_nodes, n_faces, faces, &tree));

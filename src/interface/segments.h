@@ -8,14 +8,15 @@ typedef struct {
   PetscReal polygon[8][2];
   PetscReal partner_corners[4][2]; /* of the whole partner, projected on that plane */
   PetscReal gap;                   /* at the centroid [m] */
-  PetscBool hidden;
+  PetscBool hidden, steep;
 } Segment;
 
 typedef struct {
   PetscInt   n, max, face_nodes; /* face_nodes: of the Neumann side */
   PetscInt64 candidates;
   PetscReal  ahead, behind;
-  Segment   *list; /* those of one Dirichlet face follow each other */
+  PetscBool  guards; /* nodes beyond the end of the partner get their mark */
+  Segment   *list;   /* those of one Dirichlet face follow each other */
 } Segments;
 
 PETSC_INTERN PetscErrorCode SegmentsFind(const SurfaceData *, PetscInt, const Face[], PetscInt[], Segments *);

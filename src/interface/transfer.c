@@ -34,8 +34,9 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->n           = dirichlet->data.n_owned;
   t->slip_bound  = 0.05;
   t->angle_bound = 0.02;
+  t->guards      = PETSC_TRUE;
   if (neumann) PetscCheck(t->dim == neumann->data.dim, comm, PETSC_ERR_USER_INPUT, "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
-  PetscCall(PetscCalloc4(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n, &t->keep));
+  PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n, &t->slip, t->n, &t->keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,7 +57,7 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   PetscFunctionBegin;
   if (!*transfer) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RowSetDestroy(&(*transfer)->rows));
-  PetscCall(PetscFree4((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->keep));
+  PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree((*transfer)->column_x));
   PetscCall(PetscFree(*transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -86,6 +87,34 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
 }
 
 /*@
+  TransferSetGuards - whether Dirichlet nodes just beyond the end of the partner have rows too
+
+  Logically Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, before the first `TransferUpdate()`
+- guards   - true by default
+
+  Level: developer
+
+  Notes:
+  The partner of a node beyond its end, on a face that it covers in part, is the straight line through what lies opposite to the face, as in Popp,
+  Seitz, Gee, Wall (2013), with the gap counted from where the partner ends. Without these rows the last node that is covered has the mean
+  gap of the whole covered part, and the end of a tilting partner gets into the surface by half an element times the angle.
+
+  What one partner ends in front of may be in contact with another: see `TransferRows`.
+
+.seealso: `Transfer`, `TransferUpdate()`
+@*/
+PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
+{
+  PetscFunctionBegin;
+  PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
+  transfer->guards = guards;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferGetRows - the rows of the nodes that this rank owns
 
   Not Collective
@@ -109,11 +138,13 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->n        = transfer->n;
   rows->dofs     = transfer->dirichlet->data.dofs;
   rows->opposite = set->opposite;
+  rows->beyond   = set->beyond;
   rows->gap      = set->gap;
   rows->area     = set->area;
   rows->normals  = set->normals;
   rows->size     = transfer->dirichlet->data.sizes;
   rows->changed  = set->changed;
+  rows->slip     = transfer->slip;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

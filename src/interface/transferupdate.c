@@ -83,12 +83,14 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     PetscBool        within;
 
     transfer->keep[row] = PETSC_FALSE;
+    transfer->slip[row] = 0;
     if (!transfer->rows.opposite[row]) continue;
     if (transfer->neumann) {
       GetOffset(transfer, row, offset);
       SplitOffset(dim, normal, offset, &gap);
       for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(offset[d] - transfer->built_slip[3 * row + d]);
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(present[d] - normal[d]);
+      transfer->slip[row] = PetscSqrtReal(slip) / size;
     } else {
       PetscCall(ObstacleGetGap(transfer->obstacle, data->positions + 3 * row, &gap, gradient));
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(gradient[d] + normal[d]);

@@ -55,6 +55,86 @@ def test_pressure(options, inner, rms, shared_run):
 
 
 @pytest.mark.parametrize("options", [CYLINDER, SPHERE], ids=["cylinder", "sphere"])
+def test_profile(options, shared_run):
+    """The demand: the profile within 3 %, of the pressure that theory has at the node, for all nodes that are an element or more inside the contact,
+    which is 0.9 of its radius in both files (measured 1.4 % and 1.9 %). Why not nearer to the rim: see below."""
+    ball, series = read(shared_run(options))
+    radius, peak = ball.contact(series["force"][-1])
+    distance = series["distance"] / radius
+    inside = distance < 0.9
+    assert distance[~inside].min() < 0.96  # the next one is in the last element
+    assert np.abs(series["pressure"][inside] / (peak * hertz.hertz_pressure(distance[inside])) - 1).max() <= 0.03
+
+
+FACES = np.array([[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])  # of a hexahedron
+
+
+def means(run):
+    """Distance of nodes from the axis by the radius of the contact of a sphere, their pressures by the largest one, and the means of Hertz's that belong to
+    them: int p phi_i / int phi_i, over the plane, by 40 x 40 points on each face."""
+    ball, series = read(run)
+    radius, peak = ball.contact(series["force"][-1])
+    with h5py.File(run.folder / "out/hertz-sphere-fields.h5") as file:
+        positions = (file["mesh/positions"] - ball.centre)[:, :3]
+        faces = file["mesh/cells"][()][:, FACES].reshape(-1, 4)
+        pressure = file["contact_pressure"][max(file["contact_pressure"])][()].ravel() / peak
+    distance = np.linalg.norm(positions[:, :2], axis=1) / radius
+    surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, 2] < 0) & (distance < 1.5)
+    faces = faces[surface[faces].all(axis=1)]
+    x, y = (each.ravel() for each in np.meshgrid(*2 * [(np.arange(40) + 0.5) / 40]))
+    shapes = np.stack(((1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y))
+    slopes = np.stack((y - 1, 1 - y, y, -y)), np.stack((x - 1, -x, x, 1 - x))
+    corners = positions[faces][:, :, :2]
+    points = np.einsum("kq,fkd->fqd", shapes, corners)
+    along, across = (np.einsum("kq,fkd->fqd", each, corners) for each in slopes)
+    area = np.abs(along[..., 0] * across[..., 1] - along[..., 1] * across[..., 0])
+    sums = np.zeros((2, len(positions)))
+    for weight, total in zip((area * hertz.hertz_pressure(np.linalg.norm(points, axis=-1) / radius), area), sums, strict=True):
+        np.add.at(total, faces, np.einsum("fq,kq->fk", weight, shapes))
+    inside = surface & (distance < 1)
+    return distance[inside], pressure[inside], sums[0][inside] / sums[1][inside]
+
+
+def test_pressures_are_means(shared_run):
+    """What is left of the error where the profile is curved is that a node's pressure is a mean over its faces: with that of Hertz's, the sphere's agree
+    to 0.3 % of the largest within 0.9 of the radius (measured 0.09 %, where values at the nodes differ by 0.9 %), and to 3 % up to the rim (1.7 %)."""
+    distance, pressure, mean = means(shared_run(SPHERE))
+    assert len(distance) > 60
+    error = np.abs(pressure - mean)
+    assert error[distance < 0.9].max() <= 0.003
+    assert error.max() <= 0.03
+
+
+def test_rim(shared_run):
+    """At the rim p falls as the root of the distance from it, and what nodes have there is off by some part of the pressure an element inside, whatever the mesh:
+    0.2 to 0.29 sqrt(h/a) of the largest pressure, in the worst of 20 load steps, on meshes of 6, 12 and 24 elements to the radius. So 3 % of the largest for every node
+    would take 90 elements; an element inside, the error is at most 3.5 % of the pressure there, on all of them."""
+    for divisions in (16, 32, 64):
+        run = shared_run(f"{CYLINDER} -cylinder_ball_divisions {divisions} -time_step 0.05 -output_fields_interval 1")
+        ball, _ = read(run)
+        force = ball.parts * next(iter(run.history["contact"].values()))["force"][()]
+        with h5py.File(run.folder / "out/hertz-cylinder-fields.h5") as file:
+            positions = file["mesh/positions"][:, :2] - ball.centre
+            surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, 1] < 0)
+            pressures = [file["contact_pressure"][frame][()].ravel()[surface] for frame in sorted(file["contact_pressure"])]
+        distance = positions[surface, 0]
+        element = np.sort(distance)[1]
+        looked_at = 0
+        for load, pressure in zip(force, pressures, strict=True):
+            if load == 0:
+                continue
+            radius, peak = ball.contact(load)
+            if radius < 4 * element:
+                continue
+            looked_at += 1
+            theory = hertz.hertz_pressure(distance / radius)
+            inside = distance < radius - element
+            assert np.abs(pressure / peak - theory).max() <= 0.35 * np.sqrt(element / radius)
+            assert np.abs(pressure[inside] / peak / theory[inside] - 1).max() <= 0.05
+        assert looked_at >= 10
+
+
+@pytest.mark.parametrize("options", [CYLINDER, SPHERE], ids=["cylinder", "sphere"])
 def test_radius(options, shared_run):
     """From the profile within 1 %: measured -0.42 % and -0.43 %, with largest pressures 0.11 % and -0.17 % off; from the area of the nodes that
     touch, which changes by whole nodes, within 3 %: measured 0.06 % and 2.6 %."""

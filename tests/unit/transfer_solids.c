@@ -164,7 +164,7 @@ static void rows_are_built_when_needed(void **state)
   interface_destroy(&interface);
 }
 
-/* Half of the partner gone to the side: the rows beyond its end are empty, and the areas sum up to what is covered */
+/* Half of the partner gone to the side: rows beyond its end are empty but for those that guard it, and the areas sum up to what is covered */
 static void ends_are_covered_in_part(void **state)
 {
   const PetscReal aside[3] = {0.6, 0, 0};
@@ -175,7 +175,7 @@ static void ends_are_covered_in_part(void **state)
   interface_create(&interface, 3, pair_faces[3], pair_simplex[3], PETSC_FALSE);
   move_mesh(interface.dm[1], map_nothing, aside, interface.u[1]);
   (void)interface_update(&interface, 0.1, 1);
-  assert_int_equal(interface.n_opposite, 8); /* of the nodes at x = 0, 1/3, 2/3, 1 those at 2/3 and 1 */
+  assert_int_equal(interface.n_opposite, 12); /* of the nodes at x = 0, 1/3, 2/3, 1 all but those at 0; the partner ends at 0.6 */
   for (PetscInt i = 0; i < interface.rows.n; i++) area += interface.rows.area[i];
   assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD), 0);
   near(area, 0.4, 1e-13);
@@ -216,6 +216,69 @@ static void neighbours_share_an_edge(void **state)
   }
 }
 
+/* 0.02 apart at x = 0, and further where x is larger */
+static void map_tilted_2d(const PetscReal X[3], PetscReal x[3])
+{
+  map_nothing(X, x);
+  x[1] += 0.02 + 0.1 * X[0];
+}
+
+static void map_tilted(const PetscReal X[3], PetscReal x[3])
+{
+  map_nothing(X, x);
+  x[2] += 0.02 + 0.1 * X[0];
+}
+
+/* A narrower partner that tilts toward its end at x = 0.6: the gap of the nodes before it, at 1/2 or 1/3, is that of the end, as is that of no row
+   without guards; other gaps are those of the straight partner, 0.06 at x = 1. Resultant and moment agree. */
+static void ends_are_guarded(void **state)
+{
+  const PetscReal aside[3] = {0.6, 0, 0};
+
+  (void)state;
+  for (PetscInt variant = 0; variant < 4; variant++) {
+    const PetscBool    guards = (PetscBool)(variant % 2 == 0);
+    const PetscInt     pair   = variant < 2 ? 0 : 3;
+    const SurfaceData *data;
+    const PetscScalar *gaps;
+    PetscReal          smallest = 1, sums[2][6];
+    Interface          interface;
+    Vec                moved;
+
+    interface_create(&interface, pair_dim[pair], pair_faces[pair], pair_simplex[pair], PETSC_FALSE);
+    ok(TransferSetGuards(interface.transfer, guards));
+    move_mesh(interface.dm[1], pair_dim[pair] == 2 ? map_tilted_2d : map_tilted, aside, interface.u[1]);
+    (void)interface_update(&interface, 1, 1);
+    refused(PETSC_ERR_ARG_WRONGSTATE, "before TransferUpdate", TransferSetGuards(interface.transfer, guards));
+    assert_int_equal(interface.n_opposite, pair == 0 ? 1 + guards : 4 * (2 + guards));
+    ok(SurfaceGetData(interface.surface[0], &data));
+    ok(MatCreateVecs(interface.matrix[1], NULL, &moved));
+    ok(MatMult(interface.matrix[1], interface.u[1], moved));
+    ok(VecGetArrayRead(moved, &gaps));
+    for (PetscInt i = 0; i < interface.rows.n; i++) {
+      const PetscReal x = data->positions[3 * i], gap = interface.rows.gap[i] + PetscRealPart(gaps[i]);
+
+      if (!interface.rows.opposite[i]) continue;
+      assert_int_equal(interface.rows.beyond[i], x < 0.6);
+      if (guards) near(gap, x < 0.6 ? 0.02 : 0.02 + 0.1 * (x - 0.6), 1e-13);
+      smallest = PetscMin(smallest, gap);
+    }
+    ok(VecRestoreArrayRead(moved, &gaps));
+    ok(VecDestroy(&moved));
+    assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPIU_REAL, MPI_MIN, PETSC_COMM_WORLD), 0);
+    if (!guards) assert_true(smallest > 0.0225); /* a mean over what is covered, above the gap at the end */
+    for (PetscInt side = 0; side < 2; side++) {
+      Vec force = interface_force(&interface, side, PETSC_FALSE);
+
+      interface_resultant(&interface, side, force, sums[side]);
+      ok(VecDestroy(&force));
+    }
+    assert_true(PetscAbsReal(sums[0][interface.dim - 1]) > 0.1);
+    for (PetscInt i = 0; i < 6; i++) near(sums[1][i], sums[0][i], 1e-13);
+    interface_destroy(&interface);
+  }
+}
+
 /* Twice as many faces in each direction, four times as many pairs that are compared, but for the edges */
 static void search_costs_in_proportion(void **state)
 {
@@ -246,6 +309,7 @@ int main(int argc, char **argv)
       simulation_test(rows_are_built_when_needed),
       simulation_test(ends_are_covered_in_part),
       simulation_test(neighbours_share_an_edge),
+      simulation_test(ends_are_guarded),
       simulation_test(search_costs_in_proportion),
   };
 
