@@ -66,14 +66,15 @@ def test_ten_balls(shared_run):
 
 
 def test_ten_balls_explicit(shared_run):
-    """Rows that are pulled when held and penetrate when not come up in 4 steps and in 3; until the others went on then, discs were left 6.6e-4 m deep."""
+    """Bodies with substeps. The longer step loses much where contacts begin, but must not gain where they end: 1.4e-3 if forces fade over the whole
+    step while rows open. Nor may a row that is pulled when held and penetrates when not end the rounds for all others, which left discs 6.6e-4 m deep."""
     explicit = " ".join(f"-{b}_ts_type centraldifference -{b}_ts_time_step auto" for b in "abcdefghij")
-    for step, until, growth in (("2e-4", 0.35, GROWTH), ("4e-4", 0.31, 3e-3)):  # 6e-15 measured, 1.4e-3: a force that fades while its row opens
+    for step, until, loss in (("2e-4", 0.35, 0.1), ("4e-4", 0.31, 0.2)):  # 0.042 and 0.090 measured
         run = shared_run(f"-options_file options/ten-balls.opts {explicit} -time_step {step} -time_end {until}")
-        assert run.summary["schwarz"]["set_cycles"] >= 3  # what this is about
         assert max(depths(run)) <= 1e-6 * 0.03  # 3e-16 m measured
-        assert run.summary["system"]["energy_error_max"] <= growth
-        assert run.summary["system"]["energy_error_min"] >= -0.1
+        assert -loss <= run.summary["system"]["energy_error_min"]
+        assert run.summary["system"]["energy_error_max"] <= GROWTH  # 6e-15 measured
+    assert run.summary["schwarz"]["set_cycles"] >= 1  # there is such a row
 
 
 def contact_nodes(run):

@@ -70,6 +70,8 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
   contact->fades         = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->release_room = PetscMax(contact->release_room, schwarz->room[p] + 1);
+  PetscCall(PetscCalloc2(contact->n_rows, &contact->release_intervals, contact->n_rows * contact->release_room, &contact->release));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
