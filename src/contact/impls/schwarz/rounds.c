@@ -80,21 +80,23 @@ static PetscErrorCode FindFirstWrong(Contact contact, PetscInt *which)
    until its end. To go on with that while the row opens would be work out of nothing: with ten discs 1.4e-3 of the energy at a step of 4e-4 s. */
 static PetscErrorCode NoteRelease(Contact contact, PetscInt i)
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
-  const PetscInt     levels  = schwarz->levels[contact->row_pair[i]];
-  PetscReal         *force   = contact->release + i * contact->release_room;
+  Schwarz           *schwarz  = (Schwarz *)contact->data;
+  const ContactPair *pair     = &contact->pairs[contact->row_pair[i]];
+  const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
+  PetscReal         *force    = contact->release + i * contact->release_room;
+  PetscInt           n        = 1;
 
   PetscFunctionBegin;
+  if (schwarz->levels[contact->row_pair[i]] > 1) PetscCall(TraceGetSizes(reaction, NULL, &n));
   force[0]                      = contact->saved_active[i] ? PetscMax(contact->saved_force[i], 0) : 0;
-  contact->release_intervals[i] = force[0] > 0 ? levels : 0;
-  force[levels]                 = 0;
-  for (PetscInt k = 1; k < levels; k++) {
-    PetscScalar *reaction;
+  force[n]                      = 0;
+  contact->release_intervals[i] = force[0] > 0 ? n : 0;
+  for (PetscInt k = 1; k < n; k++) {
+    PetscScalar *values;
 
-    PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, k, &reaction));
-    force[k] = k > 1 && force[k - 1] == 0 ? 0 : PetscMax(-NeumannSign(pair) * reaction[i], 0);
-    if (force[k] > 0) contact->release_intervals[i] = levels;
+    PetscCall(TraceGetLevel(reaction, k, &values));
+    force[k] = k > 1 && force[k - 1] == 0 ? 0 : PetscMax(-NeumannSign(pair) * values[i], 0);
+    if (force[k] > 0) contact->release_intervals[i] = n;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
