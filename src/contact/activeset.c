@@ -1,12 +1,21 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
 #include "contactimpl.h"
 
-/* Whether a row that is let go in this controller step has a force at its start, which falls to zero until its end. Bodies of one step
-   take it so, by the force that their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and
-   momentum with it. */
+/* Whether a row has been let go in this controller step, and its force is not zero all at once. Bodies of one step take it so by the force that
+   their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and momentum with it. */
 static PetscBool RowFades(Contact contact, PetscInt i)
 {
-  return (PetscBool)(contact->fades && !contact->active[i] && contact->saved_active[i] && contact->saved_force[i] > 0);
+  return (PetscBool)(contact->fades && !contact->active[i] && contact->release_intervals[i]);
+}
+
+/* Force of a row that has been let go at a part (0 to 1) of the controller step */
+static PetscReal ReleasedForce(Contact contact, PetscInt i, PetscReal part)
+{
+  const PetscInt   n     = contact->release_intervals[i];
+  const PetscReal *force = contact->release + i * contact->release_room, at = part * n;
+  const PetscInt   k = PetscMin((PetscInt)PetscFloorReal(at), n - 1);
+
+  return force[k] + (at - k) * (force[k + 1] - force[k]);
 }
 
 /* Forces of rows that are let go, over the substeps of a body */
@@ -23,7 +32,7 @@ PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
     for (PetscInt i = 0; i < contact->n_rows; i++) {
       const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
 
-      if (RowFades(contact, i)) force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * contact->saved_force[i] * (1 - (PetscReal)level / levels);
+      if (RowFades(contact, i)) force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * ReleasedForce(contact, i, (PetscReal)level / levels);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -85,9 +85,12 @@ struct _p_Contact {
   PetscReal           *force, *gap;             /* at the end of the controller step */
   PetscReal           *saved_force, *saved_gap; /* at its start */
   PetscBool           *active, *saved_active;
-  PetscBool            fades;        /* forces of rows that are let go fall to zero over the controller step */
-  BodyCondition       *conditions;   /* work space */
-  PetscInt            *all_row_pair; /* of all rows, on every rank */
+  PetscBool            fades;             /* rows are not let go all at once: their forces fall to zero in the course of the controller step */
+  PetscInt            *release_intervals; /* per row let go in this controller step: between the times at which its force is told; else 0 */
+  PetscInt             release_room;      /* times that each row has room for */
+  PetscReal           *release;           /* per row: its force at these times [N] */
+  BodyCondition       *conditions;        /* work space */
+  PetscInt            *all_row_pair;      /* of all rows, on every rank */
   int                 *mine_active, *all_active;
   PetscMPIInt          size, *counts, *offsets;
   PetscReal           *speeds;    /* work space, per body */

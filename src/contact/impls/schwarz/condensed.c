@@ -65,6 +65,7 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &n));
     if (n > 1) substeps = PETSC_TRUE;
+    contact->release_room = PetscMax(contact->release_room, n + 1);
   }
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
   schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || shared || schwarz->condense == CONDENSE_ALWAYS));
@@ -72,6 +73,7 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
   contact->fades         = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR);
+  PetscCall(PetscCalloc2(contact->n_rows, &contact->release_intervals, contact->n_rows * contact->release_room, &contact->release));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

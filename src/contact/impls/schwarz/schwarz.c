@@ -64,8 +64,9 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   for (PetscInt i = 0; i < contact->n_rows; i++) mine[i] = begin + schwarz->offset[i];
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->tried, contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
-  PetscCall(PetscCalloc2(contact->n_rows, &schwarz->known, contact->n_rows, &schwarz->interpolated));
+  PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->rounds.tried, contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
+  PetscCall(PetscCalloc2(contact->n_rows, &schwarz->known, contact->n_rows, &schwarz->rounds.kept));
+  PetscCall(PetscCalloc1(contact->n_rows, &schwarz->interpolated));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,8 +180,10 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->jacobian_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
-  PetscCall(PetscFree3(schwarz->tried, schwarz->kept_force, schwarz->previous));
-  PetscCall(PetscFree2(schwarz->known, schwarz->interpolated));
+  PetscCall(PetscFree3(schwarz->rounds.tried, schwarz->kept_force, schwarz->previous));
+  PetscCall(PetscFree2(schwarz->known, schwarz->rounds.kept));
+  PetscCall(PetscFree2(contact->release_intervals, contact->release));
+  PetscCall(PetscFree(schwarz->interpolated));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

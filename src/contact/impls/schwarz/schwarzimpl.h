@@ -75,6 +75,16 @@ typedef struct {
   Vec       last_x, last_f, rest;
 } Secants;
 
+/* The active sets of one controller step */
+typedef struct {
+  PetscBool *tried;    /* those seen, one after the other */
+  PetscInt   n, first; /* how many; those before the first were under another rule */
+  PetscBool  cycled;   /* one has been seen twice */
+  PetscBool  single;   /* one row changes in a round, not all */
+  PetscInt   fewest;   /* wrong rows in any round since */
+  PetscBool *kept;     /* per row: it stays held */
+} Rounds;
+
 typedef struct {
   OuterSolver         outer;
   PetscReal           atol, rtol;
@@ -126,8 +136,7 @@ typedef struct {
   PetscBool           converged;
   PetscReal           damping; /* Aitken: relaxation of the last iteration */
   Vec                 last_residual;
-  PetscBool          *tried; /* active sets seen in this step, one after the other */
-  PetscInt            n_tried;
+  Rounds              rounds;
   PetscReal          *kept_force; /* of the contact solution, during a free trial after it */
 } Schwarz;
 
@@ -167,6 +176,11 @@ static inline ContactConditions SchwarzConditions(const Schwarz *schwarz)
 }
 
 PETSC_INTERN PetscErrorCode ContactStep_Schwarz(Contact);
+PETSC_INTERN PetscErrorCode SchwarzBeginRounds(Contact);
+PETSC_INTERN PetscErrorCode SchwarzBeginRound(Contact);
+PETSC_INTERN PetscErrorCode SchwarzTakeActiveSet(Contact, PetscBool *);
+PETSC_INTERN PetscErrorCode SchwarzUpdateActiveSet(Contact, PetscBool *);
+PETSC_INTERN PetscErrorCode SchwarzBreakCycle(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
 PETSC_INTERN PetscErrorCode SchwarzResampleForce(const Schwarz *, Trace, PetscInt, PetscInt, PetscScalar, Trace);
 PETSC_INTERN PetscReal      SchwarzOffset(Contact, PetscInt, PetscReal);

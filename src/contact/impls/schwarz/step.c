@@ -60,52 +60,6 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the active set is one that has been tried in this step before; `last`: the one before this */
-static PetscErrorCode FindActiveSet(Contact contact, PetscBool *seen, PetscBool *last)
-{
-  Schwarz *schwarz = (Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  *seen = *last = PETSC_FALSE;
-  for (PetscInt k = schwarz->n_tried - 1; k >= 0 && !*seen; k--) {
-    int differs = 0;
-
-    for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->tried[k * contact->n_rows + i] != contact->active[i];
-    PetscCall(ContactOr(contact, &differs));
-    if (differs) continue;
-    *seen = PETSC_TRUE;
-    *last = (PetscBool)(k == schwarz->n_tried - 1);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Nodes that penetrate join, nodes that are pulled leave. While sweeps run on the compliance, the gaps of rows that it does not know are not
-   there yet. */
-static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
-{
-  Schwarz *schwarz = (Schwarz *)contact->data;
-  int      any     = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscBool leaves = (PetscBool)(contact->active[i] && schwarz->recheck && contact->force[i] < 0 && !contact->tied[i]);
-    const PetscBool joins  = (PetscBool)(!contact->active[i] && contact->gap[i] < -contact->tolerance && (!schwarz->responding || schwarz->known[i]));
-
-    if (!leaves && !joins) continue;
-    contact->active[i] = joins;
-    any                = 1;
-  }
-  if (contact->shared.n && any) {
-    /* rows of shared nodes may have been let go again */
-    ContactArrangeShared(contact);
-    any = 0;
-    for (PetscInt i = 0; i < contact->n_rows; i++) any |= contact->active[i] != schwarz->tried[(schwarz->n_tried - 1) * contact->n_rows + i];
-  }
-  PetscCall(ContactOr(contact, &any));
-  *changed = (PetscBool)(any > 0);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Free trial, where no pair is pushed together already; the rows that penetrate at its end become active */
 static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
 {
@@ -114,9 +68,9 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
   PetscFunctionBegin;
   schwarz->responding = PETSC_FALSE;
   PetscCall(ContactIntegrateFree(contact, in_contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || contact->gap[i] < -contact->tolerance);
-  ContactArrangeShared(contact);
-  if (!schwarz->condensed || !*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchwarzUpdateActiveSet(contact, in_contact));
+  if (!schwarz->condensed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetBase(contact->bodies[b]));
   schwarz->have_base = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -124,23 +78,24 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
 
 /* The free trial after all nodes have been let go, being pulled. If it ends in penetration by the same nodes as were held,
    the contact solution is the better of both, and is taken back. */
-static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *final)
+static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *taken_back)
 {
   Schwarz        *schwarz    = (Schwarz *)contact->data;
   const PetscBool responding = schwarz->responding;
-  PetscBool       seen, last;
+  PetscBool       flips;
 
   PetscFunctionBegin;
+  *taken_back = PETSC_FALSE;
+  PetscCall(SchwarzBeginRound(contact));
   if (!responding)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
   PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FindActiveSet(contact, &seen, &last));
-  if (!last) PetscFunctionReturn(PETSC_SUCCESS);
-  contact->counts_made.set_cycles++;
-  *final = PETSC_TRUE;
-  if (responding) PetscFunctionReturn(PETSC_SUCCESS); /* to be found again */
+  PetscCall(SchwarzBreakCycle(contact, &flips));
+  /* on the compliance it is to be found again; where single rows change, others may penetrate */
+  if (!flips || responding || schwarz->rounds.single) PetscFunctionReturn(PETSC_SUCCESS);
+  *taken_back = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
   PetscCall(PetscArraycpy(contact->force, schwarz->kept_force, contact->n_rows));
   PetscCall(ContactComputeGaps(contact));
@@ -162,17 +117,17 @@ static PetscErrorCode Finish(Contact contact, PetscBool *changed)
   if (!*changed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->n_rows; i++)
     if (contact->gap[i] < -contact->tolerance) contact->active[i] = PETSC_TRUE;
-  ContactArrangeShared(contact);
+  PetscCall(SchwarzTakeActiveSet(contact, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ContactStep_Schwarz(Contact contact)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool in_contact, changed, seen, last, final = PETSC_FALSE;
+  PetscBool in_contact, changed, flips, taken_back = PETSC_FALSE;
 
   PetscFunctionBegin;
-  schwarz->n_tried   = 0;
+  PetscCall(SchwarzBeginRounds(contact));
   schwarz->have_base = PETSC_FALSE;
   if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
@@ -181,32 +136,16 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   ContactArrangeShared(contact);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
-  while (in_contact) {
-    PetscCheck(schwarz->n_tried < SCHWARZ_MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", SCHWARZ_MAX_ROUNDS);
-    PetscCall(PetscArraycpy(schwarz->tried + schwarz->n_tried++ * contact->n_rows, contact->active, contact->n_rows));
+  while (in_contact && !taken_back) {
+    PetscCall(SchwarzBeginRound(contact));
     PetscCall(SolveActive(contact));
-    if (final) {
-      PetscCall(Finish(contact, &changed));
-      break;
-    }
-    PetscCall(UpdateActiveSet(contact, &changed));
+    PetscCall(SchwarzUpdateActiveSet(contact, &changed));
     if (!changed) PetscCall(Finish(contact, &changed));
     if (!changed) break;
     contact->counts_made.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-    if (!in_contact) {
-      PetscCall(TrialAfterContact(contact, &in_contact, &final));
-      if (final && !schwarz->condensed) break;
-      if (final) continue;
-    }
-    PetscCall(FindActiveSet(contact, &seen, &last));
-    if (in_contact && seen) {
-      /* the alternation ends with all nodes held that were held in either of the last two sets: no penetration */
-      contact->counts_made.set_cycles++;
-      for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->active[i] || schwarz->tried[(schwarz->n_tried - 1) * contact->n_rows + i]);
-      ContactArrangeShared(contact);
-      final = PETSC_TRUE;
-    }
+    if (in_contact) PetscCall(SchwarzBreakCycle(contact, &flips));
+    else PetscCall(TrialAfterContact(contact, &in_contact, &taken_back));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
