@@ -1,4 +1,4 @@
-"""Draws how deep bodies in two dimensions lie inside each other, at any point of their surfaces, over time: a line for each run.
+"""Draws how deep bodies in two dimensions lie inside each other, at any point of their surfaces, over time: a line for each run, four at most.
 
     python plots/overlap.py fields.h5 [fields.h5 ...] figure.png
 
@@ -16,7 +16,7 @@ from types import SimpleNamespace
 import h5py
 import matplotlib
 import numpy as np
-from impact import COLOURS, NoHistory
+from figures import COLOURS, CannotDraw, command_line
 from matplotlib.figure import Figure
 
 FLOOR = 1e-9  # of an element: what is drawn of frames without overlap
@@ -41,7 +41,7 @@ class Bodies:
 
     def __init__(self, path):
         if not Path(path).is_file():
-            raise NoHistory(f"there is no file {path}")
+            raise CannotDraw(f"there is no file {path}")
         try:
             with h5py.File(path, "r") as file:
                 body, cells = file["mesh/body"][()], file["mesh/cells"][()]
@@ -50,9 +50,9 @@ class Bodies:
                 self.times = file["time"][()]
                 self.frames = [self.reference + file["displacement"][frame][:, :2] for frame in sorted(file["displacement"])]
         except (KeyError, OSError) as error:
-            raise NoHistory(f"{path} has no fields of an Impakt run: {error}") from error
+            raise CannotDraw(f"{path} has no fields of an Impakt run: {error}") from error
         if not flat or cells.ndim != 2 or cells.shape[1] < 3:
-            raise NoHistory(f"{path}: overlaps are measured in two dimensions, and between bodies of one kind of element")
+            raise CannotDraw(f"{path}: overlaps are measured in two dimensions, and between bodies of one kind of element")
         self.outlines = [outline(cells[body == b], self.reference) for b in range(body.max() + 1)]
 
     def size(self):
@@ -116,7 +116,8 @@ def deepest(bodies):
     return depth / bodies.size()
 
 
-def draw(runs, path):
+def draw(*files, path):
+    runs = [(Path(file).stem, Bodies(file)) for file in files[: len(COLOURS)]]
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 9, "lines.linewidth": 1.0, "axes.axisbelow": True})
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
@@ -131,20 +132,5 @@ def draw(runs, path):
     figure.savefig(path, dpi=110)
 
 
-def main(arguments):
-    if not 2 <= len(arguments) <= 1 + len(COLOURS):
-        print(f"usage: python plots/overlap.py fields.h5 [fields.h5 ...] figure.png, {len(COLOURS)} runs at most", file=sys.stderr)
-        return 1
-    try:
-        runs = [(Path(path).stem, Bodies(path)) for path in arguments[:-1]]
-        Path(arguments[-1]).parent.mkdir(parents=True, exist_ok=True)
-        draw(runs, arguments[-1])
-    except (NoHistory, OSError, ValueError) as error:
-        print(f"plots/overlap.py: {error}", file=sys.stderr)
-        return 1
-    print(arguments[-1])
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(command_line("fields.h5 [fields.h5 ...] figure.png", draw))
