@@ -106,11 +106,12 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The active set on every rank */
+/* The active set on every rank: 1; rows that have been let go in this controller step with a force that fades: 2 */
 PetscErrorCode ContactGatherActive(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->mine_active[i] = contact->active[i] ? 1 : 0;
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->mine_active[i] = contact->active[i] ? 1 : RowFades(contact, i) ? 2
+                                                                                                                         : 0;
   PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts, contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

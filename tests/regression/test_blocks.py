@@ -141,3 +141,14 @@ def test_as_in_the_paper(shared_run):
     assert force_change(run) > 3 * force_change(best)  # measured: 0.0130 against 0.0032
     assert run.summary["schwarz"]["mean_contact_steps"] > 5  # measured: 6.0
     assert run.summary["system"]["momentum_error_max"] > 1e-3  # measured: 9.7e-3, by the inertia that internal forces leave out
+
+
+@pytest.mark.parametrize("pairing", ["II", "EE"])
+def test_more_rows_than_the_dense_limit(pairing, shared_run):
+    """Rows leave in larger numbers than matrices are dense for: the same figures, by conjugate gradients and matrices in turn."""
+    runs = [shared_run(f"{joined(BLOCKS, PAIRINGS[pairing])} -schwarz_dense_limit {limit}").summary for limit in (2000, 4)]
+    assert runs[0]["schwarz"]["inner_iterations"] == 0 < runs[1]["schwarz"]["inner_iterations"]
+    for body in ("left", "right"):
+        for energy in ("kinetic", "potential"):
+            first, second = (run["bodies"][body][energy] for run in runs)
+            assert second == pytest.approx(first, rel=1e-8)  # conjugate gradients to 1e-12 of the force; measured 1.4e-13

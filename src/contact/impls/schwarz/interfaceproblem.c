@@ -150,7 +150,7 @@ static PetscErrorCode AssembleChain(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the active rows known to the bodies that they concern */
+/* Makes the active rows, and those whose force fades, known to the bodies that they concern */
 static PetscErrorCode ExtendBodies(Contact contact)
 {
   Schwarz          *schwarz = (Schwarz *)contact->data;
@@ -160,38 +160,39 @@ static PetscErrorCode ExtendBodies(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt n = 0;
 
-    for (PetscInt i = 0; i < problem->n; i++) {
+    for (PetscInt i = 0; i < problem->n_known; i++) {
       const ContactPair *pair = &contact->pairs[contact->all_row_pair[problem->rows[i]]];
 
       if (pair->body[0] == b || pair->body[1] == b) problem->body_rows[n++] = problem->rows[i];
     }
     PetscCall(BodyExtendCompliance(contact->bodies[b], n, problem->body_rows));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) schwarz->known[i] = (PetscBool)(schwarz->known[i] || contact->active[i]);
+  for (PetscInt i = 0; i < contact->n_rows; i++) schwarz->known[i] = (PetscBool)(schwarz->known[i] || contact->mine_active[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Takes the rows that are active now, and makes everything known that it wants to know of the bodies */
 PetscErrorCode SchwarzUpdateInterfaceProblem(Contact contact)
 {
-  Schwarz          *schwarz = (Schwarz *)contact->data;
-  InterfaceProblem *problem = &schwarz->problem;
-  PetscInt          n       = 0;
+  Schwarz          *schwarz  = (Schwarz *)contact->data;
+  InterfaceProblem *problem  = &schwarz->problem;
+  PetscInt          count[3] = {0, 0, 0}, next[3] = {0, 0, 0};
 
   PetscFunctionBegin;
   if (!schwarz->stale) PetscFunctionReturn(PETSC_SUCCESS);
   schwarz->stale = PETSC_FALSE;
   PetscCall(ContactGatherActive(contact));
-  for (PetscInt i = 0; i < contact->n_all_rows; i++) n += contact->all_active[i];
+  for (PetscInt i = 0; i < contact->n_all_rows; i++) count[contact->all_active[i]]++;
   PetscCall(CountLevels(contact, &problem->levels, &problem->chain));
-  problem->n        = n;
+  problem->n        = count[1];
+  problem->n_known  = count[1] + count[2];
   problem->factored = PETSC_FALSE;
-  problem->dense    = (PetscBool)(n * problem->levels <= schwarz->dense_limit);
+  problem->dense    = (PetscBool)(problem->n_known * problem->levels <= schwarz->dense_limit);
   if (!problem->dense) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MakeRoom(problem, n * problem->levels, schwarz->dense_limit));
-  n = 0;
+  PetscCall(MakeRoom(problem, problem->n_known * problem->levels, schwarz->dense_limit));
+  next[2] = count[1];
   for (PetscInt i = 0; i < contact->n_all_rows; i++)
-    if (contact->all_active[i]) problem->rows[n++] = i;
+    if (contact->all_active[i]) problem->rows[next[contact->all_active[i]]++] = i;
   PetscCall(ExtendBodies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

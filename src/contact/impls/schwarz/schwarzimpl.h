@@ -53,6 +53,7 @@ typedef enum {
 /* The linearised contact problem on the active rows, in terms of contact forces: what Newton's method solves */
 typedef struct {
   PetscInt      n, capacity; /* active rows of all ranks; how many unknowns there is room for */
+  PetscInt      n_known;     /* with those whose force fades, which come after them in `rows` */
   PetscInt     *rows, *body_rows;
   PetscInt      levels;               /* times in the controller step at which there are forces */
   PetscBool     chain;                /* no such simple form: the matrix of the whole sweep */
