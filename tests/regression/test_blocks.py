@@ -152,3 +152,10 @@ def test_more_rows_than_the_dense_limit(pairing, shared_run):
         for energy in ("kinetic", "potential"):
             first, second = (run["bodies"][body][energy] for run in runs)
             assert second == pytest.approx(first, rel=1e-8)  # conjugate gradients to 1e-12 of the force; measured 1.4e-13
+
+
+@pytest.mark.parametrize("condense", [0, 1])
+def test_plain_alternation_says_that_it_diverges(condense, impakt):
+    """The alternation of equal massless sides does not converge without relaxation, and no step is taken that has not: on the compliance either."""
+    run = impakt(f"{BLOCKS} -schwarz_snes_type nrichardson -schwarz_condense {condense} -time_end 1e-5", expect_failure=True)
+    assert "did not converge" in run.stderr

@@ -136,7 +136,8 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
     PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
-  if (schwarz->convergence == CONVERGENCE_AUTO) schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED ? CONVERGENCE_POSITION : CONVERGENCE_MISMATCH;
+  /* on the compliance alone bodies stay where they are from sweep to sweep, whatever the rows do */
+  if (schwarz->convergence == CONVERGENCE_AUTO) schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED && !schwarz->condensed ? CONVERGENCE_POSITION : CONVERGENCE_MISMATCH;
   PetscCall(SetUpNewton(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

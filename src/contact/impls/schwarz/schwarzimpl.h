@@ -6,7 +6,7 @@
 
 /* What "change of position" is compared with the tolerances */
 typedef enum {
-  CONVERGENCE_AUTO,             /* the first for nrichardson with fixed relaxation, the last otherwise */
+  CONVERGENCE_AUTO,             /* the first for nrichardson with fixed relaxation and sweeps of whole bodies, the last otherwise */
   CONVERGENCE_POSITION,         /* of all nodes of every body, from one sweep to the next (the paper's) */
   CONVERGENCE_CONTACT_POSITION, /* of the contact nodes of every body, from one sweep to the next */
   CONVERGENCE_MISMATCH          /* of the contact nodes, that one more plain sweep would bring: |x - G(x)| */
