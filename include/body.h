@@ -131,6 +131,7 @@ PETSC_EXTERN PetscErrorCode BodyGetStableStep(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetMass(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetSolution(Body, Vec *, Vec *, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);
+PETSC_EXTERN PetscErrorCode BodyGetDimension(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyIsExplicit(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsStatic(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsRedistributed(Body, PetscBool *);

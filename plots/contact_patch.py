@@ -6,13 +6,13 @@ For two blocks, one on the other along z, whose contact pressure should be unifo
 """
 
 import sys
-from pathlib import Path
 
 import numpy as np
+from figures import CannotDraw, command_line
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-from render import CannotDraw, Fields
+from render import Fields
 
 SCALE = 100  # of the displacements, in the picture of the blocks
 FLOOR, CEILING = 1e-16, 1e-8  # of the errors that are told apart
@@ -54,7 +54,8 @@ def draw_errors(axes, fields, block, name, colour):
     return dots
 
 
-def draw(fields, path):
+def draw(file, path):
+    fields = Fields(file)
     body = fields.heavy["mesh/body"]
     names = body.attrs["names"].split(",")
     if len(names) != 2 or "contact_pressure" not in fields.datasets[0]:
@@ -70,19 +71,5 @@ def draw(fields, path):
     figure.savefig(path, dpi=95)
 
 
-def main(arguments):
-    if len(arguments) != 2:
-        print("usage: python plots/contact_patch.py fields.xdmf picture.png", file=sys.stderr)
-        return 1
-    try:
-        Path(arguments[1]).parent.mkdir(parents=True, exist_ok=True)
-        draw(Fields(arguments[0]), arguments[1])
-    except (CannotDraw, OSError, ValueError) as error:
-        print(f"plots/contact_patch.py: {error}", file=sys.stderr)
-        return 1
-    print(arguments[1])
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(command_line("fields.xdmf picture.png", draw))

@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import matplotlib
 import numpy as np
-from impact import BLUE, DASHED, NoHistory, scale
+from figures import BLUE, DASHED, CannotDraw, command_line, history_file, scale
 from matplotlib.figure import Figure
 
 PARTS = {"full": 1, "half": 2, "quarter": 4}
@@ -27,12 +27,12 @@ class Ball:
         def option(key, default=None):
             value = options.get(f"-{name}_{key}", default)
             if value is None:
-                raise NoHistory(f"the run has no option -{name}_{key}: no disc or ball from options")
+                raise CannotDraw(f"the run has no option -{name}_{key}: no disc or ball from options")
             return value
 
         self.name, self.dim = name, int(option("dm_plex_dim"))
         if option("dm_plex_shape", "box") != "ball":
-            raise NoHistory(f"body {name} is no disc or ball from options")
+            raise CannotDraw(f"body {name} is no disc or ball from options")
         self.parts = PARTS[option("ball_part", "full")]
         self.radius = float(option("ball_radius", "1"))
         self.centre = np.array([float(x) for x in option("ball_centre", "0,0,0").split(",")])[: self.dim]
@@ -69,33 +69,25 @@ def hertz_pressure(distance):
 
 def read(path):
     """The ball, and what is drawn of it: loads and momenta are those of the whole ball."""
-    path = Path(path)
-    if not path.is_file():
-        raise NoHistory(f"there is no file {path}")
-    try:
-        with h5py.File(path, "r") as file:
-            options = {name: str(value) for name, value in file.attrs.items()}
-            ball = Ball(options, next(iter(file["body"])))
-            pair = file["contact"][next(iter(file["contact"]))]
-            body = file["body"][ball.name]
-            series = {"force": ball.parts * pair["force"][()], "area": ball.parts * pair["area"][()], "active": pair["active"][()]}
-            series |= {"time": file["time"][()], "velocity": body["mean_velocity"][:, -1], "momentum": ball.parts * body["momentum"][:, ball.dim - 1]}
-    except (KeyError, StopIteration) as error:
-        raise NoHistory(f"{path} is not the history of an Impakt run with contact: {error}") from error
-    except OSError as error:
-        raise NoHistory(f"{path} cannot be read as HDF5: {error}") from error
+    with history_file(path) as file:
+        options = {name: str(value) for name, value in file.attrs.items()}
+        ball = Ball(options, next(iter(file["body"])))
+        pair = file["contact"][next(iter(file["contact"]))]
+        body = file["body"][ball.name]
+        series = {"force": ball.parts * pair["force"][()], "area": ball.parts * pair["area"][()], "active": pair["active"][()]}
+        series |= {"time": file["time"][()], "velocity": body["mean_velocity"][:, -1], "momentum": ball.parts * body["momentum"][:, ball.dim - 1]}
     if ball.static:
-        series |= pressures(ball, find_fields(path, options))
+        series |= pressures(ball, find_fields(Path(path), options))
     return ball, series
 
 
 def find_fields(history, options):
     if "-output_fields" not in options:
-        raise NoHistory(f"the run of {history} wrote no fields: give it -output_fields")
+        raise CannotDraw(f"the run of {history} wrote no fields: give it -output_fields")
     name = Path(options["-output_fields"])
     found = [path for path in (history.parent / name, name) if path.is_file()]  # the run may have been in another folder
     if not found:
-        raise NoHistory(f"the fields of {history}, {name}, are not there")
+        raise CannotDraw(f"the fields of {history}, {name}, are not there")
     return found[0]
 
 
@@ -142,7 +134,8 @@ def draw_force(axes, ball, series):
     axes.set_ylabel(f"contact force [{unit}]")
 
 
-def draw(runs, path):
+def draw(*files, path):
+    runs = [read(file) for file in files]
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 9, "lines.linewidth": 1.2, "axes.axisbelow": True})
     figure = Figure(figsize=(4.2 * len(runs), 3.4), layout="constrained")
     for axes, (ball, series) in zip(figure.subplots(1, len(runs), squeeze=False)[0], runs, strict=True):
@@ -153,20 +146,5 @@ def draw(runs, path):
     figure.savefig(path, dpi=110)
 
 
-def main(arguments):
-    if len(arguments) < 2:
-        print("usage: python plots/hertz.py history.h5 [history.h5 ...] figure.png", file=sys.stderr)
-        return 1
-    try:
-        runs = [read(path) for path in arguments[:-1]]
-        Path(arguments[-1]).parent.mkdir(parents=True, exist_ok=True)
-        draw(runs, arguments[-1])
-    except (NoHistory, OSError, ValueError) as error:
-        print(f"plots/hertz.py: {error}", file=sys.stderr)
-        return 1
-    print(arguments[-1])
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(command_line("history.h5 [history.h5 ...] figure.png", draw))

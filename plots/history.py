@@ -6,12 +6,10 @@ Works for any number of bodies and pairs; nothing is compared with exact solutio
 """
 
 import sys
-from pathlib import Path
 
-import h5py
 import matplotlib
 import numpy as np
-from impact import COLOURS, GREEN, NoHistory, scale
+from figures import COLOURS, GREEN, command_line, history_file, scale
 from matplotlib.figure import Figure
 
 MOST_NAMED = 8  # pairs; more would fill the figure with their names
@@ -19,17 +17,10 @@ MOST_NAMED = 8  # pairs; more would fill the figure with their names
 
 def read(path):
     """Time, and of each pair and each body what is drawn."""
-    if not Path(path).is_file():
-        raise NoHistory(f"there is no file {path}")
-    try:
-        with h5py.File(path, "r") as file:
-            pairs = {name: {key: pair[key][()] for key in ("force_vector", "gap", "active")} for name, pair in file["contact"].items()}
-            energies = {name: {key: body[key][()] for key in ("kinetic", "potential", "external_work")} for name, body in file["body"].items()}
-            return {"time": file["time"][()], "pairs": pairs, "bodies": energies}
-    except KeyError as error:
-        raise NoHistory(f"{path} is not the history of an Impakt run with contact: {error}") from error
-    except OSError as error:
-        raise NoHistory(f"{path} cannot be read as HDF5: {error}") from error
+    with history_file(path) as file:
+        pairs = {name: {key: pair[key][()] for key in ("force_vector", "gap", "active")} for name, pair in file["contact"].items()}
+        energies = {name: {key: body[key][()] for key in ("kinetic", "potential", "external_work")} for name, body in file["body"].items()}
+        return {"time": file["time"][()], "pairs": pairs, "bodies": energies}
 
 
 def energy_error(bodies):
@@ -51,7 +42,8 @@ def draw_pairs(axes, time, series, title, quantity, unit):
     axes.set_ylabel(f"{quantity} [{unit}]")
 
 
-def draw(history, path):
+def draw(file, path):
+    history = read(file)
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.2, "axes.axisbelow": True})
     span = np.ptp(history["time"])
     factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
@@ -76,20 +68,5 @@ def draw(history, path):
     figure.savefig(path, dpi=150)
 
 
-def main(arguments):
-    if len(arguments) != 2:
-        print("usage: python plots/history.py history.h5 figure.png", file=sys.stderr)
-        return 1
-    try:
-        history = read(arguments[0])
-        Path(arguments[1]).parent.mkdir(parents=True, exist_ok=True)
-        draw(history, arguments[1])
-    except (NoHistory, OSError, ValueError) as error:
-        print(f"plots/history.py: {error}", file=sys.stderr)
-        return 1
-    print(arguments[1])
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(command_line("history.h5 figure.png", draw))

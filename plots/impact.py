@@ -7,56 +7,39 @@ the file.
 """
 
 import sys
-from pathlib import Path
 
-import h5py
 import matplotlib
 import numpy as np
 from characteristics import Impact
+from figures import (
+    BLUE,
+    COLOURS,
+    DASHED,
+    GREEN,
+    ORANGE,
+    command_line,
+    history_file,
+    scale,
+)
 from matplotlib.figure import Figure
-
-# Okabe and Ito's colours, told apart with any colour vision
-BLUE, ORANGE, GREEN, PURPLE, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
-DASHED = {"color": BLACK, "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 3}
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
-
-
-class NoHistory(Exception):
-    """The file is not what it should be; the message says why."""
-
-
-def scale(largest, unit):
-    """A factor and a unit in which `largest` is a number from 1 to 1000."""
-    for size, prefix in PREFIXES:
-        if largest >= size:
-            return 1 / size, prefix + unit
-    return 1.0, unit
 
 
 def read(path):
     """All that is drawn, from the history file."""
-    if not Path(path).is_file():
-        raise NoHistory(f"there is no file {path}")
-    try:
-        with h5py.File(path, "r") as file:
-            pairs = list(file["contact"])
-            options = {name: str(value) for name, value in file.attrs.items()}
-            first = options.get("-contact_pairs", "").split(",")[0]
-            pairs.sort(key=lambda name: name != first)
-            names = bodies_of(pairs[0], list(file["body"]))
-            return {
-                "options": options,
-                "time": file["time"][()],
-                "sweeps": file["schwarz/iterations"][()],
-                "forces": {name: file[f"contact/{name}/force"][()] for name in pairs},
-                "pair": names,
-                "bodies": {name: {key: data[()] for key, data in body.items()} for name, body in file["body"].items()},
-            }
-    except (KeyError, IndexError) as error:
-        raise NoHistory(f"{path} is not the history of an Impakt run with contact: {error}") from error
-    except OSError as error:
-        raise NoHistory(f"{path} cannot be read as HDF5: {error}") from error
+    with history_file(path) as file:
+        pairs = list(file["contact"])
+        options = {name: str(value) for name, value in file.attrs.items()}
+        first = options.get("-contact_pairs", "").split(",")[0]
+        pairs.sort(key=lambda name: name != first)
+        names = bodies_of(pairs[0], list(file["body"]))
+        return {
+            "options": options,
+            "time": file["time"][()],
+            "sweeps": file["schwarz/iterations"][()],
+            "forces": {name: file[f"contact/{name}/force"][()] for name in pairs},
+            "pair": names,
+            "bodies": {name: {key: data[()] for key, data in body.items()} for name, body in file["body"].items()},
+        }
 
 
 def bodies_of(pair, names):
@@ -174,7 +157,8 @@ def draw_sweeps(axes, history, time):
     axes.set_ylabel("sweeps [1]")
 
 
-def draw(history, path):
+def draw(file, path):
+    history = read(file)
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.4, "axes.axisbelow": True})
     axis = contact_axis(history)
     exact = exact_solution(history, axis)
@@ -206,20 +190,5 @@ def draw(history, path):
     figure.savefig(path, dpi=150)
 
 
-def main(arguments):
-    if len(arguments) != 2:
-        print("usage: python plots/impact.py history.h5 figure.png", file=sys.stderr)
-        return 1
-    try:
-        history = read(arguments[0])
-        Path(arguments[1]).parent.mkdir(parents=True, exist_ok=True)
-        draw(history, arguments[1])
-    except (NoHistory, OSError, ValueError) as error:
-        print(f"plots/impact.py: {error}", file=sys.stderr)
-        return 1
-    print(arguments[1])
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(command_line("history.h5 figure.png", draw))

@@ -18,7 +18,8 @@ from xml.etree import ElementTree
 
 import h5py
 import numpy as np
-from impact import scale as unit_scale
+from figures import CannotDraw
+from figures import scale as unit_scale
 from PIL import Image
 
 if not os.environ.get("DISPLAY") and ctypes.util.find_library("OSMesa"):
@@ -30,10 +31,6 @@ NAMES = {"von_mises": "von Mises stress", "contact_force": "contact force", "con
 AXES = "xyz"
 VIEWS = {"iso": ((-1, -1.5, 1), (0, 0, 1)), "xy": ((0, 0, 1), (0, 1, 0)), "xz": ((0, -1, 0), (0, 0, 1)), "yz": ((1, 0, 0), (0, 0, 1))}
 MOST_EDGES = 20_000  # cells with their edges drawn; in finer meshes there would be nothing but edges
-
-
-class CannotDraw(Exception):
-    """The message says why."""
 
 
 class Fields:

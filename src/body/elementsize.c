@@ -1,33 +1,52 @@
 /* How large the elements of a body are. */
 #include "bodyimpl.h"
 
+/* Measure of all cells (length, area or volume), and their number, on all ranks together */
+static PetscErrorCode SumCells(Body body, PetscReal sums[2])
+{
+  PetscInt cstart, cend;
+
+  PetscFunctionBegin;
+  sums[0] = 0;
+  PetscCall(DMPlexGetHeightStratum(body->dm, 0, &cstart, &cend));
+  for (PetscInt cell = cstart; cell < cend; cell++) {
+    PetscReal measure;
+
+    PetscCall(DMPlexComputeCellGeometryFVM(body->dm, cell, &measure, NULL, NULL));
+    sums[0] += measure;
+  }
+  sums[1] = cend - cstart;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyGetElementSize - edge length of the elements, from their mean volume
 
   Collective
 
   Input Parameter:
-. body - the `Body`, set up
+. body - the `Body`, with its mesh
 
   Output Parameter:
 . size - edge of the line, square or cube with the mean volume of the elements; of simplices, of that which holds 2 or 6 of them [m]
 
   Level: developer
 
-.seealso: `Body`, `BodyGetMass()`
+.seealso: `Body`, `BodyGetDM()`
 @*/
 PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 {
-  const PetscBool simplex = (PetscBool)(body->element->nodes == body->dim + 1);
-  PetscReal       density, volume;
-  PetscInt        count = body->element->count;
+  PetscReal sums[2];
+  PetscBool simplex;
+  PetscInt  dim;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(MaterialGetDensity(body->material, &density));
-  volume = body->total_mass / (density * body->element->cross_section * count);
-  if (simplex) volume *= body->dim == 3 ? 6 : body->dim;
-  *size = PetscPowReal(volume, 1.0 / body->dim);
+  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(DMPlexIsSimplex(body->dm, &simplex));
+  PetscCall(SumCells(body, sums));
+  if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
+  *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* The class: creation, options, step, destruction. */
 #include "contactimpl.h"
+#include <sys/names.h>
 
 PetscClassId  CONTACT_CLASSID = 0;
 PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
@@ -205,16 +206,16 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
-  char      type[64] = CONTACT_SCHWARZ, *pairs[64];
-  PetscInt  n        = 64;
-  PetscBool set, none = PETSC_FALSE, all = PETSC_FALSE;
+  char           type[64] = CONTACT_SCHWARZ, **pairs;
+  PetscInt       n;
+  PetscBool      set, none = PETSC_FALSE, all = PETSC_FALSE;
+  PetscErrorCode error = PETSC_SUCCESS;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   contact->tolerance = PETSC_DEFAULT;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
-  PetscCall(PetscOptionsStringArray("-contact_pairs", "Pairs of bodies, Dirichlet side first", "ContactAddPair", pairs, &n, &set));
   PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetFromOptions", contact->tolerance, &contact->tolerance, NULL));
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations, (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
@@ -225,15 +226,12 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscOptionsEnd();
   PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound, (double)contact->angle_bound);
   PetscCall(ContactReadObstacles(contact));
-  PetscCheck(!set || n < 64, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs takes 63 pairs at most; for more say auto, all with all");
+  PetscCall(NamesRead(((PetscObject)contact)->prefix, "-contact_pairs", &n, &pairs, &set));
   if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "none", &none));
   if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "auto", &all));
-  if (set) {
-    for (PetscInt p = 0; p < n; p++) {
-      if (!none && !all) PetscCall(ContactAddPair(contact, pairs[p]));
-      PetscCall(PetscFree(pairs[p]));
-    }
-  }
+  for (PetscInt p = 0; p < n && !none && !all && !error; p++) error = ContactAddPair(contact, pairs[p]);
+  PetscCall(NamesDestroy(n, &pairs));
+  PetscCall(error);
   if (all || (!set && (contact->n_bodies == 2 || (contact->n_bodies == 1 && contact->n_obstacles)))) PetscCall(ContactAddAllPairs(contact));
   PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none", contact->n_bodies);
   PetscCall(ContactSetType(contact, type));

@@ -147,12 +147,10 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   const PetscScalar *carried[N_CARRIED];
   Vec               *nodes = fields->nodes + N_CARRIED * body;
   PetscInt           dim, n;
-  DM                 dm;
 
   PetscFunctionBegin;
   PetscCheck(body >= 0 && body < contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "There is no body %" PetscInt_FMT "; there are %" PetscInt_FMT, body, contact->n_bodies);
-  PetscCall(BodyGetDM(contact->bodies[body], &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(VecGetLocalSize(nodes[0], &n));
   for (Carried k = 0; k < N_CARRIED; k++) {
     PetscCall(Carry(fields, body, k));

@@ -208,12 +208,10 @@ PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal pos
   Vec                positions, displacements, velocities;
   PetscReal          sums[6] = {0};
   PetscInt           dim;
-  DM                 dm;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCall(BodyGetDM(contact->bodies[body], &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
   PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
   PetscCall(VecGetArrayRead(positions, &x));

@@ -1,5 +1,6 @@
 /* Contact pairs: from their names to surfaces of bodies, and which side takes displacements. */
 #include "contactimpl.h"
+#include <sys/names.h>
 
 /* One side of a pair; the second may be an obstacle, for which the body is one past the last */
 static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)
@@ -84,50 +85,35 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rigid obstacles, by the options */
-PetscErrorCode ContactReadObstacles(Contact contact)
+static PetscErrorCode AddObstacle(Contact contact, const char name[])
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)contact);
-  char    *names[64];
-  PetscInt n = 64;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-obstacles", names, &n, NULL));
-  PetscCall(PetscMalloc1(n, &contact->obstacles));
-  for (PetscInt o = 0; o < n; o++) {
-    for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      PetscBool same;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool same;
 
-      PetscCall(PetscStrcmp(names[o], ((PetscObject)contact->bodies[b])->name, &same));
-      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", names[o]);
-    }
-    PetscCall(ObstacleCreateFromOptions(comm, names[o], &contact->obstacles[contact->n_obstacles]));
-    contact->n_obstacles++;
-    PetscCall(PetscFree(names[o]));
+    PetscCall(PetscStrcmp(name, ((PetscObject)contact->bodies[b])->name, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
   }
+  PetscCall(ObstacleCreateFromOptions(comm, name, &contact->obstacles[contact->n_obstacles]));
+  contact->n_obstacles++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean edge length of a body's elements [m] */
-static PetscErrorCode GetElementSize(Body body, PetscReal *size)
+/* Rigid obstacles, by the options */
+PetscErrorCode ContactReadObstacles(Contact contact)
 {
-  PetscReal sums[2] = {0, 0};
-  PetscInt  cstart, cend, dim;
-  DM        dm;
+  PetscErrorCode error = PETSC_SUCCESS;
+  char         **names;
+  PetscInt       n;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cstart, &cend));
-  for (PetscInt cell = cstart; cell < cend; cell++) {
-    PetscReal volume;
-
-    PetscCall(DMPlexComputeCellGeometryFVM(dm, cell, &volume, NULL, NULL));
-    sums[0] += volume;
-  }
-  sums[1] = cend - cstart;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  *size = PetscPowReal(sums[0] / sums[1], 1. / dim);
+  PetscCall(NamesRead(NULL, "-obstacles", &n, &names, NULL));
+  PetscCall(PetscMalloc1(n, &contact->obstacles));
+  for (PetscInt o = 0; o < n && !error; o++) error = AddObstacle(contact, names[o]);
+  PetscCall(NamesDestroy(n, &names));
+  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,7 +133,7 @@ static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
   PetscCall(PetscMalloc1(contact->n_bodies, &size));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
-    PetscCall(GetElementSize(contact->bodies[b], &size[b]));
+    PetscCall(BodyGetElementSize(contact->bodies[b], &size[b]));
     preferences[b].size = -1;
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -195,19 +181,10 @@ static PetscErrorCode GetMiddle(Body body, PetscReal middle[3])
 static PetscErrorCode IsHidden(Contact contact, PetscInt a, PetscInt b, Obstacle obstacle, PetscBool *hidden)
 {
   PetscReal first[3], second[3], normal[3], distance = 0;
-  PetscInt  dim = 1;
 
   PetscFunctionBegin;
   *hidden = PETSC_FALSE;
-  for (PetscInt c = 0; c < contact->n_bodies; c++) {
-    PetscInt of_body;
-    DM       dm;
-
-    PetscCall(BodyGetDM(contact->bodies[c], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &of_body));
-    dim = PetscMax(dim, of_body);
-  }
-  if (dim > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->dim > 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetMiddle(contact->bodies[a], first));
   if (obstacle) PetscCall(ObstacleGetGap(obstacle, first, &distance, normal));
   else PetscCall(GetMiddle(contact->bodies[b], second));
@@ -224,6 +201,19 @@ static PetscErrorCode IsHidden(Contact contact, PetscInt a, PetscInt b, Obstacle
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The largest dimension of a body: set-up refuses pairs of others */
+PetscErrorCode ContactFindDimension(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt dim;
+
+    PetscCall(BodyGetDimension(contact->bodies[b], &dim));
+    contact->dim = PetscMax(contact->dim, dim);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All bodies with each other and with all obstacles */
 PetscErrorCode ContactAddAllPairs(Contact contact)
 {
@@ -231,6 +221,7 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
   PetscBool   hidden;
 
   PetscFunctionBegin;
+  PetscCall(ContactFindDimension(contact));
   PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
   PetscCall(GetPreferences(contact, preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)

@@ -74,11 +74,9 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   const PetscScalar *reference, *displacement;
   Vec                positions, u;
   PetscInt           dim;
-  DM                 dm;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetDimension(body, &dim));
   PetscCall(BodyGetReferencePositions(body, &positions));
   PetscCall(BodyGetSolution(body, &u, NULL, NULL));
   PetscCall(VecGetArrayRead(positions, &reference));

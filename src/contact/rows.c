@@ -247,20 +247,6 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GetDimension(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscInt dim;
-    DM       dm;
-
-    PetscCall(BodyGetDM(contact->bodies[b], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
-    contact->dim = PetscMax(contact->dim, dim);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Surfaces, transfers and rows of all pairs */
 PetscErrorCode ContactSetUpPairs(Contact contact)
 {
@@ -269,7 +255,7 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc6(contact->n_bodies + 1, &contact->traces, contact->n_bodies, &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs, contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
   PetscCall(ContactOrderBodies(contact));
-  PetscCall(GetDimension(contact));
+  PetscCall(ContactFindDimension(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CreateTransfer(contact, &contact->pairs[p], &extent));
     PetscCall(MarkContactNodes(contact, &contact->pairs[p]));

@@ -1,5 +1,6 @@
 /* The class and its time loop. */
 #include "controllerimpl.h"
+#include <sys/names.h>
 #include <sys/resource.h>
 
 PetscClassId CONTROLLER_CLASSID = 0;
@@ -45,19 +46,17 @@ PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
 static PetscErrorCode CreateBodies(Controller controller)
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)controller);
-  char     *names[64];
-  PetscInt  n = 64;
+  char    **names;
+  PetscInt  n;
   PetscBool set, same;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-bodies", names, &n, &set));
+  PetscCall(NamesRead(NULL, "-bodies", &n, &names, &set));
   PetscCheck(set && n, comm, PETSC_ERR_USER_INPUT, "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
   controller->n_bodies = n;
   PetscCall(PetscCalloc1(n, &controller->bodies));
-  for (PetscInt b = 0; b < n; b++) {
-    PetscCall(BodyCreate(comm, names[b], &controller->bodies[b]));
-    PetscCall(PetscFree(names[b]));
-  }
+  for (PetscInt b = 0; b < n; b++) PetscCall(BodyCreate(comm, names[b], &controller->bodies[b]));
+  PetscCall(NamesDestroy(n, &names));
   for (PetscInt b = 0; b < n; b++) {
     for (PetscInt other = 0; other < b; other++) {
       PetscCall(PetscStrcmp(((PetscObject)controller->bodies[b])->name, ((PetscObject)controller->bodies[other])->name, &same));

@@ -28,7 +28,6 @@ static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal nor
 static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar, BodyMeasures *measures)
 {
   Material  material;
-  DM        dm;
   PetscInt  dim;
   Vec       reference, displacement, positions;
   PetscReal lower, upper;
@@ -42,8 +41,7 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscCall(MaterialGetDensity(material, &bar->density));
   PetscCall(MaterialGetUniaxialModulus(material, &bar->modulus));
   PetscCall(BodyGetMass(body, &bar->mass));
-  PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetDimension(body, &dim));
   PetscCall(BodyGetReferencePositions(body, &reference));
   PetscCall(GetExtent(reference, dim, normal, &lower, &upper));
   bar->length = upper - lower;

@@ -36,13 +36,11 @@ PetscErrorCode DeviationCreate(Controller controller, Deviation *deviation)
     const char *prefix;
     PetscBool   set;
     PetscInt    dim;
-    DM          dm;
 
     PetscCall(PetscObjectGetOptionsPrefix((PetscObject)d->bodies[b], &prefix));
     PetscCall(PetscOptionsGetString(NULL, prefix, "-exact_displacement", text, sizeof(text), &set));
     if (!set) continue;
-    PetscCall(BodyGetDM(d->bodies[b], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(BodyGetDimension(d->bodies[b], &dim));
     PetscCall(PetscSNPrintf(option, sizeof(option), "-%sexact_displacement", prefix));
     PetscCall(ExpressionListCreate(comm, option, text, dim, PETSC_FALSE, d->exact + 3 * b));
   }

@@ -206,10 +206,8 @@ static PetscErrorCode WriteNodes(Fields fields, FieldsKind kind)
     const PetscScalar *values;
     PetscInt           dim;
     Vec                u, v;
-    DM                 dm;
 
-    PetscCall(BodyGetDM(mesh->bodies[b], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(BodyGetDimension(mesh->bodies[b], &dim));
     PetscCall(BodyGetSolution(mesh->bodies[b], &u, &v, NULL));
     PetscCall(VecGetArrayRead(kind == FIELDS_VELOCITY ? v : u, &values));
     for (PetscInt i = 0; i < (PetscInt)mesh->nodes.count[b]; i++)

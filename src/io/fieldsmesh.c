@@ -71,7 +71,6 @@ static PetscErrorCode CountRows(FieldsMesh *mesh)
     MPI_Comm       comm = PetscObjectComm((PetscObject)mesh->bodies[b]);
     DMPolytopeType type;
     PetscInt       n_cells, cell_nodes, *cells, n_nodes, dim;
-    DM             dm;
     Vec            positions;
 
     PetscCall(BodyGetCells(mesh->bodies[b], &type, &n_cells, &cell_nodes, &cells));
@@ -81,8 +80,7 @@ static PetscErrorCode CountRows(FieldsMesh *mesh)
     if (shape != first) mesh->mixed = PETSC_TRUE;
     mesh->cell_nodes = cell_nodes;
     PetscCall(RowsAdd(comm, b, n_cells, &mesh->cells));
-    PetscCall(BodyGetDM(mesh->bodies[b], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(BodyGetDimension(mesh->bodies[b], &dim));
     PetscCall(BodyGetReferencePositions(mesh->bodies[b], &positions));
     PetscCall(VecGetLocalSize(positions, &n_nodes));
     PetscCall(RowsAdd(comm, b, n_nodes / dim, &mesh->nodes));
@@ -155,7 +153,6 @@ PetscErrorCode FieldsMeshGetTopology(const FieldsMesh *mesh, int entries[])
     DMPolytopeType type;
     const Shape   *shape;
     PetscInt       n_cells, cell_nodes, *cells, dim, size;
-    DM             dm;
     Vec            positions;
 
     PetscCall(BodyGetCells(mesh->bodies[b], &type, &n_cells, &cell_nodes, &cells));
@@ -166,8 +163,7 @@ PetscErrorCode FieldsMeshGetTopology(const FieldsMesh *mesh, int entries[])
       for (PetscInt i = 0; i < cell_nodes; i++) *entries++ = (int)first + (int)cells[c * cell_nodes + i];
     }
     PetscCall(PetscFree(cells));
-    PetscCall(BodyGetDM(mesh->bodies[b], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(BodyGetDimension(mesh->bodies[b], &dim));
     PetscCall(BodyGetReferencePositions(mesh->bodies[b], &positions));
     PetscCall(VecGetSize(positions, &size));
     first += (hsize_t)(size / dim);
@@ -192,11 +188,9 @@ PetscErrorCode FieldsMeshGetNodes(const FieldsMesh *mesh, PetscReal x[])
   for (PetscInt b = 0; b < mesh->n_bodies; b++) {
     const PetscScalar *values;
     PetscInt           dim;
-    DM                 dm;
     Vec                positions;
 
-    PetscCall(BodyGetDM(mesh->bodies[b], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(BodyGetDimension(mesh->bodies[b], &dim));
     PetscCall(BodyGetReferencePositions(mesh->bodies[b], &positions));
     PetscCall(VecGetArrayRead(positions, &values));
     for (PetscInt i = 0; i < (PetscInt)mesh->nodes.count[b]; i++)

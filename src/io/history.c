@@ -50,7 +50,6 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   const char *name;
   Contact     contact;
   PetscInt    n_pairs;
-  DM          dm;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, &history->n_bodies, &bodies));
@@ -74,8 +73,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscInt *dim = &history->dims[i];
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
-    PetscCall(BodyGetDM(bodies[i], &dm));
-    PetscCall(DMGetCoordinateDim(dm, dim));
+    PetscCall(BodyGetDimension(bodies[i], dim));
     PetscCall(AddSeries(history, "/body/", name, "kinetic", "J", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/body/", name, "potential", "J", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/body/", name, "contact_position", "m", *dim, PETSC_FALSE));

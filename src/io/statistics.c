@@ -22,9 +22,26 @@ struct _n_Statistics {
   PetscReal         momentum[3];               /* of the system at the start [kg m/s] */
   PetscReal         momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
   PetscReal         angular[3], angular_scale; /* the same of angular momenta about the origin [kg m^2/s] */
+  PetscReal         arm;                       /* distance of the farthest corner of a body's bounding box from the origin [m] */
   PetscInt          n_series, capacity;
   PetscReal        *series; /* from first contact on: time, and for each pair force and nodes in contact */
 };
+
+/* Distance of the farthest corner of a bounding box from the origin [m] */
+static PetscErrorCode GetArm(Body body, PetscReal *arm)
+{
+  PetscReal lower[3], upper[3], squares = 0;
+  PetscInt  dim;
+  DM        dm;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDM(body, &dm));
+  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(DMGetBoundingBox(dm, lower, upper));
+  for (PetscInt d = 0; d < dim; d++) squares += PetscSqr(PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
+  *arm = PetscSqrtReal(squares);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static void ContactStatisticsInitialize(ContactStatistics *contact)
 {
@@ -59,7 +76,13 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
   PetscCall(PetscCalloc3(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change));
-  for (PetscInt i = 0; i < s->results.n_bodies; i++) s->results.bodies[i].displacement_error = NAN;
+  for (PetscInt i = 0; i < s->results.n_bodies; i++) {
+    PetscReal arm = 0;
+
+    s->results.bodies[i].displacement_error = NAN;
+    PetscCall(GetArm(bodies[i], &arm));
+    s->arm = PetscMax(s->arm, arm);
+  }
   ContactStatisticsInitialize(&s->results.contact);
   for (PetscInt i = 0; i < s->results.n_pairs; i++) ContactStatisticsInitialize(&s->results.pairs[i]);
   s->capacity = 1024;
@@ -100,7 +123,7 @@ static PetscReal Relative(PetscReal value, PetscReal scale)
   return scale != 0 ? value / PetscAbsReal(scale) : value;
 }
 
-/* What an energy that was `start` at first is compared with: that, or, of what starts at rest, the larger `other` */
+/* What an energy or angular momentum that was `start` at first is compared with: that, or, where it began with nothing but round-off, `other` */
 static PetscReal Scale(PetscReal start, PetscReal other)
 {
   return start > 1e-9 * other ? start : other;
@@ -146,7 +169,7 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->energy_error_max   = Relative(s->system_change[1], scale);
   /* loads change momenta, and there is nothing to compare them with */
   r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(momentum), s->momentum_scale));
-  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(angular), s->angular_scale));
+  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(angular), Scale(s->angular_scale, s->arm * s->momentum_scale)));
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 

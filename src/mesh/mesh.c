@@ -1,5 +1,6 @@
 /* The mesh of a body from its options. */
 #include "meshimpl.h"
+#include <sys/names.h>
 #include <sys/stat.h>
 
 typedef PetscErrorCode (*Reader)(MeshFile *);
@@ -43,14 +44,8 @@ static PetscErrorCode ReadFile(void *ctx)
 /* -mesh_blocks a,b */
 static PetscErrorCode ReadWanted(const char prefix[], MeshFile *file)
 {
-  char    *names[64];
-  PetscInt n = 64;
-
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetStringArray(NULL, prefix, "-mesh_blocks", names, &n, NULL));
-  PetscCall(PetscMalloc1(n, &file->wanted));
-  for (PetscInt i = 0; i < n; i++) file->wanted[i] = names[i];
-  file->n_wanted = n;
+  PetscCall(NamesRead(prefix, "-mesh_blocks", &file->n_wanted, &file->wanted, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

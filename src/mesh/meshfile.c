@@ -1,5 +1,6 @@
 /* Nodes, elements and groups of a mesh file, as the readers of all formats hand them on. */
 #include "meshimpl.h"
+#include <sys/names.h>
 
 PetscErrorCode MeshFileInitialize(MeshFile *file, const char path[])
 {
@@ -12,8 +13,7 @@ PetscErrorCode MeshFileInitialize(MeshFile *file, const char path[])
 PetscErrorCode MeshFileDestroy(MeshFile *file)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < file->n_wanted; i++) PetscCall(PetscFree(file->wanted[i]));
-  PetscCall(PetscFree(file->wanted));
+  PetscCall(NamesDestroy(file->n_wanted, &file->wanted));
   PetscCall(PetscFree(file->coordinates));
   PetscCall(PetscFree(file->node_numbers));
   PetscCall(PetscFree(file->sorted_numbers));

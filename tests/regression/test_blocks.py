@@ -40,6 +40,7 @@ def test_impact(pairing, shared_run):
     assert run.summary["schwarz"]["mean_contact_steps"] <= 2.5  # measured: 2.01 to 2.02
     assert run.summary["contact"]["onsets"] == 1
     assert run.summary["system"]["momentum_error_max"] <= 1e-12  # round-off of 600 steps: 2.5e-14
+    assert run.summary["system"]["angular_momentum_error_max"] <= 1e-12  # none at the start: of momentum times the farthest corner; 2.9e-14
     assert force_change(run) <= 0.01  # measured: 0.0032
     assert never_tensile(run, pair_of(run))
 

@@ -51,6 +51,14 @@ def execute(command, time_limit):
     return done.stdout
 
 
+def read_summary(path, run):
+    """The summary that a run wrote."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise RunError(f"summary of {run}: {error}") from None
+
+
 def run_yardstick(build, mode, time_limit):
     """Return the yardstick's results for a mode."""
     output = execute([build / "yardstick", "--mode", mode], time_limit)
@@ -66,10 +74,7 @@ def run_program(build, options, time_limit):
         path = Path(directory) / "summary.json"
         command = [build / "impakt", "-options_file", options, "-output_summary", path, "-progress", "0"]
         execute(command, time_limit)
-        try:
-            summary = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            raise RunError(f"summary of {options}: {error}") from None
+        summary = read_summary(path, options)
     try:
         float(summary["timing"]["cpu"])
     except (KeyError, TypeError, ValueError):
@@ -129,28 +134,40 @@ def ratio_row(name, bound, yardsticks, summaries):
     ]
 
 
-def main():
-    """Run everything and print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=ROOT / "build", help="directory of impakt and yardstick")
-    parser.add_argument("--repeats", type=int, default=5, help="runs of each case (default: 5)")
-    parser.add_argument("--time-limit", type=float, default=120.0, help="for one run, in s (default: 120)")
+def command_line(description, programs, time_limit, **more):
+    """What the options of a comparison say: a directory with programs, seconds for one run, and numbers with their default and meaning."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help=f"directory of {programs}")
+    parser.add_argument("--time-limit", type=float, default=time_limit, help=f"for one run, in s (default: {time_limit:g})")
+    for name, (default, meaning) in more.items():
+        parser.add_argument(f"--{name}", type=int, default=default, help=f"{meaning} (default: {default})")
     arguments = parser.parse_args()
-    if arguments.repeats < 1:
-        parser.error("--repeats must be at least 1")
-    build, limit = arguments.build.resolve(), arguments.time_limit
+    if any(getattr(arguments, name) < 1 for name in more):
+        parser.error(f"{' and '.join(f'--{name}' for name in more)} must be at least 1")
+    arguments.build = arguments.build.resolve()
+    return arguments
 
+
+def report(print_tables, arguments):
+    """The exit code of a comparison whose tables are printed as its runs go: whether all of them worked."""
+    try:
+        print_tables(arguments)
+    except RunError as error:
+        print(f"{Path(sys.argv[0]).name}: a run failed: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def print_tables(arguments):
+    """Run everything and print the tables."""
+    build, limit = arguments.build, arguments.time_limit
     yardsticks = {name: [] for name, _, _ in CASES}
     summaries = {name: [] for name in (*yardsticks, "default")}
-    try:
-        for _ in range(arguments.repeats):
-            for name, options, _ in CASES:
-                yardsticks[name].append(run_yardstick(build, name, limit))
-                summaries[name].append(run_program(build, options, limit))
-            summaries["default"].append(run_program(build, DEFAULT_RUN, limit))
-    except RunError as error:
-        print(f"bench.py: a run failed: {error}", file=sys.stderr)
-        return 1
+    for _ in range(arguments.repeats):
+        for name, options, _ in CASES:
+            yardsticks[name].append(run_yardstick(build, name, limit))
+            summaries[name].append(run_program(build, options, limit))
+        summaries["default"].append(run_program(build, DEFAULT_RUN, limit))
 
     print(f"Median [minimum maximum] of {arguments.repeats} runs; CPU time of the time loop only, set-up apart.\n")
     header = ["case", "program, s", "set-up, s", "yardstick, s", "ratio", "bound", "verdict"]
@@ -169,8 +186,7 @@ def main():
         cells.append(spread([1e6 * run["cpu"] / run["substeps"] for run in yardsticks.get(name, [])], 2))
         rows.append([name, *cells])
     print_table(rows)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(report(print_tables, command_line(__doc__, "impakt and yardstick", 120, repeats=(5, "runs of each case"))))

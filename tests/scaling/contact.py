@@ -7,16 +7,12 @@ times of CalculiX 2.20 beside the bars are not measured here: they are those of 
 implicit and 256 s with explicit steps.
 """
 
-import argparse
 import csv
-import json
-import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from bench import ROOT, RunError, print_table
+from bench import command_line, execute, print_table, read_summary, report
 
 CALCULIX = {"implicit": 1270.0, "explicit": 256.0}  # s
 FASTER = {"implicit": 20.0, "explicit": 50.0}
@@ -45,14 +41,10 @@ def run(build, options, limit):
     with tempfile.TemporaryDirectory() as directory:
         summary, log = Path(directory) / "summary.json", Path(directory) / "log.csv"
         words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
-        command = [str(build / "impakt"), *words, "-output_summary", str(summary), "-log_view", f":{log}:ascii_csv"]
-        environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-        done = subprocess.run(command, cwd=ROOT, env=environment, timeout=limit, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise RunError(" ".join(command) + "\n" + "\n".join((done.stdout + done.stderr).splitlines()[-20:]))
+        execute([build / "impakt", *words, "-output_summary", summary, "-log_view", f":{log}:ascii_csv"], limit)
         with log.open(encoding="utf-8") as file:
             seconds = {row["Event Name"]: float(row["Time"]) for row in csv.DictReader(file) if row["Rank"] == "0"}
-        return json.loads(summary.read_text(encoding="utf-8")), seconds
+        return read_summary(summary, "two bars"), seconds
 
 
 def contact_seconds(events):
@@ -90,27 +82,14 @@ def surfaces(build, largest, limit):
         yield [f"{side**2}", f"{events['ContactUpdate'] * per_facet:.2f}", f"{outer * per_facet:.2f}", f"{(events['BodyIntegrate'] + events.get('BodyResponse', 0)) * per_facet:.1f}", f"{summary['schwarz']['mean_contact_steps']:.2f}"]
 
 
-def main():
+def print_tables(arguments):
     """Run everything and print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=ROOT / "build", help="directory of impakt")
-    parser.add_argument("--largest", type=int, default=100000, help="facets of the largest surface (default: 100000)")
-    parser.add_argument("--time-limit", type=float, default=600.0, help="for one run, in s (default: 600)")
-    arguments = parser.parse_args()
-    build, limit = arguments.build.resolve(), arguments.time_limit
-    try:
-        print("\nTwo bars of 10 x 10 x 100 hex8, 200 implicit or 1000 explicit steps: CPU time with set-up [s].\n")
-        print_table([["steps", "Impakt", "CalculiX 2.20", "ratio", "contact", "bounds"], *whole_runs(build, limit)])
-        print("\nContact of two square surfaces, explicit bodies: microseconds per facet and step.\n")
-        print_table([["facets", "search and transfer", "active set, sweeps", "bodies", "sweeps"], *surfaces(build, arguments.largest, limit)])
-    except RunError as error:
-        print(f"contact.py: a run failed: {error}", file=sys.stderr)
-        return 1
-    except subprocess.TimeoutExpired as error:
-        print(f"contact.py: no result within {limit:g} s: {error.cmd}", file=sys.stderr)
-        return 1
-    return 0
+    build, limit = arguments.build, arguments.time_limit
+    print("\nTwo bars of 10 x 10 x 100 hex8, 200 implicit or 1000 explicit steps: CPU time with set-up [s].\n")
+    print_table([["steps", "Impakt", "CalculiX 2.20", "ratio", "contact", "bounds"], *whole_runs(build, limit)])
+    print("\nContact of two square surfaces, explicit bodies: microseconds per facet and step.\n")
+    print_table([["facets", "search and transfer", "active set, sweeps", "bodies", "sweeps"], *surfaces(build, arguments.largest, limit)])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(report(print_tables, command_line(__doc__, "impakt", 600, largest=(100000, "facets of the largest surface"))))

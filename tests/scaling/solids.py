@@ -5,17 +5,14 @@
 Program and yardstick run in turn, as in bench.py, whose exit code has the same meaning: whether all runs worked.
 """
 
-import argparse
 import json
-import os
 import resource
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from statistics import median
 
-from bench import ROOT, RunError, execute, print_table, spread
+from bench import command_line, execute, print_table, read_summary, report, spread
 
 STEPS = 2e7  # elements times steps of a run: some seconds
 SPEED_BOUND = 1.5
@@ -54,14 +51,9 @@ def run(build, options, limit):
     """Summary, wall time [s] and peak memory [kB] of a run."""
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / "summary.json"
-        command = [str(build / "impakt"), *options, "-output_summary", str(path)]
-        environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-        process = subprocess.Popen(command, cwd=directory, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        output, _ = process.communicate(timeout=limit)
-        if process.returncode:
-            raise RunError(" ".join(command) + "\n" + "\n".join(output.splitlines()[-20:]))
+        output = execute([build / "impakt", *options, "-output_summary", path], limit)
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss  # of the largest child so far: cases go from small to large
-        return json.loads(path.read_text(encoding="utf-8")), peak, output
+        return read_summary(path, "a cube"), peak, output
 
 
 def explicit(build, per_side, material, repeats, limit):
@@ -122,40 +114,27 @@ def multigrid(build, per_side, limit):
     return summary["bodies"]["box"]["dofs"], max(iterations), summary["timing"]
 
 
-def main():
+def print_tables(arguments):
     """Run everything and print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=ROOT / "build", help="directory of impakt and yardstick_hex8")
-    parser.add_argument("--repeats", type=int, default=3, help="runs of each case (default: 3)")
-    parser.add_argument("--largest", type=int, default=1000000, help="elements of the largest box (default: 1000000)")
-    parser.add_argument("--time-limit", type=float, default=600.0, help="for one run, in s (default: 600)")
-    arguments = parser.parse_args()
-    build, limit = arguments.build.resolve(), arguments.time_limit
+    build, limit = arguments.build, arguments.time_limit
     sides = [side for side in (10, 22, 46, 100) if side**3 <= arguments.largest]
-    try:
-        print("\nExplicit hex8, full integration: CPU time per element and step [us], median [minimum maximum].\n")
-        results = [explicit(build, side, material, arguments.repeats, limit) for side in sides for material in MATERIALS]
-        print_table([["material", "elements", "program", "yardstick", "ratio", f"bound {SPEED_BOUND}"], *(result["row"] for result in results)])
-        last = results[-1]
-        memory = last["peak"] / last["elements"]
-        print(f"\nmemory at {last['elements']} elements: {memory:.2f} kB per element (bound {MEMORY_BOUND})")
-        print(f"set-up of {last['elements']} elements: {last['setup']:.1f} s (bound {SETUP_BOUND:g} s)")
-        frame, step = frame_cost(build, sides[-1], limit)
-        print(f"a frame of fields of {last['elements']} elements: {frame:.2f} s, {frame / step:.1f} explicit steps (bound {FRAME_BOUND:g})")
-        print("\nCG with GAMG and rigid-body near-null space, a static cube held below, pulled and sheared above:\n")
-        rows = [["unknowns", "iterations", "set-up, s", "time loop, s"]]
-        for side in (14, 21, 31, 45):
-            unknowns, iterations, timing = multigrid(build, side, limit)
-            rows.append([f"{unknowns}", f"{iterations}", f"{timing['wall_setup']:.1f}", f"{timing['wall']:.1f}"])
-        print_table(rows)
-    except RunError as error:
-        print(f"solids.py: a run failed: {error}", file=sys.stderr)
-        return 1
-    except subprocess.TimeoutExpired as error:
-        print(f"solids.py: no result within {limit:g} s: {error.cmd}", file=sys.stderr)
-        return 1
-    return 0
+    print("\nExplicit hex8, full integration: CPU time per element and step [us], median [minimum maximum].\n")
+    results = [explicit(build, side, material, arguments.repeats, limit) for side in sides for material in MATERIALS]
+    print_table([["material", "elements", "program", "yardstick", "ratio", f"bound {SPEED_BOUND}"], *(result["row"] for result in results)])
+    last = results[-1]
+    memory = last["peak"] / last["elements"]
+    print(f"\nmemory at {last['elements']} elements: {memory:.2f} kB per element (bound {MEMORY_BOUND})")
+    print(f"set-up of {last['elements']} elements: {last['setup']:.1f} s (bound {SETUP_BOUND:g} s)")
+    frame, step = frame_cost(build, sides[-1], limit)
+    print(f"a frame of fields of {last['elements']} elements: {frame:.2f} s, {frame / step:.1f} explicit steps (bound {FRAME_BOUND:g})")
+    print("\nCG with GAMG and rigid-body near-null space, a static cube held below, pulled and sheared above:\n")
+    rows = [["unknowns", "iterations", "set-up, s", "time loop, s"]]
+    for side in (14, 21, 31, 45):
+        unknowns, iterations, timing = multigrid(build, side, limit)
+        rows.append([f"{unknowns}", f"{iterations}", f"{timing['wall_setup']:.1f}", f"{timing['wall']:.1f}"])
+    print_table(rows)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    options = {"repeats": (3, "runs of each case"), "largest": (1000000, "elements of the largest box")}
+    sys.exit(report(print_tables, command_line(__doc__, "impakt and yardstick_hex8", 600, **options)))

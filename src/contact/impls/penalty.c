@@ -124,27 +124,6 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's step by the force problem, in place of a matrix and its factors */
-static PetscErrorCode SetUpNewton(Contact contact)
-{
-  OuterSolver *outer = &((Penalty *)contact->data)->outer;
-  Mat          shell;
-  KSP          ksp;
-  PC           pc;
-
-  PetscFunctionBegin;
-  PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, contact, &shell));
-  PetscCall(SNESSetJacobian(outer->snes, shell, shell, ComputeJacobian, contact));
-  PetscCall(SNESGetKSP(outer->snes, &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetContext(pc, contact));
-  PetscCall(PCShellSetApply(pc, ApplyNewton));
-  PetscCall(PCShellSetName(pc, "interface compliance of the bodies"));
-  PetscCall(MatDestroy(&shell));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode PenaltySetUp(Contact contact)
 {
   Penalty       *penalty = (Penalty *)contact->data;
@@ -155,7 +134,7 @@ PetscErrorCode PenaltySetUp(Contact contact)
   PetscCall(PetscCalloc5(n, &penalty->multiplier, n, &penalty->pushing, n, &penalty->spring, n, &penalty->damper, n, &penalty->stiffness));
   PetscCall(PenaltySetUpSprings(contact));
   PetscCall(OuterSolverCreate(contact, "penalty_", n, ComputeResidual, ComputeJacobian, &penalty->outer));
-  PetscCall(SetUpNewton(contact));
+  PetscCall(OuterSolverSetNewton(contact, &penalty->outer, ComputeJacobian, ApplyNewton));
   PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, 1e-14, 1e-9, 50));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));

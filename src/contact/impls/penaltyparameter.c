@@ -32,7 +32,6 @@ static PetscErrorCode GetElementStiffness(Body body, PetscReal *stiffness)
   PetscReal impedance, density, size, cross_section;
   Material  material;
   PetscInt  dim;
-  DM        dm;
 
   PetscFunctionBegin;
   PetscCall(BodyGetImpedance(body, &impedance));
@@ -40,8 +39,7 @@ static PetscErrorCode GetElementStiffness(Body body, PetscReal *stiffness)
   PetscCall(MaterialGetDensity(material, &density));
   PetscCall(BodyGetElementSize(body, &size));
   PetscCall(BodyGetCrossSection(body, &cross_section));
-  PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(BodyGetDimension(body, &dim));
   *stiffness = PetscSqr(impedance / cross_section) / density / size * (dim == 1 ? cross_section : 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

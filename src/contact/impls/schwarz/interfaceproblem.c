@@ -326,23 +326,8 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 /* Puts Newton's step by the interface problem into the outer iteration */
 PetscErrorCode SchwarzSetUpInterfaceProblem(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
-  PetscInt local;
-  Mat      shell;
-  KSP      ksp;
-  PC       pc;
-
   PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(schwarz->outer.x, &local));
-  PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), local, local, PETSC_DETERMINE, PETSC_DETERMINE, contact, &shell));
-  PetscCall(SNESSetJacobian(schwarz->outer.snes, shell, shell, ComputeJacobian, contact));
-  PetscCall(SNESGetKSP(schwarz->outer.snes, &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetContext(pc, contact));
-  PetscCall(PCShellSetApply(pc, ApplyNewton));
-  PetscCall(PCShellSetName(pc, "interface compliance of the bodies"));
-  PetscCall(MatDestroy(&shell));
+  PetscCall(OuterSolverSetNewton(contact, &((Schwarz *)contact->data)->outer, ComputeJacobian, ApplyNewton));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

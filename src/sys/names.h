@@ -1,0 +1,6 @@
+/* Lists of names in the options, of any length. Private to src. */
+#pragma once
+#include <petscsys.h>
+
+PETSC_INTERN PetscErrorCode NamesRead(const char[], const char[], PetscInt *, char ***, PetscBool *);
+PETSC_INTERN PetscErrorCode NamesDestroy(PetscInt, char ***);
