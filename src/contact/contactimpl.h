@@ -25,6 +25,7 @@ typedef struct {
   PetscInt  components; /* rows of each node: its normal, or all directions */
   PetscInt  begin, end; /* its rows of this rank */
   PetscReal normal[3];  /* mean outward normal of the first */
+  PetscBool by_force;   /* forces are the unknowns of all its rows, see SchwarzSetUpSides() */
 } ContactPair;
 
 /* The gap of a row without anything opposite [m] */

@@ -191,6 +191,7 @@ PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool arranges)
     PetscCall(GetUnit(contact, pair, &shared->unit[p]));
     if (!pair->obstacle) PetscCall(BodyFeelsEndForce(contact->bodies[pair->body[1]], &shared->answers[p]));
   }
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->by_force[i] = contact->pairs[contact->row_pair[i]].by_force;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRowWeights(contact->bodies[b], contact->area));
   shared->arranges = arranges;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -254,6 +255,7 @@ void ContactArrangeShared(Contact contact)
       PetscReal       direction[3];
       PetscBool       independent;
 
+      if (contact->pairs[contact->row_pair[i]].by_force) continue; /* not prescribed anyway */
       GetDirection(contact, node, i, direction);
       independent          = Extends(direction, answers ? NEAR : PARALLEL, &n, basis);
       contact->by_force[i] = (PetscBool)(!independent && answers);

@@ -50,7 +50,8 @@ static PetscErrorCode AddBody(Contact contact, PetscInt b, PetscInt level, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether forces at the same times act on all bodies: all Dirichlet sides make one substep, or all bodies of pairs equally many */
+/* Whether forces at the same times act on all bodies: all are linear over the step, since Dirichlet sides make one substep or these forces are the
+   unknowns, or all bodies of pairs make equally many substeps */
 static PetscErrorCode CountLevels(Contact contact, PetscInt *levels, PetscBool *chain)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
@@ -66,7 +67,7 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt *levels, PetscBool *
       PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[side]], &substeps));
       if (!first) first = substeps;
       if (substeps != first) equal = PETSC_FALSE;
-      if (side == contact->pairs[p].dirichlet && substeps > 1) single = PETSC_FALSE;
+      if (side == contact->pairs[p].dirichlet && (contact->pairs[p].by_force ? schwarz->levels[p] > 1 : substeps > 1)) single = PETSC_FALSE;
     }
   for (PetscInt p = 0; p < contact->n_pairs; p++) most = PetscMax(most, schwarz->levels[p]);
   *chain  = (PetscBool)(!single && !equal);

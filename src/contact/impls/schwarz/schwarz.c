@@ -117,11 +117,13 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscFunctionBegin;
   PetscCheck(contact->constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
+  PetscCall(SchwarzChooseCondensation(contact));
   PetscCall(SchwarzSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
-  PetscCall(SchwarzChooseCondensation(contact));
   PetscCall(SchwarzSetUpTransmission(contact));
   PetscCall(ContactSetUpSharedNodes(contact, schwarz->by_compliance));
+  schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));

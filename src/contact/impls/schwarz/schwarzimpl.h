@@ -105,6 +105,7 @@ typedef struct {
   PetscBool           responding;    /* sweeps are, just now */
   PetscBool           have_base;     /* an integration of this step that they count from */
   PetscBool          *known;         /* per row: it is known to the bodies' compliance */
+  PetscBool           has_forces;    /* forces are the unknowns of some rows */
   InterfaceProblem    problem;
   PetscBool           exact;        /* the compliance is */
   PetscBool           uses_secants; /* it is not, or not all of it is used where conjugate gradients are */

@@ -1,18 +1,34 @@
 /* Which body of a pair takes displacements, and what the unknowns of the outer iteration are then. */
 #include "schwarzimpl.h"
 
-/* Times in the controller step at which the trace of a pair is an unknown: one for each substep of the Neumann side, but the
-   Dirichlet side sees nothing of the interior ones if it makes one substep */
+static PetscInt CommonDivisor(PetscInt a, PetscInt b)
+{
+  while (b) {
+    const PetscInt rest = a % b;
+
+    a = b;
+    b = rest;
+  }
+  return a;
+}
+
+/* Times in the controller step at which the trace of a pair is an unknown: one for each substep of the Neumann side, but the Dirichlet side sees
+   nothing of the interior ones if it makes one substep. Where a Dirichlet side holds its reaction at times that the Neumann side does not have, the
+   force that this takes would bring another impulse. There the force itself is the unknown, at the times that both have, and linear between them
+   for both; the gap is closed at these times. */
 static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichlet, PetscInt *levels)
 {
-  const ContactPair *pair = &contact->pairs[p];
-  PetscInt           substeps[2];
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  ContactPair   *pair    = &contact->pairs[p];
+  PetscInt       substeps[2];
 
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(contact->bodies[pair->body[0]], &substeps[0]));
   substeps[1] = substeps[0]; /* of an obstacle */
   if (!pair->obstacle) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1]], &substeps[1]));
-  *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
+  pair->by_force = (PetscBool)(schwarz->by_compliance && contact->dim > 1 && schwarz->waveform == WAVEFORM_LINEAR && substeps[1] % substeps[0]);
+  if (pair->by_force) *levels = CommonDivisor(substeps[0], substeps[1]);
+  else *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

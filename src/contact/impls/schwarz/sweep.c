@@ -108,7 +108,7 @@ static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(traces->reaction, NULL, &levels));
-  for (PetscInt level = 1; level <= levels && contact->shared.n; level++) {
+  for (PetscInt level = 1; level <= levels; level++) {
     PetscScalar *reaction, *force;
 
     PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
@@ -182,7 +182,7 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
     if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) {
       if (DirichletBody(pair) == b) {
         PetscCall(PrescribePair(contact, p, x));
-        if (contact->shared.n) PetscCall(LoadByForce(contact, p, x));
+        if (contact->shared.n || pair->by_force) PetscCall(LoadByForce(contact, p, x));
       }
       /* the reaction holds the Dirichlet side; the Neumann side gets its opposite */
       if (NeumannBody(pair) == b) PetscCall(SchwarzResampleForce(schwarz, contact->traces[DirichletBody(pair)].reaction, pair->begin, pair->end, -1, contact->traces[b].force_in));
@@ -235,7 +235,7 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(from->displacement, NULL, &from_levels));
   for (PetscInt level = 1; level <= levels; level++) {
-    const PetscInt  at   = levels == 1 ? from_levels : level;
+    const PetscInt  at   = level * from_levels / levels;
     const PetscReal part = (PetscReal)level / levels;
 
     PetscCall(TraceGetLevel(from->displacement, at, &displacement));
@@ -277,7 +277,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
     PetscCall(LoadBody(contact, contact->order[k], x));
     if (schwarz->responding) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
     else PetscCall(BodyIntegrate(contact->bodies[contact->order[k]]));
-    PetscCall(ReportByForce(contact, contact->order[k]));
+    if (schwarz->has_forces) PetscCall(ReportByForce(contact, contact->order[k]));
   }
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
