@@ -18,6 +18,54 @@ static PetscReal ReleasedForce(Contact contact, PetscInt i, PetscReal part)
   return force[k] + (at - k) * (force[k + 1] - force[k]);
 }
 
+/* Sum of the forces of a row that has been let go within a controller step of that many substeps, by the trapezoidal rule of integrators, and what it
+   is to be for bodies of other substeps to get the same impulse: that of the force itself, and at least what the force at the start brings them */
+static PetscErrorCode ReleasedSums(Contact contact, PetscInt i, PetscInt levels, PetscReal *sum, PetscReal *wanted)
+{
+  const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
+  const PetscInt     n     = contact->release_intervals[i];
+  const PetscReal   *force = contact->release + i * contact->release_room;
+  PetscReal          impulse;
+
+  PetscFunctionBegin;
+  impulse = 0.5 * (force[0] + force[n]) / n;
+  for (PetscInt k = 1; k < n; k++) impulse += force[k] / n;
+  for (PetscInt side = 0; side < 2; side++) {
+    PetscInt substeps;
+
+    PetscCall(BodyGetSubsteps(contact->bodies[pair->body[side]], &substeps));
+    impulse = PetscMax(impulse, 0.5 * force[0] / substeps);
+  }
+  *sum = 0;
+  for (PetscInt level = 1; level < levels; level++) *sum += ReleasedForce(contact, i, (PetscReal)level / levels);
+  *wanted = impulse * levels - 0.5 * force[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where substeps of the two bodies differ so that a force at the times of one is not that at the times of the other */
+static PetscErrorCode BalanceReleased(Contact contact, PetscInt b)
+{
+  Trace        trace = contact->traces[b].force_in;
+  PetscInt     levels;
+  PetscScalar *force;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetSizes(trace, NULL, &levels));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+    PetscReal          sum = 0, wanted = 0;
+
+    if (!pair->by_force || !RowFades(contact, i) || (pair->body[0] != b && pair->body[1] != b)) continue;
+    PetscCall(ReleasedSums(contact, i, levels, &sum, &wanted));
+    for (PetscInt level = 1; level < levels; level++) {
+      PetscCall(TraceGetLevel(trace, level, &force));
+      if (sum > 0) force[i] *= wanted / sum;
+      else if (level == 1) force[i] = (pair->body[1] == b ? 1 : -1) * wanted;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Forces of rows that are let go, over the substeps of a body */
 PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
 {
@@ -35,6 +83,7 @@ PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
       if (RowFades(contact, i)) force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * ReleasedForce(contact, i, (PetscReal)level / levels);
     }
   }
+  PetscCall(BalanceReleased(contact, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,9 +1,11 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include "contactimpl.h"
 
-#define APART    0.05 /* parts of a face by which gaps may hold surfaces apart for good */
-#define RETURN   3    /* what is beyond goes back within a slip of one face: that many times */
-#define PARALLEL 0.9  /* cosine of the angle between normals beyond which two rows of a node say much the same */
+/* Parts of a face by which gaps may hold surfaces apart for good. To give everything back loses energy at each rebuild, as polygons roll on each other:
+   ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost little. */
+#define APART    0.1
+#define RETURN   3   /* what is beyond goes back within a slip of one face: that many times */
+#define PARALLEL 0.9 /* cosine of the angle between normals beyond which two rows of a node say much the same */
 
 static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
 {

@@ -84,21 +84,18 @@ static PetscErrorCode NoteRelease(Contact contact, PetscInt i)
   const ContactPair *pair     = &contact->pairs[contact->row_pair[i]];
   const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
   PetscReal         *force    = contact->release + i * contact->release_room;
-  PetscInt           n = 1, each = 1;
+  PetscInt           n        = 1, partner;
 
   PetscFunctionBegin;
-  if (schwarz->levels[contact->row_pair[i]] > 1) PetscCall(TraceGetSizes(reaction, NULL, &n));
-  if (pair->by_force) {
-    each = n / schwarz->levels[contact->row_pair[i]];
-    n    = schwarz->levels[contact->row_pair[i]];
-  }
+  PetscCall(TraceGetSizes(contact->traces[NeumannBody(pair)].displacement, NULL, &partner));
+  if (pair->by_force ? partner > 1 : schwarz->levels[contact->row_pair[i]] > 1) PetscCall(TraceGetSizes(reaction, NULL, &n));
   force[0]                      = contact->saved_active[i] ? PetscMax(contact->saved_force[i], 0) : 0;
   force[n]                      = 0;
   contact->release_intervals[i] = force[0] > 0 ? n : 0;
   for (PetscInt k = 1; k < n; k++) {
     PetscScalar *values;
 
-    PetscCall(TraceGetLevel(reaction, k * each, &values));
+    PetscCall(TraceGetLevel(reaction, k, &values));
     force[k] = k > 1 && force[k - 1] == 0 ? 0 : PetscMax(-NeumannSign(pair) * values[i], 0);
     if (force[k] > 0) contact->release_intervals[i] = n;
   }
