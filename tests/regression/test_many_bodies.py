@@ -77,12 +77,12 @@ def test_ten_balls_explicit(shared_run):
     assert run.summary["schwarz"]["set_cycles"] >= 1  # there is such a row
 
 
-@pytest.mark.parametrize("steps", ["-a_ts_time_step 4e-5", "-b_ts_type centraldifference -a_ts_time_step 4e-5 -b_ts_time_step 5e-5"], ids=["10 to 1", "10 to 8"])
+@pytest.mark.parametrize("steps", ["-a_ts_time_step 2e-5", "-b_ts_type centraldifference -a_ts_time_step 2e-5 -b_ts_time_step 2.5e-5"], ids=["10 to 1", "10 to 8"])
 def test_two_discs_of_other_steps(steps, shared_run):
-    """The Dirichlet side makes substeps that the other does not have, and contact begins and ends: momentum stays, where 8 % and 1e-3 of it were lost."""
+    """The Dirichlet side makes substeps that the other does not have, and contact begins and ends: momentum stays, where 1 % of it was lost with 10 to 1."""
     disc = "-{0}_dm_plex_dim 2 -{0}_dm_plex_shape ball -{0}_ball_radius 0.1 -{0}_ball_centre {1} -{0}_ball_divisions 4 -{0}_density 1000 -{0}_youngs_modulus 1e8 -{0}_poissons_ratio 0.25 -{0}_initial_velocity {2}"
     bodies = " ".join(disc.format(*each) for each in (("a", "0,0", "1,0"), ("b", "0.205,0.03", "-1,0")))
-    run = shared_run(f"-bodies a,b -contact_pairs a:b -contact_facing false {bodies} -a_ts_type centraldifference {steps} -time_step 4e-4 -time_end 0.02")
+    run = shared_run(f"-bodies a,b -contact_pairs a:b -contact_facing false {bodies} -a_ts_type centraldifference {steps} -time_step 2e-4 -time_end 0.02")
     system = run.summary["system"]
     assert run.history["contact"]["a:b"]["active"][-1] == 0 < run.summary["contact"]["onsets"]
     assert system["momentum_error_max"] <= 1e-12  # measured: 1.3e-14
