@@ -2,7 +2,7 @@
 
 import matplotlib
 import numpy as np
-from impact import BLACK, BLUE, GREEN, ORANGE, PURPLE
+from figures import BLACK, BLUE, GREEN, ORANGE, PURPLE
 from matplotlib.figure import Figure
 
 from .experiments import HIGH_SPEED, MESHES, PAIRINGS
