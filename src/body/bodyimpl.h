@@ -158,6 +158,7 @@ PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyIntegrateWindow(Body);
 PETSC_INTERN PetscErrorCode BodyIntegrateByResponse(Body, PetscBool *);

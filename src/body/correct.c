@@ -8,15 +8,8 @@
 /* The rows of a corrected vector, at the end of the controller step */
 static PetscErrorCode WriteEnd(Body body, Vec vec, Trace trace)
 {
-  const PetscScalar *row;
-  PetscScalar       *values;
-
   PetscFunctionBegin;
-  PetscCall(MatMult(body->interface, vec, body->row_vec[0]));
-  PetscCall(TraceGetLevel(trace, body->substeps, &values));
-  PetscCall(VecGetArrayRead(body->row_vec[0], &row));
-  PetscCall(PetscArraycpy(values, row, body->rows.local));
-  PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
+  PetscCall(BodyWriteTrace(body, body->interface, vec, trace, body->substeps));
   PetscCall(BodyInvalidateWindow(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,8 +1,6 @@
 /* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
 #include "bodyimpl.h"
 
-static PetscErrorCode WriteTrace(Body, Mat, Vec, Trace, PetscInt);
-
 const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
 
 /*@
@@ -79,7 +77,7 @@ static PetscErrorCode RewriteStart(Body body)
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
 
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 3; t++) PetscCall(WriteTrace(body, body->interface, vecs[t], traces[t], 0));
+  for (PetscInt t = 0; t < 3; t++) PetscCall(BodyWriteTrace(body, body->interface, vecs[t], traces[t], 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -321,7 +319,8 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscInt level)
+/* What rows make of a vector, at a level of a trace */
+PetscErrorCode BodyWriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscInt level)
 {
   const PetscScalar *row;
   PetscScalar       *values;
@@ -342,9 +341,9 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WriteTrace(body, body->interface, body->state.u, body->traces.displacement, level));
-  PetscCall(WriteTrace(body, body->interface, body->state.v, body->traces.velocity, level));
-  PetscCall(WriteTrace(body, body->interface, body->state.a, body->traces.acceleration, level));
+  PetscCall(BodyWriteTrace(body, body->interface, body->state.u, body->traces.displacement, level));
+  PetscCall(BodyWriteTrace(body, body->interface, body->state.v, body->traces.velocity, level));
+  PetscCall(BodyWriteTrace(body, body->interface, body->state.a, body->traces.acceleration, level));
   if (body->n_prescribed) {
     Vec force = body->internal_force;
 
@@ -358,7 +357,7 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
       PetscCall(BodyAddExternalForce(body, body->time, -1, force));
       PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, body->state.u, force));
     }
-    PetscCall(WriteTrace(body, body->free_rows, force, body->traces.reaction, level));
+    PetscCall(BodyWriteTrace(body, body->free_rows, force, body->traces.reaction, level));
   }
   PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
   if (body->n_prescribed) BodyDivideByGram(body, reaction);

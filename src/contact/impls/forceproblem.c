@@ -180,30 +180,6 @@ static PetscErrorCode SolveDense(Contact contact, ForceProblem *problem, Vec F, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = S x */
-static PetscErrorCode MultiplyBodies(Contact contact, ForceProblem *problem, Vec x, Vec y)
-{
-  PetscFunctionBegin;
-  PetscCall(VecZeroEntries(y));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscScalar *in, *moved;
-    PetscScalar       *force, *out;
-
-    PetscCall(VecGetArrayRead(x, &in));
-    PetscCall(VecGetArrayWrite(problem->work[0], &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++) force[i] = Sign(&contact->pairs[contact->row_pair[i]], b) * in[i];
-    PetscCall(VecRestoreArrayWrite(problem->work[0], &force));
-    PetscCall(VecRestoreArrayRead(x, &in));
-    PetscCall(BodyApplyCompliance(contact->bodies[b], problem->work[0], problem->work[1]));
-    PetscCall(VecGetArrayRead(problem->work[1], &moved));
-    PetscCall(VecGetArray(y, &out));
-    for (PetscInt i = 0; i < contact->n_rows; i++) out[i] += Sign(&contact->pairs[contact->row_pair[i]], b) * moved[i];
-    PetscCall(VecRestoreArray(y, &out));
-    PetscCall(VecRestoreArrayRead(problem->work[1], &moved));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscReal Root(const ForceProblem *problem, PetscInt i)
 {
   return problem->pushing[i] ? PetscSqrtReal(problem->stiffness[i]) : 0;
@@ -224,7 +200,7 @@ static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
   PetscCall(VecGetArrayWrite(problem->work[2], &scaled));
   for (PetscInt i = 0; i < contact->n_rows; i++) scaled[i] = Root(problem, i) * in[i];
   PetscCall(VecRestoreArrayWrite(problem->work[2], &scaled));
-  PetscCall(MultiplyBodies(contact, problem, problem->work[2], y));
+  PetscCall(ContactMultiplyCompliance(contact, NULL, PETSC_FALSE, problem->work, problem->work[2], y));
   PetscCall(VecGetArray(y, &out));
   for (PetscInt i = 0; i < contact->n_rows; i++) out[i] = in[i] + Root(problem, i) * out[i];
   PetscCall(VecRestoreArray(y, &out));
@@ -253,7 +229,7 @@ static PetscErrorCode SolveIteratively(Contact contact, ForceProblem *problem, V
   PetscCall(VecGetArrayWrite(problem->work[2], &rest));
   for (PetscInt i = 0; i < contact->n_rows; i++) rest[i] = Root(problem, i) > 0 ? 0 : f[i];
   PetscCall(VecRestoreArrayWrite(problem->work[2], &rest));
-  PetscCall(MultiplyBodies(contact, problem, problem->work[2], problem->unknown));
+  PetscCall(ContactMultiplyCompliance(contact, NULL, PETSC_FALSE, problem->work, problem->work[2], problem->unknown));
   PetscCall(VecGetArrayRead(problem->unknown, &opened));
   PetscCall(VecGetArrayWrite(problem->rhs, &rhs));
   for (PetscInt i = 0; i < contact->n_rows; i++) rhs[i] = Root(problem, i) > 0 ? f[i] / Root(problem, i) - Root(problem, i) * opened[i] : 0;

@@ -4,37 +4,11 @@
 /* of the residual: a step of Newton's method that leaves so much takes one more sweep at most */
 #define FORCE_TOLERANCE 1e-9
 
-/* y += t_b W_b t_b x of all bodies on active rows, or, if `dirichlet`, what happens to the Dirichlet sides */
+/* How forces on active rows open their gaps or, if `dirichlet`, move the Dirichlet sides; sides are never swapped here */
 static PetscErrorCode MultiplyBodies(Contact contact, PetscBool dirichlet, Vec x, Vec y)
 {
-  InterfaceProblem *problem = &((Schwarz *)contact->data)->problem;
-
   PetscFunctionBegin;
-  PetscCall(VecZeroEntries(y));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscScalar *in, *moved;
-    PetscScalar       *force, *out;
-
-    PetscCall(VecGetArrayRead(x, &in));
-    PetscCall(VecGetArrayWrite(problem->work[0], &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-
-      force[i] = contact->active[i] ? ((DirichletBody(pair) == b) - (NeumannBody(pair) == b)) * in[i] : 0;
-    }
-    PetscCall(VecRestoreArrayWrite(problem->work[0], &force));
-    PetscCall(VecRestoreArrayRead(x, &in));
-    PetscCall(BodyApplyCompliance(contact->bodies[b], problem->work[0], problem->work[1]));
-    PetscCall(VecGetArrayRead(problem->work[1], &moved));
-    PetscCall(VecGetArray(y, &out));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-
-      if (contact->active[i]) out[i] += ((DirichletBody(pair) == b) - (dirichlet ? 0 : NeumannBody(pair) == b)) * moved[i];
-    }
-    PetscCall(VecRestoreArray(y, &out));
-    PetscCall(VecRestoreArrayRead(problem->work[1], &moved));
-  }
+  PetscCall(ContactMultiplyCompliance(contact, contact->active, dirichlet, ((Schwarz *)contact->data)->problem.work, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
