@@ -95,6 +95,7 @@ struct _p_Body {
   IS                      layer_is;
   Vec                     layer_rhs, layer_solution;
   PetscReal               layer_reach; /* norm of the reference positions, on which round-off of its balance hangs [m] */
+  PetscBool               layer_slow;  /* its last balance took many rounds: the body has turned or changed shape since its matrix was factored */
   VecScatter              layer_scatter;
   LayerElements           layer_elements; /* those that touch the massless layer; NULL: no layer on any rank */
   struct _BodyResponse   *response;
@@ -149,7 +150,8 @@ PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
 PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body);
 PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
 PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
-PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
+PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);

@@ -4,6 +4,7 @@
 /* Rounds of chord Newton's method that the layer of a nonlinear body may take, and when it is in balance: the last change, relative to
    the largest one, or to the displacement and the reference positions of the body, which round-off hangs on */
 #define MAX_BALANCE_ROUNDS 100
+#define SLOW_ROUNDS        20 /* after so many the layer's matrix is made anew before the next balance */
 #define BALANCE_TOLERANCE  1e-12
 #define BALANCE_ROUND_OFF  (4 * PETSC_MACHINE_EPSILON)
 
@@ -36,9 +37,23 @@ static PetscErrorCode SolveLayer(Body body, PetscBool contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode RefactorLayer(Body body, Vec u)
+{
+  KSP ksp;
+  Mat K;
+
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
+  PetscCall(KSPGetOperators(ksp, &K, NULL));
+  PetscCall(BodyAssembleLayer(body, u, K));
+  PetscCall(ConstrainedSolverRefactor(body->solver));
+  body->layer_slow = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (forces - internal force)_L, with prescribed
-   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the undeformed layer's
-   factors. `force` becomes that of ComputeOutsideForce(), where there is any. */
+   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the factors of the undeformed layer, or,
+   since a body that turns makes these worse (23 degrees are too many), of one as it was when they became slow. `force` becomes that of ComputeOutsideForce(), where there is any. */
 static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
 {
   const PetscBool outside = HasOutsideForce(body, contact), linear = (PetscBool)(body->linear || body->linearized), robin = (PetscBool)(contact && body->n_robin);
@@ -46,6 +61,7 @@ static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position
 
   PetscFunctionBegin;
   if (!linear) {
+    if (body->layer_slow) PetscCall(RefactorLayer(body, u));
     PetscCall(VecNorm(u, NORM_2, &round_off));
     round_off = BALANCE_ROUND_OFF * (round_off + body->layer_reach);
   }
@@ -66,6 +82,7 @@ static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position
     PetscCall(VecNorm(body->layer_solution, NORM_2, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
+    body->layer_slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
     if (change <= BALANCE_TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
   }
   SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED, "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or -%smass_redistribute false", body->hdr.name, MAX_BALANCE_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
@@ -157,7 +174,7 @@ static PetscErrorCode SetUpLayerBalance(Body body)
   PetscCall(VecSetType(body->layer_rhs, VECSTANDARD));
   PetscCall(VecDuplicate(body->layer_rhs, &body->layer_solution));
   PetscCall(BodySetUpLayerElements(body));
-  PetscCall(BodyAssembleLayer(body, &K));
+  PetscCall(BodyCreateLayerMatrix(body, &K));
   PetscCall(BodySetUpLayerRows(body, &B));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
   PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, &body->solver));

@@ -229,28 +229,42 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stiffness of the massless layer of the undeformed body */
-PetscErrorCode BodyAssembleLayer(Body body, Mat *K)
+/* K = tangent stiffness of the layer at displacement u of the body; NULL: undeformed [N/m] */
+PetscErrorCode BodyAssembleLayer(Body body, Vec u, Mat K)
 {
-  LayerElements  layer = body->layer_elements;
-  const PetscInt nodes = body->element->nodes, n = nodes * body->dim;
-  PetscInt       dofs[ELEMENT_MAX_DOFS];
-  PetscScalar    element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero;
+  LayerElements      layer = body->layer_elements;
+  const PetscInt     nodes = body->element->nodes, n = nodes * body->dim;
+  PetscInt           dofs[ELEMENT_MAX_DOFS];
+  PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const PetscScalar *at;
 
+  PetscFunctionBegin;
+  if (u) {
+    PetscCall(VecScatterBegin(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterEnd(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
+  } else PetscCall(VecZeroEntries(layer->u));
+  PetscCall(MatZeroEntries(K));
+  PetscCall(VecGetArrayRead(layer->u, &at));
+  for (PetscInt e = 0; e < layer->element->count; e++) {
+    for (PetscInt i = 0; i < n; i++) dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->dim] * body->dim + i % body->dim];
+    PetscCall((*layer->element->ops.stiffness)(layer->element, e, at, element));
+    PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES)); /* leaves negative numbers out */
+  }
+  PetscCall(VecRestoreArrayRead(layer->u, &at));
+  PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The stiffness matrix of the undeformed layer, held by the rest of the body */
+PetscErrorCode BodyCreateLayerMatrix(Body body, Mat *K)
+{
   PetscFunctionBegin;
   PetscCall(MatCreate(PetscObjectComm((PetscObject)body), K));
   PetscCall(MatSetSizes(*K, body->n_layer_dofs, body->n_layer_dofs, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(*K, MATAIJ));
   PetscCall(MatSetUp(*K));
   PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(PetscCalloc1(layer->n_dofs, &zero));
-  for (PetscInt e = 0; e < layer->element->count; e++) {
-    for (PetscInt i = 0; i < n; i++) dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->dim] * body->dim + i % body->dim];
-    PetscCall((*layer->element->ops.stiffness)(layer->element, e, zero, element));
-    PetscCall(MatSetValues(*K, n, dofs, n, dofs, element, ADD_VALUES)); /* leaves negative numbers out */
-  }
-  PetscCall(PetscFree(zero));
-  PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
+  PetscCall(BodyAssembleLayer(body, NULL, *K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
