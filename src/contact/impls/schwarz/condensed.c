@@ -48,18 +48,36 @@ static PetscErrorCode FindObstacle(Contact contact, const char *why[], PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the Dirichlet side of some pair makes substeps that its partner does not share, see SchwarzSetUpSides() */
+static PetscErrorCode FindUnshared(Contact contact, PetscBool *unshared)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  *unshared = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs && schwarz->waveform == WAVEFORM_LINEAR; p++) {
+    PetscInt substeps[2];
+
+    if (contact->pairs[p].obstacle) continue;
+    for (PetscInt side = 0; side < 2; side++) PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[side]], &substeps[side]));
+    if (substeps[1] % substeps[0]) *unshared = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether Newton's method uses the bodies' compliance, and whether sweeps run on it. In one dimension the response to whole conditions, which
-   is there already, is as good, unless a node has several partners, whose forces are unknowns then. */
+   is there already, is as good, unless forces are unknowns: where a node has several partners, or substeps are not shared. */
 PetscErrorCode SchwarzChooseCondensation(Contact contact)
 {
   Schwarz    *schwarz = (Schwarz *)contact->data;
   const char *why;
-  PetscBool   newton, substeps = PETSC_FALSE;
+  PetscBool   newton, unshared, substeps = PETSC_FALSE;
   int         shared = contact->shared.n > 0;
 
   PetscFunctionBegin;
   PetscCall(ContactOr(contact, &shared));
   PetscCall(FindObstacle(contact, &why, &newton));
+  PetscCall(FindUnshared(contact, &unshared));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt n;
 
@@ -68,7 +86,7 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
     contact->release_room = PetscMax(contact->release_room, n + 1);
   }
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
-  schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || shared || schwarz->condense == CONDENSE_ALWAYS));
+  schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || shared || unshared || schwarz->condense == CONDENSE_ALWAYS));
   schwarz->exact         = (PetscBool)!why;
   schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);

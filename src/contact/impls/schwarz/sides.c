@@ -26,7 +26,7 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
   PetscCall(BodyGetSubsteps(contact->bodies[pair->body[0]], &substeps[0]));
   substeps[1] = substeps[0]; /* of an obstacle */
   if (!pair->obstacle) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1]], &substeps[1]));
-  pair->by_force = (PetscBool)(schwarz->by_compliance && contact->dim > 1 && schwarz->waveform == WAVEFORM_LINEAR && substeps[1] % substeps[0]);
+  pair->by_force = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR && substeps[1] % substeps[0]);
   if (pair->by_force) *levels = CommonDivisor(substeps[0], substeps[1]);
   else *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
   PetscFunctionReturn(PETSC_SUCCESS);
