@@ -180,6 +180,7 @@ PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, Mat *);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyAddEndForce(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetElementStiffness(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyAddVelocity(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyAddAcceleration(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, const PetscBool[]);

@@ -60,8 +60,8 @@ class Bodies:
         return min(np.linalg.norm(np.diff(self.reference[edges], axis=1), axis=-1).min() for edges in self.outlines)
 
 
-def depths(points, start, end):
-    """How deep points lie inside a closed outline, 0 outside, and which edge is nearest."""
+def locate(points, start, end):
+    """Distances of points from a closed outline, negative inside, and which edge is nearest."""
     along = end - start
     to = points[:, None] - start
     part = np.clip((to * along).sum(-1) / (along**2).sum(-1), 0, 1)
@@ -70,16 +70,19 @@ def depths(points, start, end):
     above = start[:, 1] > points[:, 1, None]
     crossed = (above != (end[:, 1] > points[:, 1, None])) & ((cross(along, to) > 0) == (along[:, 1] > 0))
     inside = crossed.sum(axis=1) % 2 == 1
-    return np.where(inside, distance[np.arange(len(points)), nearest], 0), nearest
+    distance = distance[np.arange(len(points)), nearest]
+    return np.where(inside, -distance, distance), nearest
+
+
+def depths(points, start, end):
+    """How deep points lie inside a closed outline, 0 outside, and which edge is nearest."""
+    distance, nearest = locate(points, start, end)
+    return np.maximum(-distance, 0), nearest
 
 
 def distances(points, start, end):
     """Of points from a closed outline, negative inside."""
-    along = end - start
-    to = points[:, None] - start
-    part = np.clip((to * along).sum(-1) / (along**2).sum(-1), 0, 1)
-    distance = np.linalg.norm(to - part[..., None] * along, axis=-1).min(axis=1)
-    return np.where(depths(points, start, end)[0] > 0, -distance, distance)
+    return locate(points, start, end)[0]
 
 
 def near(a, b):

@@ -1,4 +1,4 @@
-/* How large the elements of a body are. */
+/* How large the elements of a body are, and how stiff. */
 #include "bodyimpl.h"
 
 /* Measure of all cells (length, area or volume), and their number, on all ranks together */
@@ -48,5 +48,36 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
   PetscCall(SumCells(body, sums));
   if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
   *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetElementStiffness - what an element has to set against pressure
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with its mesh and material
+
+  Output Parameter:
+. stiffness - modulus of plane waves over edge length [N/m^3], times the cross-sectional area in one dimension [N/m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetElementSize()`, `BodyGetImpedance()`
+@*/
+PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
+{
+  PetscReal impedance, density, size, cross_section;
+  PetscInt  dim;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyGetImpedance(body, &impedance));
+  PetscCall(MaterialGetDensity(body->material, &density));
+  PetscCall(BodyGetElementSize(body, &size));
+  PetscCall(BodyGetCrossSection(body, &cross_section));
+  PetscCall(BodyGetDimension(body, &dim));
+  *stiffness = PetscSqr(impedance / cross_section) / density / size * (dim == 1 ? cross_section : 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

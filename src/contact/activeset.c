@@ -8,6 +8,20 @@ static PetscBool RowFades(Contact contact, PetscInt i)
   return (PetscBool)(contact->fades && !contact->active[i] && contact->release_intervals[i]);
 }
 
+/* Room for the forces of rows that are let go: of each at the ends of as many intervals as a body makes substeps */
+PetscErrorCode ContactSetUpRelease(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt substeps;
+
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    contact->release_room = PetscMax(contact->release_room, substeps + 1);
+  }
+  PetscCall(PetscCalloc2(contact->n_rows, &contact->release_intervals, contact->n_rows * contact->release_room, &contact->release));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Force of a row that has been let go at a part (0 to 1) of the controller step */
 static PetscReal ReleasedForce(Contact contact, PetscInt i, PetscReal part)
 {

@@ -127,7 +127,6 @@ PETSC_INTERN PetscErrorCode ContactLeaveOutObstacles(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
 PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
 PETSC_INTERN void           ContactArrangeShared(Contact);
-PETSC_INTERN PetscErrorCode ContactGetElementStiffness(Body, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
@@ -141,6 +140,7 @@ PETSC_INTERN PetscErrorCode ContactMultiplyCompliance(Contact, const PetscBool[]
 PETSC_INTERN PetscErrorCode ContactCreateRowSolver(Contact, const char[], PetscReal, PetscErrorCode (*)(Mat, Vec, Vec), void *, KSP *);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
+PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);

@@ -330,6 +330,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active, contact->conditions));
   PetscCall(PetscFree5(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets));
   PetscCall(PetscFree6(contact->changed, contact->gap_shift, contact->last_gap, contact->dropped, contact->heir, contact->merged_gap));
+  PetscCall(PetscFree2(contact->release_intervals, contact->release));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -142,24 +142,6 @@ PetscErrorCode ContactLeaveOutObstacles(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What an element of a body has to set against pressure: modulus of plane waves over edge length [N/m^3; N/m in one dimension] */
-PetscErrorCode ContactGetElementStiffness(Body body, PetscReal *stiffness)
-{
-  PetscReal impedance, density, size, cross_section;
-  Material  material;
-  PetscInt  dim;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(BodyGetMaterial(body, &material));
-  PetscCall(MaterialGetDensity(material, &density));
-  PetscCall(BodyGetElementSize(body, &size));
-  PetscCall(BodyGetCrossSection(body, &cross_section));
-  PetscCall(BodyGetDimension(body, &dim));
-  *stiffness = PetscSqr(impedance / cross_section) / density / size * (dim == 1 ? cross_section : 1);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Force for a metre of the unknown that stands for it: of an element of the bodies on both sides, one behind the other */
 static PetscErrorCode GetUnit(Contact contact, const ContactPair *pair, PetscReal *unit)
 {
@@ -169,7 +151,7 @@ static PetscErrorCode GetUnit(Contact contact, const ContactPair *pair, PetscRea
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal stiffness;
 
-    PetscCall(ContactGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
+    PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
     flexibility += 1 / stiffness;
   }
   *unit = 1 / flexibility;

@@ -144,7 +144,14 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(PetscTime(&begin));
   PetscCall(ContactSetUp(controller->contact));
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
-  PetscCall(PetscCalloc4(n, &controller->measures, 3 * n, &controller->contact_positions, 3 * n, &controller->contact_velocities, n_pairs, &controller->pair_states));
+  PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n, &controller->contact_velocities, n_pairs, &controller->pair_states));
+  for (PetscInt p = 0; p < n_pairs; p++) {
+    Body first, second;
+
+    PetscCall(ContactGetPair(controller->contact, p, NULL, &first, &second));
+    for (PetscInt b = 0; b < n && !second; b++)
+      if (controller->bodies[b] == first) controller->has_obstacle[b] = PETSC_TRUE;
+  }
   PetscCall(PetscTime(&end));
   controller->setup_seconds += end - begin;
   controller->setup = PETSC_TRUE;
@@ -188,14 +195,8 @@ static PetscErrorCode Observe(Controller controller, PetscInt step)
   PetscCall(ContactGetNumPairs(controller->contact, &frame.n_pairs));
   for (PetscInt b = 0; b < controller->n_bodies; b++) {
     PetscCall(BodyGetMeasures(controller->bodies[b], &controller->measures[b]));
+    if (controller->has_obstacle[b]) controller->measures[b].loaded = PETSC_TRUE;
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
-  }
-  for (PetscInt p = 0; p < frame.n_pairs; p++) { /* an obstacle is something outside */
-    Body first, second;
-
-    PetscCall(ContactGetPair(controller->contact, p, NULL, &first, &second));
-    for (PetscInt b = 0; b < controller->n_bodies && !second; b++)
-      if (controller->bodies[b] == first) controller->measures[b].loaded = PETSC_TRUE;
   }
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
   PetscCall(ContactGetCounts(controller->contact, &counts));
@@ -297,7 +298,7 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscCall(ContactDestroy(&c->contact));
   for (PetscInt b = 0; b < c->n_bodies; b++) PetscCall(BodyDestroy(&c->bodies[b]));
   PetscCall(PetscFree(c->bodies));
-  PetscCall(PetscFree4(c->measures, c->contact_positions, c->contact_velocities, c->pair_states));
+  PetscCall(PetscFree5(c->measures, c->has_obstacle, c->contact_positions, c->contact_velocities, c->pair_states));
   PetscCall(PetscHeaderDestroy(controller));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,6 +18,7 @@ struct _p_Controller {
   PetscErrorCode (*monitor_destroy[MAX_MONITORS])(void **);
   /* the frame they see */
   BodyMeasures     *measures;
+  PetscBool        *has_obstacle; /* per body: it may touch one, which is something outside */
   PetscReal        *contact_positions, *contact_velocities;
   ContactPairState *pair_states;
   /* cost */

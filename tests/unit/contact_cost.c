@@ -60,11 +60,6 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       simulation_test(a_changing_set_factors_nothing),
   };
-  int failed;
 
-  if (ImpaktInitialize(&argc, &argv)) return 1;
-  if (PetscLogDefaultBegin()) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (ImpaktFinalize()) return 1;
-  return failed;
+  return impakt_main_logged(argc, argv, tests);
 }

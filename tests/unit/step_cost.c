@@ -82,11 +82,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(implicit_linear),
       cmocka_unit_test(explicit_lumped),
   };
-  int failed;
 
-  if (ImpaktInitialize(&argc, &argv)) return 1;
-  if (PetscLogDefaultBegin()) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (ImpaktFinalize()) return 1;
-  return failed;
+  return impakt_main_logged(argc, argv, tests);
 }

@@ -260,13 +260,15 @@ static inline PetscReal value_at(Body body, Vec vec, PetscReal x)
 }
 
 /* main(): the tests of an array, between start and end of Impakt */
-#define impakt_main(argc, argv, tests) run_group(argc, argv, #tests, tests, sizeof(tests) / sizeof((tests)[0]))
-static inline int run_group(int argc, char **argv, const char name[], const struct CMUnitTest tests[], size_t n)
+#define impakt_main(argc, argv, tests)        run_group(argc, argv, #tests, tests, sizeof(tests) / sizeof((tests)[0]), PETSC_FALSE)
+#define impakt_main_logged(argc, argv, tests) run_group(argc, argv, #tests, tests, sizeof(tests) / sizeof((tests)[0]), PETSC_TRUE) /* for counts of events */
+static inline int run_group(int argc, char **argv, const char name[], const struct CMUnitTest tests[], size_t n, PetscBool logged)
 {
   int failed;
 
   (void)name;
   if (ImpaktInitialize(&argc, &argv)) return 1;
+  if (logged && PetscLogDefaultBegin()) return 1;
   failed = _cmocka_run_group_tests(name, tests, n, NULL, NULL);
   if (ImpaktFinalize()) return 1;
   return failed;

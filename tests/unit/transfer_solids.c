@@ -112,25 +112,32 @@ static void linear_fields_are_reproduced(void **state)
   }
 }
 
+/* Forces of any pressure have one resultant and moment on both sides */
+static void check_balance(Interface *interface)
+{
+  PetscReal sums[2][6];
+
+  for (PetscInt side = 0; side < 2; side++) {
+    Vec force = interface_force(interface, side, PETSC_FALSE);
+
+    interface_resultant(interface, side, force, sums[side]);
+    ok(VecDestroy(&force));
+  }
+  assert_true(PetscAbsReal(sums[0][interface->dim - 1]) > 0.1);
+  for (PetscInt i = 0; i < 6; i++) near(sums[1][i], sums[0][i], 1e-13);
+}
+
 /* Any pressure on a curved interface whose two sides do not fit: the same force and moment on both sides */
 static void force_and_moment_are_conserved(void **state)
 {
   (void)state;
   for (PetscInt pair = 0; pair < PAIRS; pair++)
     for (PetscInt flip = 0; flip < 2; flip++) {
-      PetscReal sums[2][6];
       Interface interface;
 
       open_pair(&interface, pair, (PetscBool)flip, pair_dim[pair] == 2 ? map_curved_2d : map_curved);
       assert_true(interface.n_opposite > 2);
-      for (PetscInt side = 0; side < 2; side++) {
-        Vec force = interface_force(&interface, side, PETSC_FALSE);
-
-        interface_resultant(&interface, side, force, sums[side]);
-        ok(VecDestroy(&force));
-      }
-      assert_true(PetscAbsReal(sums[0][interface.dim - 1]) > 0.1);
-      for (PetscInt i = 0; i < 6; i++) near(sums[1][i], sums[0][i], 1e-13);
+      check_balance(&interface);
       interface_destroy(&interface);
     }
 }
@@ -241,7 +248,7 @@ static void ends_are_guarded(void **state)
     const PetscInt     pair   = variant < 2 ? 0 : 3;
     const SurfaceData *data;
     const PetscScalar *gaps;
-    PetscReal          smallest = 1, sums[2][6];
+    PetscReal          smallest = 1;
     Interface          interface;
     Vec                moved;
 
@@ -267,14 +274,7 @@ static void ends_are_guarded(void **state)
     ok(VecDestroy(&moved));
     assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPIU_REAL, MPI_MIN, PETSC_COMM_WORLD), 0);
     if (!guards) assert_true(smallest > 0.0225); /* a mean over what is covered, above the gap at the end */
-    for (PetscInt side = 0; side < 2; side++) {
-      Vec force = interface_force(&interface, side, PETSC_FALSE);
-
-      interface_resultant(&interface, side, force, sums[side]);
-      ok(VecDestroy(&force));
-    }
-    assert_true(PetscAbsReal(sums[0][interface.dim - 1]) > 0.1);
-    for (PetscInt i = 0; i < 6; i++) near(sums[1][i], sums[0][i], 1e-13);
+    check_balance(&interface);
     interface_destroy(&interface);
   }
 }

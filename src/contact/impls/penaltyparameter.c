@@ -41,7 +41,7 @@ static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, P
     PetscReal stiffness = 0;
     PetscBool massless;
 
-    PetscCall(ContactGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
+    PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
     PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
     if (!massless) all_massless = PETSC_FALSE;
     flexibility += 1 / stiffness;

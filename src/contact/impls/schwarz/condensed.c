@@ -48,19 +48,21 @@ static PetscErrorCode FindObstacle(Contact contact, const char *why[], PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the Dirichlet side of some pair makes substeps that its partner does not share, see SchwarzSetUpSides() */
-static PetscErrorCode FindUnshared(Contact contact, PetscBool *unshared)
+/* Marks the pairs whose Dirichlet side makes substeps that its partner does not share: their forces are the unknowns, see SchwarzSetUpSides() */
+static PetscErrorCode MarkUnshared(Contact contact, PetscBool *any)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  *unshared = PETSC_FALSE;
+  *any = PETSC_FALSE;
   for (PetscInt p = 0; p < contact->n_pairs && schwarz->waveform == WAVEFORM_LINEAR; p++) {
-    PetscInt substeps[2];
+    ContactPair *pair = &contact->pairs[p];
+    PetscInt     substeps[2];
 
-    if (contact->pairs[p].obstacle) continue;
-    for (PetscInt side = 0; side < 2; side++) PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[side]], &substeps[side]));
-    if (substeps[1] % substeps[0]) *unshared = PETSC_TRUE;
+    if (pair->obstacle) continue;
+    for (PetscInt side = 0; side < 2; side++) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[side]], &substeps[side]));
+    pair->by_force = (PetscBool)(substeps[1] % substeps[0] != 0);
+    if (pair->by_force) *any = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -77,13 +79,12 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   PetscFunctionBegin;
   PetscCall(ContactOr(contact, &shared));
   PetscCall(FindObstacle(contact, &why, &newton));
-  PetscCall(FindUnshared(contact, &unshared));
+  PetscCall(MarkUnshared(contact, &unshared));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt n;
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &n));
     if (n > 1) substeps = PETSC_TRUE;
-    contact->release_room = PetscMax(contact->release_room, n + 1);
   }
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
   schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || shared || unshared || schwarz->condense == CONDENSE_ALWAYS));
@@ -91,7 +92,8 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
   schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
   schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
   contact->fades         = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR);
-  PetscCall(PetscCalloc2(contact->n_rows, &contact->release_intervals, contact->n_rows * contact->release_room, &contact->release));
+  if (contact->fades) PetscCall(ContactSetUpRelease(contact));
+  for (PetscInt p = 0; p < contact->n_pairs && !schwarz->by_compliance; p++) contact->pairs[p].by_force = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -185,7 +185,6 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
   PetscCall(PetscFree3(schwarz->rounds.tried, schwarz->kept_force, schwarz->previous));
   PetscCall(PetscFree2(schwarz->known, schwarz->rounds.kept));
-  PetscCall(PetscFree2(contact->release_intervals, contact->release));
   PetscCall(PetscFree(schwarz->interpolated));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,15 +18,13 @@ static PetscInt CommonDivisor(PetscInt a, PetscInt b)
    for both; the gap is closed at these times. */
 static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichlet, PetscInt *levels)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-  ContactPair   *pair    = &contact->pairs[p];
-  PetscInt       substeps[2];
+  const ContactPair *pair = &contact->pairs[p];
+  PetscInt           substeps[2];
 
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(contact->bodies[pair->body[0]], &substeps[0]));
   substeps[1] = substeps[0]; /* of an obstacle */
   if (!pair->obstacle) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1]], &substeps[1]));
-  pair->by_force = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR && substeps[1] % substeps[0]);
   if (pair->by_force) *levels = CommonDivisor(substeps[0], substeps[1]);
   else *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
   PetscFunctionReturn(PETSC_SUCCESS);
