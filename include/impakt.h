@@ -1,17 +1,17 @@
 /* Everything Impakt offers as a library. */
 #pragma once
-#include <body.h>
-#include <contact.h>
-#include <controller.h>
-#include <exact.h>
-#include <expression.h>
-#include <io.h>
-#include <material.h>
-#include <mesh.h>
-#include <surface.h>
-#include <trace.h>
-#include <transfer.h>
-#include <tssecondorder.h>
+#include <impakt/body.h>
+#include <impakt/contact.h>
+#include <impakt/controller.h>
+#include <impakt/exact.h>
+#include <impakt/expression.h>
+#include <impakt/io.h>
+#include <impakt/material.h>
+#include <impakt/mesh.h>
+#include <impakt/surface.h>
+#include <impakt/trace.h>
+#include <impakt/transfer.h>
+#include <impakt/tssecondorder.h>
 
 #define IMPAKT_VERSION "0.1.0"
 

@@ -1,5 +1,5 @@
 #pragma once
-#include <controller.h>
+#include <impakt/controller.h>
 #include <petsc/private/petscimpl.h>
 
 #define MAX_MONITORS 16

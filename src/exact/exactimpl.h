@@ -1,5 +1,5 @@
 #pragma once
-#include <exact.h>
+#include <impakt/exact.h>
 
 #define EXACT_QUANTITIES 6 /* members of ExactSolution */
 

@@ -1,5 +1,5 @@
 #pragma once
-#include <expression.h>
+#include <impakt/expression.h>
 
 typedef struct _n_Table *Table;
 

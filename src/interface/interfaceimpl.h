@@ -1,7 +1,7 @@
 /* Private to src/interface. */
 #pragma once
 #include <petscsf.h>
-#include <transfer.h>
+#include <impakt/transfer.h>
 
 struct _n_Surface {
   DM           dm;

@@ -1,4 +1,4 @@
-#include <obstacle.h>
+#include <impakt/obstacle.h>
 #include <petscoptions.h>
 #include <petscviewer.h>
 

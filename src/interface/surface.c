@@ -1,5 +1,5 @@
 #include "interfaceimpl.h"
-#include <mesh.h>
+#include <impakt/mesh.h>
 
 /* The vertices of a boundary face and how many they are; those of a cell too */
 static PetscErrorCode GetVertices(DM dm, PetscInt point, PetscInt *n, PetscInt vertices[])

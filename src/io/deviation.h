@@ -1,6 +1,6 @@
 /* How far bodies are from displacements that the user gives as formulas. */
 #pragma once
-#include <controller.h>
+#include <impakt/controller.h>
 
 typedef struct _n_Deviation *Deviation;
 

@@ -1,6 +1,6 @@
 /* The fields of all bodies over time. */
 #pragma once
-#include <controller.h>
+#include <impakt/controller.h>
 #include "fieldsfile.h"
 
 typedef struct _n_Fields *Fields;

@@ -1,6 +1,6 @@
 /* The meshes of all bodies as one, for files of fields. */
 #pragma once
-#include <body.h>
+#include <impakt/body.h>
 #include <hdf5.h>
 
 /* Rows of a dataset, body after body, and in each body rank after rank */

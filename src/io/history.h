@@ -1,6 +1,6 @@
 /* The HDF5 history of a run. */
 #pragma once
-#include <controller.h>
+#include <impakt/controller.h>
 
 typedef struct _n_History *History;
 

@@ -1,6 +1,6 @@
 /* What a run writes and prints, from its options. */
-#include <io.h>
-#include <exact.h>
+#include <impakt/io.h>
+#include <impakt/exact.h>
 #include "deviation.h"
 #include "fields.h"
 #include "history.h"

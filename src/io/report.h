@@ -1,6 +1,6 @@
 /* The results table of a run. */
 #pragma once
-#include <exact.h>
+#include <impakt/exact.h>
 #include "statistics.h"
 
 PETSC_INTERN PetscErrorCode ReportView(Controller, const StatisticsResults *, Exact, PetscViewer);

@@ -1,6 +1,6 @@
 /* The JSON summary of a run. */
 #pragma once
-#include <exact.h>
+#include <impakt/exact.h>
 #include "statistics.h"
 
 PETSC_INTERN PetscErrorCode SummaryWrite(Controller, const StatisticsResults *, Exact, const char[]);

@@ -1,6 +1,6 @@
 /* What the readers of mesh files share with the making of a DMPlex. Private to src/mesh. */
 #pragma once
-#include <mesh.h>
+#include <impakt/mesh.h>
 
 #define MESH_NAME_LENGTH 256
 

@@ -1,4 +1,4 @@
-#include <trace.h>
+#include <impakt/trace.h>
 
 struct _n_Trace {
   PetscInt     size, levels;

@@ -3,7 +3,7 @@
 
      v_{n+1/2} = v_n + dt/2 a_n,   u_{n+1} = u_n + dt v_{n+1/2},   a_{n+1} = a(t_{n+1}, u_{n+1}),   v_{n+1} = v_{n+1/2} + dt/2 a_{n+1}
 */
-#include <tssecondorder.h>
+#include <impakt/tssecondorder.h>
 #include <petsc/private/tsimpl.h>
 
 typedef struct {

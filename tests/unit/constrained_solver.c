@@ -1,6 +1,6 @@
 /* A x = b with some rows of B x held at zero, against a dense solution of [A B^T; B 0]. */
 #include "support.h"
-#include <body/constrainedsolver.h>
+#include <solver/constrainedsolver.h>
 
 #define SIZE 12
 #define ROWS 4

@@ -1,6 +1,6 @@
 /* Contact pairs, their errors, and what all contact methods share. */
 #include "simulation.h"
-#include <contact/contactimpl.h>
+#include <impakt/private/contactimpl.h>
 
 /* Bodies that are names only, for the parsing of pairs */
 static Contact CreateNames(void)

@@ -1,7 +1,7 @@
 /* The two-node bar, and the stable step that elements give. */
 #include "support.h"
 #include <petscblaslapack.h>
-#include <body/bodyimpl.h>
+#include <body/layout/bodyimpl.h>
 
 /* Two elements on one rank: 0.5 m along the axis, and 0.25 m against it. E A = 3 Pa * 4 m^2 = 12 N */
 static const PetscReal coordinates[]  = {1, 1.5, 1.75};

@@ -1,6 +1,6 @@
 /* Formulas, tables and lists that users write in options. */
 #include "support.h"
-#include <expression.h>
+#include <impakt/expression.h>
 
 static PetscReal value_of(const char text[], PetscReal x, PetscReal y, PetscReal t)
 {

@@ -1,6 +1,6 @@
 /* Boxes with loads, and what their nodal forces add up to. */
 #include "support.h"
-#include <body/bodyimpl.h>
+#include <body/layout/bodyimpl.h>
 
 /* A box of this size with its lower corner there: sides of area 12, 8, 6, or edges of length 3, 2 */
 static const PetscReal box_size[] = {2, 3, 4}, box_lower[] = {0.5, -1, 0.25};

@@ -1,6 +1,6 @@
 /* Mass matrices: by hand, their total, the massless contact layer, and what they do to waves. */
 #include "support.h"
-#include <body/bodyimpl.h>
+#include <body/layout/bodyimpl.h>
 
 static const char *const types[]       = {"lumped", "consistent", "averaged"};
 static const char *const integrators[] = {TSALPHA2, TSCENTRALDIFFERENCE};

@@ -1,6 +1,6 @@
 /* Constitutive models and their registry. */
 #include "support.h"
-#include <body/material/materialimpl.h>
+#include <impakt/private/materialimpl.h>
 
 static Material create(void)
 {

@@ -1,7 +1,7 @@
 /* What the tests of material kernels share: the models, points drawn at random, and answers at one point. */
 #pragma once
 #include "support.h"
-#include <body/material/materialimpl.h>
+#include <impakt/private/materialimpl.h>
 
 static const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
 /* none, metal, rubber-like, auxetic */

@@ -1,7 +1,7 @@
 /* What the tests of meshes share: what a mesh is like, and small mesh files. */
 #pragma once
 #include "support.h"
-#include <mesh.h>
+#include <impakt/mesh.h>
 #include <netcdf.h>
 
 static inline PetscMPIInt rank_of_world(void)

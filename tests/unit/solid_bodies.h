@@ -1,8 +1,8 @@
 /* Bodies in two and three dimensions, their contact nodes, rows at single nodes, and sums over their nodes. */
 #pragma once
 #include "support.h"
-#include <mesh.h>
-#include <body/bodyimpl.h>
+#include <impakt/mesh.h>
+#include <body/layout/bodyimpl.h>
 
 /* Quadrilaterals, triangles, hexahedra, tetrahedra */
 #define KINDS 4

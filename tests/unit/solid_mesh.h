@@ -1,7 +1,7 @@
 /* Small meshes of one shape, elements on them, and displacements for tests of solid elements. */
 #pragma once
 #include "support.h"
-#include <body/element/element.h>
+#include <impakt/private/elementimpl.h>
 
 #define MAX_NODES 64
 #define MAX_CELLS 162

@@ -2,7 +2,7 @@
 /* ranks: 1 */
 #include "solid_mesh.h"
 #include <petscblaslapack.h>
-#include <body/bodyimpl.h>
+#include <body/layout/bodyimpl.h>
 
 /* A Gmsh file, version 2.2, in the working directory */
 static void write_mesh(const Mesh *mesh, const char path[])

@@ -1,7 +1,7 @@
 /* What a step costs, counted rather than timed. */
 /* ranks: 1 */
 #include "support.h"
-#include <body/bodyimpl.h>
+#include <body/layout/bodyimpl.h>
 
 #define STEPS 10
 

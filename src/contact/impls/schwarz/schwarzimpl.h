@@ -1,5 +1,5 @@
 #pragma once
-#include "../../outersolver.h"
+#include <contact/compliance/outersolver.h>
 
 /* Rounds of the active set in one step after which something must be wrong */
 #define SCHWARZ_MAX_ROUNDS 100

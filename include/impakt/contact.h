@@ -1,0 +1,174 @@
+/* Contact between bodies: pairs, active set, and the methods that advance all bodies through a controller step. */
+#pragma once
+#include <impakt/body.h>
+#include <impakt/transfer.h>
+
+/*S
+   Contact - the contact pairs among some bodies and the method that enforces contact
+
+   Level: beginner
+
+.seealso: `ContactCreate()`, `ContactSetType()`, `ContactStep()`, `ContactRegister()`
+S*/
+typedef struct _p_Contact *Contact;
+
+/*J
+   ContactType - name of a contact method
+
+   Values:
++ `CONTACT_SCHWARZ`              - Schwarz alternating method
+. `CONTACT_PENALTY`              - penalty method
+. `CONTACT_LAGRANGE`             - Lagrange multipliers, implicit or forward-increment
+- `CONTACT_AUGMENTED_LAGRANGIAN` - penalty method whose forces are added up until the gap is closed
+
+   Level: beginner
+
+.seealso: `ContactSetType()`
+J*/
+typedef const char *ContactType;
+#define CONTACT_SCHWARZ              "schwarz"
+#define CONTACT_PENALTY              "penalty"
+#define CONTACT_LAGRANGE             "lagrange"
+#define CONTACT_AUGMENTED_LAGRANGIAN "augmented_lagrangian"
+
+/*E
+   ContactLaw - what contact surfaces do to each other
+
+   Values:
++ `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
+- `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start stay there: all components of the displacement are equal
+
+   Level: beginner
+
+.seealso: `ContactSetFromOptions()`
+E*/
+typedef enum {
+  CONTACT_LAW_FRICTIONLESS,
+  CONTACT_LAW_TIED
+} ContactLaw;
+PETSC_EXTERN const char *const ContactLaws[];
+
+/*E
+   ContactConstraint - what contact forces keep from becoming negative
+
+   Values:
++ `CONTACT_CONSTRAINT_GAP`      - the gap
+. `CONTACT_CONSTRAINT_GAP_RATE` - the rate at which the gap changes over a controller step, where bodies touch
+- `CONTACT_CONSTRAINT_BOTH`     - both
+
+   Level: intermediate
+
+   Note:
+   The condition on the rate is the persistency condition of Laursen and Chawla 1997.
+
+.seealso: `ContactSetFromOptions()`
+E*/
+typedef enum {
+  CONTACT_CONSTRAINT_GAP,
+  CONTACT_CONSTRAINT_GAP_RATE,
+  CONTACT_CONSTRAINT_BOTH
+} ContactConstraint;
+PETSC_EXTERN const char *const ContactConstraints[];
+
+/*E
+   ContactStabilization - what is done against chatter where contact nodes have mass
+
+   Values:
++ `CONTACT_STABILIZATION_NONE`               - nothing
+. `CONTACT_STABILIZATION_NAIVE`              - the acceleration of the nodes in contact is set to zero after each controller step
+- `CONTACT_STABILIZATION_CONTACT_STABILIZED` - contact-stabilized Newmark method (Deuflhard, Krause, Ertel 2008)
+
+   Level: intermediate
+
+.seealso: `ContactSetFromOptions()`
+E*/
+typedef enum {
+  CONTACT_STABILIZATION_NONE,
+  CONTACT_STABILIZATION_NAIVE,
+  CONTACT_STABILIZATION_CONTACT_STABILIZED
+} ContactStabilization;
+PETSC_EXTERN const char *const ContactStabilizations[];
+
+PETSC_EXTERN PetscClassId CONTACT_CLASSID;
+
+/*S
+   ContactPairState - what a contact pair does at the end of a controller step
+
+   Level: intermediate
+
+.seealso: `ContactGetPairState()`
+S*/
+typedef struct {
+  PetscReal force;   /* resultant of the normal contact forces, compression positive [N] */
+  PetscReal gap;     /* smallest normal gap [m] */
+  PetscInt  active;  /* nodes in contact */
+  PetscReal tension; /* largest tensile force of an active node, 0 if there is none [N] */
+  PetscReal area;    /* of the active nodes; of bars, the cross-section of the first body [m^2] */
+  /* on the second body; on the first act their opposites; zeros beyond the space dimension */
+  PetscReal force_vector[3]; /* resultant [N] */
+  PetscReal moment[3];       /* of the forces about the origin, where the nodes of the first body are now [N m] */
+  PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, trapezoidal [N s] */
+} ContactPairState;
+
+/*S
+   ContactCounts - how much work the steps so far took
+
+   Level: intermediate
+
+.seealso: `ContactGetCounts()`
+S*/
+typedef struct {
+  PetscInt       sweeps; /* of the last step: each body integrated once; 0 without contact */
+  PetscInt64     total_sweeps;
+  PetscInt       unconverged_steps; /* accepted by -schwarz_unconverged accept */
+  PetscInt       set_changes;       /* rounds of the active set beyond the first, all steps */
+  PetscInt       set_cycles;        /* steps in which a set came up twice and a rule ended the alternation */
+  PetscInt64     inner_iterations;  /* of conjugate gradients on the interface */
+  PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
+  PetscLogDouble seconds;           /* in sweeps */
+} ContactCounts;
+
+/* What ContactFieldsCompute() gives for each node */
+#define CONTACT_FIELDS_FORCE    0 /* three components [N] */
+#define CONTACT_FIELDS_PRESSURE 3 /* [Pa] */
+#define CONTACT_FIELDS_GAP      4 /* [m] */
+#define CONTACT_FIELDS_ACTIVE   5 /* 1 in contact, else 0 */
+#define CONTACT_FIELDS_SIZE     6
+
+/*S
+   ContactFields - contact forces, pressures, gaps and active nodes of bodies, node by node
+
+   Level: intermediate
+
+.seealso: `ContactFieldsCreate()`, `ContactFieldsCompute()`
+S*/
+typedef struct _n_ContactFields *ContactFields;
+
+PETSC_EXTERN PetscErrorCode ContactRegisterAll(void);
+PETSC_EXTERN PetscErrorCode ContactFinalizePackage(void);
+PETSC_EXTERN PetscErrorCode ContactRegister(const char[], PetscErrorCode (*)(Contact));
+PETSC_EXTERN PetscErrorCode ContactCreate(MPI_Comm, Contact *);
+PETSC_EXTERN PetscErrorCode ContactSetBodies(Contact, PetscInt, const Body[]);
+PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
+PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
+PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
+PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
+PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
+PETSC_EXTERN PetscErrorCode ContactStep(Contact);
+PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
+PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
+PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
+
+PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);
+PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Body *, Body *);
+PETSC_EXTERN PetscErrorCode ContactGetPairNormal(Contact, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairState *);
+PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
+PETSC_EXTERN PetscErrorCode ContactGetPenaltyEnergy(Contact, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
+PETSC_EXTERN PetscErrorCode ContactGetBodyTrace(Contact, PetscInt, PetscReal[], PetscReal[]);
+
+PETSC_EXTERN PetscErrorCode ContactFieldsCreate(Contact, ContactFields *);
+PETSC_EXTERN PetscErrorCode ContactFieldsCompute(ContactFields, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactFieldsDestroy(ContactFields *);

@@ -1,0 +1,52 @@
+/* The time loop over controller steps. */
+#pragma once
+#include <impakt/contact.h>
+
+/*S
+   Controller - advances bodies in contact from controller step to controller step, and tells observers
+
+   Level: beginner
+
+.seealso: `ControllerCreate()`, `ControllerSolve()`, `ControllerMonitorSet()`
+S*/
+typedef struct _p_Controller *Controller;
+
+PETSC_EXTERN PetscClassId CONTROLLER_CLASSID;
+
+/*S
+   ControllerFrame - the state of everything at the end of an accepted controller step, as observers see it
+
+   Level: intermediate
+
+   Note:
+   The same on every rank; arrays are owned by the controller and valid during the call.
+
+.seealso: `ControllerMonitorSet()`
+S*/
+typedef struct {
+  PetscInt                step;  /* 0: the initial state */
+  PetscInt                steps; /* of the whole run */
+  PetscReal               time;  /* s */
+  PetscInt                n_bodies, n_pairs;
+  const BodyMeasures     *bodies;             /* per body */
+  const PetscReal        *contact_positions;  /* per body: mean position of its contact nodes, 3 numbers [m] */
+  const PetscReal        *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
+  const ContactPairState *pairs;              /* per pair */
+  PetscInt                sweeps;             /* of this step */
+  PetscReal               penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
+} ControllerFrame;
+
+typedef PetscErrorCode ControllerMonitorFn(Controller, const ControllerFrame *, void *);
+
+PETSC_EXTERN PetscErrorCode ControllerRegisterAll(void);
+PETSC_EXTERN PetscErrorCode ControllerCreate(MPI_Comm, Controller *);
+PETSC_EXTERN PetscErrorCode ControllerSetFromOptions(Controller);
+PETSC_EXTERN PetscErrorCode ControllerSetUp(Controller);
+PETSC_EXTERN PetscErrorCode ControllerMonitorSet(Controller, ControllerMonitorFn *, void *, PetscErrorCode (*)(void **));
+PETSC_EXTERN PetscErrorCode ControllerSolve(Controller);
+PETSC_EXTERN PetscErrorCode ControllerView(Controller, PetscViewer);
+PETSC_EXTERN PetscErrorCode ControllerDestroy(Controller *);
+PETSC_EXTERN PetscErrorCode ControllerGetBodies(Controller, PetscInt *, const Body *[]);
+PETSC_EXTERN PetscErrorCode ControllerGetContact(Controller, Contact *);
+PETSC_EXTERN PetscErrorCode ControllerGetTimes(Controller, PetscReal *, PetscReal *, PetscInt *);
+PETSC_EXTERN PetscErrorCode ControllerGetTimings(Controller, PetscLogDouble *, PetscLogDouble *, PetscLogDouble *);

@@ -1,0 +1,88 @@
+/* Exact solutions to compare a run with. */
+#pragma once
+#include <impakt/controller.h>
+
+/*S
+   Exact - the exact solution for two elastic bars that hit each other, and a run's distance from it
+
+   Level: intermediate
+
+   Note:
+   Everything is told along the outward normal of the contact face on the Dirichlet side of the contact pair: that of the left bar of
+   Hoy, Tezaur, Mota, section 4.2. The bars may move along together, lie anywhere, and point in any direction.
+
+.seealso: `ExactCreate()`, `ExactEvaluate()`, `ExactMonitor()`, `ExactType`
+S*/
+typedef struct _n_Exact *Exact;
+
+/*J
+   ExactType - kind of exact solution
+
+   Values:
++  `EXACT_IMPACT`          - the closed form for two equal bars, Hoy, Tezaur, Mota, eqs. (4.1) to (4.7)
+-  `EXACT_CHARACTERISTICS` - the method of characteristics, for two bars of any lengths, materials and cross-sections
+
+   Options Database Key:
+.  -exact (none|impact|characteristics) - compare the run with it
+
+   Level: intermediate
+
+.seealso: `Exact`, `ExactCreate()`
+J*/
+typedef const char *ExactType;
+#define EXACT_IMPACT          "impact"
+#define EXACT_CHARACTERISTICS "characteristics"
+
+/*S
+   ExactSolution - the state of one bar at one time
+
+   Level: intermediate
+
+.seealso: `ExactEvaluate()`
+S*/
+typedef struct {
+  PetscReal contact_position; /* of the contact face along the normal [m] */
+  PetscReal contact_velocity; /* [m/s] */
+  PetscReal contact_force;    /* compression positive [N] */
+  PetscReal kinetic;          /* J */
+  PetscReal potential;        /* J */
+  PetscReal mean_velocity;    /* mass-averaged [m/s] */
+} ExactSolution;
+
+/* Of one bar: relative L2 norms in time, as in ExactErrors, and largest error in time / largest exact value in time */
+typedef struct {
+  PetscReal kinetic, potential, mean_velocity;
+  PetscReal kinetic_max, potential_max;
+} ExactBodyErrors;
+
+/*S
+   ExactErrors - how far a run is from the exact solution; not-a-number where the run does not tell
+
+   Level: intermediate
+
+   Notes:
+   Of the bar on the Dirichlet side, but for `bodies`. The first six are relative L2 norms in time over all controller steps,
+   sqrt(sum (x - x_exact)^2 / sum x_exact^2). The contact position is measured from the point of impact, which moves with the
+   centre of mass of both bars: the origin of the coordinates has no say.
+
+   `peak_potential` = (peak - exact peak) / exact peak. `release_time` = (release - t_release) / (t_release - t_impact), release
+   being the end of the last controller step in contact, and t_release that of the last contact force: faces may go on
+   touching without one.
+
+.seealso: `ExactGetErrors()`
+S*/
+typedef struct {
+  PetscReal       contact_position, contact_velocity, contact_force, kinetic, potential, mean_velocity;
+  PetscReal       peak_potential, release_time;
+  ExactBodyErrors bodies[2]; /* on the Dirichlet side, and its partner */
+} ExactErrors;
+
+PETSC_EXTERN PetscErrorCode      ExactCreate(Controller, ExactType, Exact *);
+PETSC_EXTERN PetscErrorCode      ExactEvaluate(Exact, PetscInt, PetscReal, ExactSolution *);
+PETSC_EXTERN PetscErrorCode      ExactGetTimes(Exact, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode      ExactGetForce(Exact, PetscReal *);
+PETSC_EXTERN PetscErrorCode      ExactGetImpulse(Exact, PetscReal *);
+PETSC_EXTERN PetscErrorCode      ExactGetBodies(Exact, const char *[]);
+PETSC_EXTERN ControllerMonitorFn ExactMonitor;
+PETSC_EXTERN PetscErrorCode      ExactGetErrors(Exact, ExactErrors *);
+PETSC_EXTERN PetscErrorCode      ExactDestroy(Exact *);

@@ -1,0 +1,162 @@
+#pragma once
+#include <impakt/contact.h>
+#include <petscksp.h>
+#include <petsc/private/petscimpl.h>
+
+struct _ContactOps {
+  PetscErrorCode (*setfromoptions)(Contact);
+  PetscErrorCode (*setup)(Contact);
+  PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
+  PetscErrorCode (*rowschanged)(Contact); /* some rows of the bodies' interfaces, contact->changed, have new entries */
+  PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of the step, before they become the next one's start */
+  PetscErrorCode (*view)(Contact, PetscViewer);
+  PetscErrorCode (*destroy)(Contact);
+};
+
+typedef struct {
+  char     *name;       /* as given: left:right */
+  PetscInt  body[2];    /* numbers in the contact's bodies: the one that has a node for each row, and its partner */
+  PetscInt  dirichlet;  /* 0 or 1: which of them takes displacements in this controller step */
+  char     *surface[2]; /* names of the surfaces, NULL for all that face each other */
+  Obstacle  obstacle;   /* in place of the second body, whose number is that of the bodies then; borrowed */
+  PetscBool chosen;     /* by the program, not by the user */
+  Surface   surfaces[2];
+  Transfer  transfer;
+  PetscInt  components; /* rows of each node: its normal, or all directions */
+  PetscInt  begin, end; /* its rows of this rank */
+  PetscReal normal[3];  /* mean outward normal of the first */
+  PetscBool by_force;   /* forces are the unknowns of all its rows, see SchwarzSetUpSides() */
+} ContactPair;
+
+/* The gap of a row without anything opposite [m] */
+#define CONTACT_NO_GAP 1e30
+
+/* Nodes of this rank with rows of several pairs */
+typedef struct {
+  PetscInt   n, *offsets, *rows;
+  PetscBool *free_dofs; /* per node: 3, whether the user leaves its displacement along an axis free */
+  PetscBool *left_out;  /* per entry of `rows`: it is of an obstacle that lies behind another */
+  PetscReal *unit;      /* per pair: stiffness for each unit of area that makes forces of unknowns in metres [N/m^3] */
+  PetscBool *answers;   /* per pair: displacements of the partner answer to forces in the same controller step */
+  PetscBool  arranges;  /* rows that depend on each other are told apart */
+  PetscInt  *sorted;    /* work space */
+} SharedNodes;
+
+/* What the rows mean to the bodies */
+typedef enum {
+  CONDITIONS_FREE,         /* no row means anything */
+  CONDITIONS_SCHWARZ,      /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
+  CONDITIONS_ROBIN,        /* active rows: Robin rows on both sides */
+  CONDITIONS_FORCES,       /* all rows forced on both sides */
+  CONDITIONS_ACTIVE_FORCES /* active rows forced on both sides */
+} ContactConditions;
+
+struct _p_Contact {
+  PETSCHEADER(struct _ContactOps);
+  PetscInt     n_bodies, n_pairs, max_pairs, dim;
+  Body        *bodies;
+  BodyTraces  *traces;     /* per body, and then those of what stays where it is */
+  Mat         *interfaces; /* per body: rows of all pairs */
+  ContactPair *pairs;
+  PetscInt     n_obstacles;
+  Obstacle    *obstacles;
+  ContactLaw   law;
+  PetscBool    prescribes;              /* the method prescribes displacements on Dirichlet sides */
+  PetscBool    facing;                  /* whole bodies come with the faces alone that see each other at the start */
+  PetscReal    slip_bound, angle_bound; /* beyond which rows are built again: parts of a face, rad */
+  PetscInt    *order;                   /* sweep order: Dirichlet sides before their Neumann sides */
+  /* rows of this rank */
+  PetscInt             n_rows, row_begin, n_all_rows;
+  PetscInt            *row_pair;
+  PetscReal           *initial_gap, *area;
+  PetscInt            *row_dof;       /* first displacement of its node in the pair's first body, rank numbering */
+  PetscReal           *row_normal;    /* its direction, 3 numbers, 0 beyond the dimension */
+  PetscBool           *opposite;      /* it has anything to touch */
+  PetscBool           *tied;          /* it is held whatever its force and gap */
+  PetscBool           *dropped;       /* it would be one to touch, but its node is held */
+  PetscBool           *heir;          /* it has been merged with dropped ones */
+  PetscReal           *merged_gap;    /* added to its gap for that [m] */
+  Mat                  merger;        /* dropped rows to those of their neighbours; NULL: there are none */
+  Vec                  places, means; /* work space of the same sizes */
+  PetscBool           *by_force;      /* its force is an unknown of the method, on both sides; NULL: of none */
+  SharedNodes          shared;
+  PetscBool           *changed;                 /* it has new entries */
+  PetscReal           *gap_shift;               /* added to its gap when it was built again [m] */
+  PetscReal           *last_gap;                /* work space: before that */
+  PetscReal           *force, *gap;             /* at the end of the controller step */
+  PetscReal           *saved_force, *saved_gap; /* at its start */
+  PetscBool           *active, *saved_active;
+  PetscBool            fades;             /* rows are not let go all at once: their forces fall to zero in the course of the controller step */
+  PetscInt            *release_intervals; /* per row let go in this controller step: between the times at which its force is told; else 0 */
+  PetscInt             release_room;      /* times that each row has room for */
+  PetscReal           *release;           /* per row: its force at these times [N] */
+  BodyCondition       *conditions;        /* work space */
+  PetscInt            *all_row_pair;      /* of all rows, on every rank */
+  int                 *mine_active, *all_active;
+  PetscMPIInt          size, *counts, *offsets;
+  PetscReal           *speeds;    /* work space, per body */
+  PetscReal            tolerance; /* gaps above minus this are not penetration [m] */
+  PetscInt           **node_dofs; /* per body: its owned contact nodes, first displacement, rank numbering */
+  PetscInt            *n_node_dofs, *n_all_nodes;
+  ContactConstraint    constraint;
+  ContactStabilization stabilization;
+  PetscBool           *stabilized; /* work space: rows of a body in contact */
+  ContactCounts        counts_made;
+  PetscReal            penalty_energy;
+  /* resultants of the pairs */
+  PetscReal *cross_section; /* per pair: of the first body, which makes areas of `area` */
+  PetscReal *sums, *maxima; /* per pair: work space */
+  PetscReal *impulse;       /* per pair, this rank's share: impulse so far, force at the end of the last accepted step; 3 numbers each */
+  PetscReal  step;          /* controller step [s] */
+  PetscBool  setup;
+  void      *data;
+};
+
+PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
+
+PETSC_INTERN PetscErrorCode ContactReadObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
+PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
+PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactFindSharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroySharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactLeaveOutObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
+PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
+PETSC_INTERN void           ContactArrangeShared(Contact);
+PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
+PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
+PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
+PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
+PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
+PETSC_INTERN PetscErrorCode ContactMultiplyCompliance(Contact, const PetscBool[], PetscBool, Vec[2], Vec, Vec);
+PETSC_INTERN PetscErrorCode ContactCreateRowSolver(Contact, const char[], PetscReal, PetscErrorCode (*)(Mat, Vec, Vec), void *, KSP *);
+PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
+PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
+PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
+PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactOr(Contact, int *);
+PETSC_INTERN PetscErrorCode ContactAddCompliance(Contact, PetscInt, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactGatherActive(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
+PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
+PETSC_INTERN PetscErrorCode ContactStabilize(Contact);
+
+PETSC_INTERN PetscErrorCode ContactCreate_Schwarz(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_Penalty(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_Lagrange(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_AugmentedLagrangian(Contact);

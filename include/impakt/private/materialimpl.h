@@ -1,0 +1,35 @@
+#pragma once
+#include <impakt/material.h>
+#include <petsc/private/petscimpl.h>
+
+struct _MaterialOps {
+  PetscErrorCode (*setfromoptions)(Material);
+  PetscErrorCode (*view)(Material, PetscViewer);
+  PetscErrorCode (*destroy)(Material);
+  PetscErrorCode (*kernels)(Material, PetscBool, MaterialKernels *);                     /* in plane stress, or not */
+  PetscErrorCode (*wavemodulus)(Material, PetscBool, PetscReal *);                       /* at zero strain; in plane stress, or not */
+  PetscErrorCode (*uniaxialmodulus)(Material, PetscReal *);                              /* at zero strain */
+  PetscErrorCode (*uniaxial)(Material, PetscInt, const PetscReal[], PetscReal[]);        /* strain -> stress, a batch of points */
+  PetscErrorCode (*uniaxialtangent)(Material, PetscInt, const PetscReal[], PetscReal[]); /* strain -> its derivative */
+  PetscErrorCode (*uniaxialenergy)(Material, PetscInt, const PetscReal[], PetscReal[]);  /* strain -> its integral */
+};
+
+/* What kernels of plane stress need of the solid */
+typedef struct {
+  MaterialKernels solid;
+  void (*thickness)(const void *data, const PetscReal H[9][8], PetscReal Hzz[8]); /* NULL: by Newton's method */
+} PlaneStressData;
+
+struct _p_Material {
+  PETSCHEADER(struct _MaterialOps);
+  PetscReal       density;      /* kg/m^3; 0 until set */
+  PetscBool       linear;       /* stress proportional to strain: matrices are constant */
+  PetscBool       plane_stress; /* what MaterialGetKernels() and MaterialGetWaveModulus() speak of */
+  PlaneStressData plane;        /* data of the kernels of plane stress, for models that use MaterialCondenseKernels() */
+  void           *data;
+};
+
+PETSC_INTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const void *, const PetscReal[9][8], PetscReal[8]), MaterialKernels *);
+PETSC_INTERN PetscErrorCode MaterialCreate_LinearElastic(Material);
+PETSC_INTERN PetscErrorCode MaterialCreate_SaintVenantKirchhoff(Material);
+PETSC_INTERN PetscErrorCode MaterialCreate_NeoHookean(Material);

@@ -1,0 +1,48 @@
+/* A part of a body's boundary that may touch something. */
+#pragma once
+#include <petscdmplex.h>
+#include <impakt/obstacle.h>
+
+/*S
+   Surface - faces of a `DMPLEX` boundary with their nodes, normals and areas; each rank knows those of its own faces
+
+   Level: developer
+
+.seealso: `SurfaceCreate()`, `SurfaceUpdate()`, `Transfer`
+S*/
+typedef struct _n_Surface *Surface;
+
+/*S
+   SurfaceData - what a rank has of a surface; arrays are owned by the `Surface` and are not to be changed
+
+   Level: developer
+
+   Notes:
+   Vectors have three components in any dimension. The nodes of a face are ordered such that its normal is outward. In one
+   dimension a face is a point of area and size 1.
+
+   Nodes that this rank owns come first, in the order of their vertices; then come ghosts.
+
+.seealso: `Surface`, `SurfaceGetData()`
+S*/
+typedef struct {
+  PetscInt   dim, face_nodes;           /* space dimension, nodes of one face */
+  PetscInt   n_faces, n_nodes, n_owned; /* of this rank */
+  PetscInt  *vertices;                  /* per node: point of the `DMPLEX` */
+  PetscInt  *dofs;                      /* per node: global number of its first displacement */
+  PetscInt  *faces;                     /* per face: its nodes, face_nodes */
+  PetscReal *reference;                 /* per node: reference position [m] */
+  PetscReal *positions;                 /* per node: present position [m] */
+  PetscReal *normals;                   /* per node: outward unit normal, of the faces around it weighted by their areas */
+  PetscReal *areas;                     /* per node: integral of its shape function [m^2, m or 1] */
+  PetscReal *sizes;                     /* per node: edge length of the smallest face around it [m or 1] */
+  PetscReal *face_normals;              /* per face: outward unit normal */
+  PetscReal *face_areas;                /* per face [m^2, m or 1] */
+} SurfaceData;
+
+PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
+PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscBool, PetscBool);
+PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
+PETSC_EXTERN PetscErrorCode SurfaceDestroy(Surface *);
+PETSC_EXTERN PetscErrorCode SurfaceGetData(Surface, const SurfaceData **);
+PETSC_EXTERN PetscErrorCode SurfaceGetVertices(Surface, PetscInt *, const PetscInt *[]);

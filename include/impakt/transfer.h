@@ -1,0 +1,66 @@
+/* What goes between the two surfaces of a contact pair, and back by the transpose. */
+#pragma once
+#include <petscmat.h>
+#include <impakt/surface.h>
+
+/*S
+   Transfer - rows that compare the two surfaces of a contact pair, or a surface and an obstacle: the gap at a node i of the
+   Dirichlet side is
+
+     gap_i = n_i . (sum_j P_ij x_j - x_i)
+
+   with its outward normal n_i and weights P_ij of the nodes j of the Neumann side that sum to one. Forces go back by the transposes.
+
+   Level: developer
+
+.seealso: `TransferCreate()`, `TransferUpdate()`, `TransferGetRows()`, `TransferSetValues()`
+S*/
+typedef struct _n_Transfer *Transfer;
+
+/*S
+   TransferRows - the rows of the Dirichlet nodes that this rank owns; arrays are owned by the `Transfer`, and valid until it is
+   updated again
+
+   Level: developer
+
+   Note:
+   A row without anything opposite has gap `PETSC_MAX_REAL`, area 0, and no entries on the Neumann side.
+
+.seealso: `Transfer`, `TransferGetRows()`
+S*/
+typedef struct {
+  PetscInt         n;        /* the same over the whole run */
+  const PetscInt  *dofs;     /* global number of the first displacement */
+  const PetscBool *opposite; /* something of the partner lies opposite */
+  const PetscBool *beyond;   /* the partner ends before the node, see TransferSetGuards() */
+  const PetscReal *gap;      /* n_i . (sum_j P_ij X_j - X_i) with reference positions X: the present gap is that + B_N u_N - B_D u_D [m] */
+  const PetscReal *area;     /* integral of the node's shape function over the part of the surface that has something opposite
+                                [m^2; m in two dimensions; 1 in one] */
+  const PetscReal *normals;  /* dim each: outward unit normal of the Dirichlet side; against that of an obstacle */
+  const PetscReal *size;     /* edge length of the smallest face at the node [m; 1 in one dimension] */
+  const PetscBool *changed;  /* the last build has changed the row */
+  const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
+} TransferRows;
+
+/*S
+   TransferCounts - what the updates of a transfer have done; sums over all ranks
+
+   Level: developer
+
+.seealso: `TransferGetCounts()`
+S*/
+typedef struct {
+  PetscInt   builds;     /* the first one included */
+  PetscInt64 candidates; /* pairs of faces that were compared in the last build */
+  PetscInt64 segments;   /* pairs of faces that lie opposite, in the last build */
+} TransferCounts;
+
+PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
+PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
+PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
+PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, PetscInt, PetscInt, Mat, Mat);
+PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);
+PETSC_EXTERN PetscErrorCode TransferGetCounts(Transfer, TransferCounts *);
+PETSC_EXTERN PetscErrorCode TransferDestroy(Transfer *);

@@ -1,0 +1,345 @@
+/* Save, restore, and integrate over one controller step. */
+#include <body/layout/bodyimpl.h>
+
+/*@
+  BodySave - takes the current state as the start of the next controller step
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+.seealso: `Body`, `BodyRestore()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodySave(Body body)
+{
+  PetscScalar *start, *end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(VecCopy(body->state.u, body->saved.u));
+  PetscCall(VecCopy(body->state.v, body->saved.v));
+  PetscCall(VecCopy(body->state.a, body->saved.a));
+  if (body->rows.local && body->step != body->saved_step) {
+    const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+
+    for (PetscInt i = 0; i < 4; i++) {
+      PetscCall(TraceGetLevel(traces[i], 0, &start));
+      PetscCall(TraceGetLevel(traces[i], body->substeps, &end));
+      PetscCall(PetscArraycpy(start, end, body->rows.local));
+    }
+  }
+  if (body->loads) {
+    /* repeated sweeps of one substep may have moved its end by adding responses: the work is found when the step is accepted */
+    if (body->substeps == 1 && body->step != body->saved_step) PetscCall(BodyAddWork(body, body->substep_start.u));
+    PetscCall(VecCopy(body->applied, body->saved_applied));
+    body->saved_work = body->external_work;
+  }
+  /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
+  if (body->step != body->saved_step) PetscCall(TSMonitor(body->ts, body->step, body->time, body->state.u));
+  body->saved_time = body->time;
+  body->saved_step = body->step;
+  /* the TS adds its substeps up, with another round-off in the time that loads see than where the window is done again */
+  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  body->swept = PETSC_FALSE;
+  PetscCall(BodyInvalidateWindow(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyRestore - goes back to the state of the last `BodySave()`, bit for bit
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+.seealso: `Body`, `BodySave()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyRestore(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(VecCopy(body->saved.u, body->state.u));
+  PetscCall(VecCopy(body->saved.v, body->state.v));
+  PetscCall(VecCopy(body->saved.a, body->state.a));
+  body->time = body->saved_time;
+  body->step = body->saved_step;
+  if (body->loads) {
+    PetscCall(VecCopy(body->saved_applied, body->applied));
+    body->external_work = body->saved_work;
+  }
+  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All levels but the first, which belongs to the saved state */
+static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
+{
+  const Trace    traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  const PetscInt n        = body->substeps * body->rows.local;
+  PetscScalar   *values;
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], 1, &values));
+    if (keep) PetscCall(PetscArraycpy(body->kept_traces + t * n, values, n));
+    else PetscCall(PetscArraycpy(values, body->kept_traces + t * n, n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyKeep - puts the state at the end of the controller step aside, for `BodyReinstate()`
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, integrated
+
+  Level: developer
+
+  Note:
+  For an integration under other conditions, tried to see what it would bring.
+
+.seealso: `Body`, `BodyReinstate()`, `BodySave()`
+@*/
+PetscErrorCode BodyKeep(Body body)
+{
+  const Vec from[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(from[i], body->kept[i]));
+  PetscCall(CopyOutputTraces(body, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyReinstate - brings the state and the output traces of the last `BodyKeep()` back
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, in the same controller step
+
+  Level: developer
+
+.seealso: `Body`, `BodyKeep()`
+@*/
+PetscErrorCode BodyReinstate(Body body)
+{
+  const Vec to[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(body->kept[i], to[i]));
+  PetscCall(CopyOutputTraces(body, PETSC_FALSE));
+  PetscCall(BodyInvalidateWindow(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyResetTraces - sets what the body tells its partners, at all times of the controller step, to what it is at its start
+
+  Logically Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+  Note:
+  What the first sweep of a controller step starts from.
+
+.seealso: `Body`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodyResetTraces(Body body)
+{
+  const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  PetscScalar *start, *values;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], 0, &start));
+    for (PetscInt level = 1; level <= body->substeps; level++) {
+      PetscCall(TraceGetLevel(traces[t], level, &values));
+      PetscCall(PetscArraycpy(values, start, body->rows.local));
+    }
+  }
+  /* the traces do not belong to the present state any more, so nothing can be added to them */
+  PetscCall(BodyInvalidateWindow(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A substep that failed, or NaN or infinity in its solution, told with body, time and step. Whatever is not a number ends up in the
+   velocity. The sum of squares hands a NaN of any rank on; a maximum over ranks may lose it. */
+static PetscErrorCode CheckSubstep(Body body)
+{
+  MPI_Comm            comm = PetscObjectComm((PetscObject)body);
+  TSConvergedReason   reason;
+  SNESConvergedReason newton;
+  PetscReal           norm;
+  SNES                snes;
+  PetscInt            iterations;
+
+  PetscFunctionBegin;
+  PetscCall(TSGetConvergedReason(body->ts, &reason));
+  PetscCall(VecNorm(body->state.v, NORM_2, &norm));
+  if (!body->is_explicit && !body->linear) {
+    PetscCall(TSGetSNES(body->ts, &snes));
+    PetscCall(SNESGetConvergedReason(snes, &newton));
+    PetscCall(SNESGetIterationNumber(snes, &iterations));
+    if (newton < 0) {
+      PetscCall(BodyCheckInverted(body));
+      SETERRQ(comm, PETSC_ERR_NOT_CONVERGED, "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor", body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[newton], iterations, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+    }
+  }
+  if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
+  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), comm, PETSC_ERR_FP, "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT "); is a time step too large, or a penalty too stiff for it?", body->hdr.name, (double)body->time, body->step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All substeps, by the TS */
+PetscErrorCode BodyIntegrateWindow(Body body)
+{
+  PetscFunctionBegin;
+  if (body->step != body->saved_step) PetscCall(BodyRestore(body));
+  for (body->substep = 0; body->substep < body->substeps; body->substep++) {
+    if (body->keeps_start) {
+      PetscCall(VecCopy(body->state.u, body->substep_start.u));
+      PetscCall(VecCopy(body->state.v, body->substep_start.v));
+    }
+    PetscCall(TSStep(body->ts));
+    body->step++;
+    body->time = body->saved_time + (body->substep + 1) * body->time_step;
+    PetscCall(CheckSubstep(body));
+    if (body->is_explicit) PetscCall(BodyFinishSubstepExplicit(body));
+    else PetscCall(BodyFinishSubstepImplicit(body));
+    PetscCall(BodyWriteTraces(body, body->substep + 1));
+    if (body->substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
+  }
+  body->total_substeps += body->substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIntegrate - integrates from the saved state to the end of the controller step, under the conditions and input traces as
+  they are
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+  Notes:
+  May be called any number of times for the same controller step: each call begins at the saved state.
+
+  Where the body is linear and makes one substep, a repeated call with other input traces adds the response to their change
+  instead of solving again; the result is the same up to round-off.
+
+.seealso: `Body`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodyIntegrate(Body body)
+{
+  PetscBool      done = PETSC_FALSE;
+  PetscLogDouble begin, end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
+  PetscCall(PetscTime(&begin));
+  PetscCall(BodyIntegrateByResponse(body, &done));
+  if (!done) {
+    PetscCall(BodyIntegrateWindow(body));
+    PetscCall(BodyNoteWindow(body));
+  }
+  PetscCall(PetscTime(&end));
+  body->seconds += end - begin;
+  PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetPositionChange - how far the positions at the end of the controller step have moved since the last call for it
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, integrated
+
+  Output Parameters:
++ change   - 2-norm over all nodes [m]; infinity at the first call in a controller step, where there is nothing to compare with
+- position - 2-norm of the positions [m]
+
+  Level: developer
+
+  Note:
+  The convergence criterion of Hoy, Tezaur, Mota, section 4.4.
+
+.seealso: `Body`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *position)
+{
+  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscScalar *u, *x;
+  PetscScalar       *previous;
+  PetscReal          sums[2] = {0, 0}, change4[4] = {0}, position4[4] = {0};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(VecGetArrayRead(body->state.u, &u));
+  PetscCall(VecGetArrayRead(body->positions, &x));
+  PetscCall(VecGetArray(body->previous_u, &previous));
+  /* four sums each, since a single one waits for every addition */
+  for (PetscInt i = 0; i < n; i += 4)
+    for (PetscInt k = 0; k < PetscMin(4, n - i); k++) {
+      change4[k] += PetscSqr(u[i + k] - previous[i + k]);
+      position4[k] += PetscSqr(x[i + k] + u[i + k]);
+    }
+  for (PetscInt k = 0; k < 4; k++) {
+    sums[0] += change4[k];
+    sums[1] += position4[k];
+  }
+  PetscCall(PetscArraycpy(previous, u, n));
+  PetscCall(VecRestoreArray(body->previous_u, &previous));
+  PetscCall(VecRestoreArrayRead(body->positions, &x));
+  PetscCall(VecRestoreArrayRead(body->state.u, &u));
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *change     = body->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
+  *position   = PetscSqrtReal(sums[1]);
+  body->swept = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetTotalSubsteps - how many substeps the body has made in all sweeps, and in what time
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameters:
++ substeps - substeps integrated, repeated ones counted each time
+- seconds  - wall time of `BodyIntegrate()` [s]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyGetTotalSubsteps(Body body, PetscInt64 *substeps, PetscLogDouble *seconds)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (substeps) *substeps = body->total_substeps;
+  if (seconds) *seconds = body->seconds;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,212 @@
+/* A body from its options, and its initial state. */
+#include <body/layout/bodyimpl.h>
+#include <impakt/mesh.h>
+
+/* Every body named by -bodies must be described somewhere */
+static PetscErrorCode CheckDescribed(Body body)
+{
+  const char *prefix = ((PetscObject)body)->prefix, *mesh[] = {"-dm_plex_filename", "-dm_plex_box_faces", "-dm_plex_dim"};
+  PetscBool   found = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 3 && !found; i++) PetscCall(PetscOptionsHasName(NULL, prefix, mesh[i], &found));
+  PetscCheck(found, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s', named by -bodies, has no mesh: give -%sdm_plex_dim and -%sdm_plex_box_faces, or -%sdm_plex_filename", body->hdr.name, prefix, prefix, prefix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateMesh(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(MeshCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, &body->dm));
+  PetscCall(DMGetCoordinateDim(body->dm, &body->dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -<body>_ts_time_step takes a word where PETSc's own option of that name takes a number */
+static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  char        text[64], full[160];
+  PetscBool   set, is_auto;
+
+  PetscFunctionBegin;
+  *hidden = PETSC_FALSE;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_time_step", text, sizeof(text), &set));
+  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
+  if (is_auto) {
+    body->requested_step = -1;
+    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
+    PetscCall(PetscOptionsClearValue(NULL, full));
+    *hidden = PETSC_TRUE;
+  } else {
+    PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &body->requested_step, NULL));
+    PetscCheck(body->requested_step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sts_time_step %s: a time step must be positive", prefix, text);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateTime(Body body)
+{
+  MPI_Comm    comm     = PetscObjectComm((PetscObject)body);
+  const char *prefix   = ((PetscObject)body)->prefix;
+  char        type[64] = TSALPHA2, full[160];
+  PetscBool   hidden, alpha2;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
+  PetscCall(PetscStrcmp(type, TSALPHA2, &alpha2));
+  PetscCall(PetscStrcmp(type, TSCENTRALDIFFERENCE, &body->is_explicit));
+  PetscCall(PetscStrcmp(type, TSSTATIC, &body->is_static));
+  PetscCheck(alpha2 || body->is_explicit || body->is_static, comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%sts_type '%s'; known: alpha2 (implicit), centraldifference (explicit), static (without inertia)", prefix, type);
+  PetscCall(ReadTimeStep(body, &hidden));
+  PetscCall(TSCreate(comm, &body->ts));
+  PetscCall(TSSetOptionsPrefix(body->ts, prefix));
+  PetscCall(TSSetDM(body->ts, body->dm));
+  PetscCall(TSSetType(body->ts, type));
+  if (alpha2) {
+    TSAdapt adapt;
+
+    /* TSALPHA2's own default is the implicit midpoint rule; ours is Newmark's trapezoidal rule */
+    PetscCall(TSAlpha2SetParams(body->ts, 1, 1, 0.5, 0.25));
+    PetscCall(TSGetAdapt(body->ts, &adapt));
+    PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
+  }
+  PetscCall(TSSetFromOptions(body->ts));
+  if (hidden) {
+    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
+    PetscCall(PetscOptionsSetValue(NULL, full, "auto"));
+    PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_time_step", NULL)); /* it has been used */
+  }
+  if (!body->is_explicit) {
+    PetscCall(TSAlpha2GetParams(body->ts, &body->alpha_m, &body->alpha_f, &body->gamma, &body->beta));
+    if (body->is_static) PetscCheck(body->alpha_m == 1 && body->alpha_f == 1, comm, PETSC_ERR_USER_INPUT, "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", prefix);
+    PetscCheck(body->beta > 0 && body->alpha_f > 0 && body->alpha_m > 0 && body->gamma > 0, comm, PETSC_ERR_USER_INPUT, "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose -%sts_type centraldifference", prefix, (double)body->alpha_m, (double)body->alpha_f, (double)body->gamma, (double)body->beta, prefix);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mass matrices that are not diagonal have to be factored, which explicit bodies in two and three dimensions do not pay for */
+static PetscErrorCode ReadMass(Body body)
+{
+  PetscFunctionBegin;
+  body->mass_type         = body->is_explicit && body->dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
+  body->mass_redistribute = PETSC_TRUE;
+  PetscObjectOptionsBegin((PetscObject)body);
+  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type, (PetscEnum *)&body->mass_type, NULL));
+  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions", body->mass_redistribute, &body->mass_redistribute, NULL));
+  PetscOptionsEnd();
+  if (body->is_static) body->mass_redistribute = PETSC_FALSE; /* it has no inertia to move */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadLoads(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyLoadsSetFromOptions(body));
+  PetscCall(BodyLoadsGetHeld(body, &body->n_held, &body->held_dofs));
+  body->any_held = (PetscBool)(body->n_held > 0);
+  PetscCall(BodyAnyRank(body, &body->any_held));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetFromOptions - mesh, material, mass, integrator and initial state from the options that begin with the body's name
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Options Database Keys:
++ -<body>_dm_plex_...                                - the mesh: `DMPLEX`'s own options
+. -<body>_material_type, -<body>_density, ...        - the material, see `MaterialSetFromOptions()`
+. -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
+. -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
+. -<body>_mass_redistribute (true|false)             - moves the mass of contact nodes to their inner neighbours, default true
+. -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
+. -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
+. -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
+- -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
+
+  Level: beginner
+
+.seealso: `Body`, `BodySetUp()`
+@*/
+PetscErrorCode BodySetFromOptions(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(!body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has its options already", body->hdr.name);
+  PetscCall(CheckDescribed(body));
+  PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->material));
+  PetscCall(MaterialSetOptionsPrefix(body->material, ((PetscObject)body)->prefix));
+  PetscCall(MaterialSetFromOptions(body->material));
+  PetscCall(MaterialIsLinear(body->material, &body->linear));
+  PetscCall(CreateMesh(body));
+  PetscCall(BodySetUpLayout(body));
+  PetscCall(CreateTime(body));
+  PetscCall(ReadMass(body));
+  PetscCall(ReadLoads(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* M a = forces, where there are any */
+static PetscErrorCode ComputeInitialAcceleration(Body body)
+{
+  Vec       force = body->work[0];
+  PetscReal norm;
+
+  PetscFunctionBegin;
+  PetscCall(VecCopy(body->internal_force, force));
+  PetscCall(VecScale(force, -1));
+  PetscCall(BodyAddExternalForce(body, body->time, 1, force));
+  PetscCall(VecNorm(force, NORM_INFINITY, &norm));
+  PetscCall(VecZeroEntries(body->state.a));
+  PetscCall(BodyAddHeldInertia(body, body->time, force, body->state.a));
+  if (norm > 0 || body->any_held) PetscCall(BodySolveMass(body, force, 0, PETSC_FALSE, body->state.a));
+  if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, NULL, body->state.a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  BodySetInitialState - sets displacement and velocity at the start, and the acceleration that belongs to them
+
+  Collective
+
+  Input Parameters:
++ body     - the `Body`, set up, before its first step
+. function - (dim, x, u, v, ctx): displacement [m] and velocity [m/s] of the node with reference position x; `NULL` for the
+             constants of the options
+- ctx      - its context
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetUp()`
+@*/
+PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *), void *ctx)
+{
+  PetscScalar *u, *v;
+  PetscReal    norm;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup && !body->step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp(), before the first step");
+  PetscCall(BodyLoadsInitialState(body, body->state.u, body->state.v));
+  if (function) {
+    PetscCall(VecGetArray(body->state.u, &u));
+    PetscCall(VecGetArray(body->state.v, &v));
+    for (PetscInt node = 0; node < body->owned_nodes; node++) PetscCall((*function)(body->dim, body->coordinates + node * body->dim, u + node * body->dim, v + node * body->dim, ctx));
+    PetscCall(VecRestoreArray(body->state.v, &v));
+    PetscCall(VecRestoreArray(body->state.u, &u));
+  }
+  PetscCall(BodyPrescribeHeld(body, body->time, body->state.u, body->state.v, NULL));
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
+  PetscCall(VecNorm(body->internal_force, NORM_2, &norm));
+  if (PetscIsInfOrNanReal(norm) && !body->linear) PetscCall(BodyCheckInverted(body));
+  PetscCall(ComputeInitialAcceleration(body));
+  PetscCall(BodyWriteTraces(body, 0));
+  PetscCall(BodySetUpWork(body));
+  PetscCall(BodySave(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,372 @@
+/* What a body tells about itself. */
+#include <body/layout/bodyimpl.h>
+
+/* What there is to tell of bodies in two and three dimensions */
+static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
+{
+  PetscInt count = body->element->count;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->cell_shape]));
+  if (body->is_explicit) PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->stable_step));
+  if (body->mass_shift[0] != 0 || body->mass_shift[1] != 0 || body->mass_shift[2] != 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n", (double)body->mass_shift[0], (double)body->mass_shift[1], (double)body->mass_shift[2]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyView - prints a body
+
+  Collective
+
+  Input Parameters:
++ body   - the `Body`
+- viewer - an ASCII viewer
+
+  Level: beginner
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyView(Body body, PetscViewer viewer)
+{
+  TSType   type;
+  PetscInt dofs;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  PetscCall(VecGetSize(body->positions, &dofs));
+  PetscCall(TSGetType(body->ts, &type));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name, dofs, (double)body->total_mass, BodyMassTypes[body->mass_type], body->mass_redistribute && body->rows.global ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s", (double)body->time_step));
+  if (body->dim > 1) PetscCall(ViewSolid(body, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetDM - the mesh
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. dm - its `DMPLEX`, owned by the body
+
+  Level: intermediate
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetDM(Body body, DM *dm)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *dm = body->dm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetTS - the time integrator
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. ts - its `TS`, owned by the body
+
+  Level: intermediate
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetTS(Body body, TS *ts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *ts = body->ts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetMaterial - the material
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. material - its `Material`, owned by the body
+
+  Level: intermediate
+
+.seealso: `Body`, `Material`
+@*/
+PetscErrorCode BodyGetMaterial(Body body, Material *material)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *material = body->material;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetSubsteps - number of substeps to a controller step
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. substeps - at least 1
+
+  Level: intermediate
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetSubsteps(Body body, PetscInt *substeps)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *substeps = body->substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetStableStep - the largest step for which central differences are stable, from below
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. step - [s]
+
+  Level: intermediate
+
+  Note:
+  2 / omega_max with the largest eigenvalue of any element in place of that of the body (Irons and Treharne 1971).
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetStableStep(Body body, PetscReal *step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyComputeStableStep(body));
+  *step = body->stable_step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetSolution - displacement, velocity and acceleration at the current time
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ u - displacement [m], or `NULL`
+. v - velocity [m/s], or `NULL`
+- a - acceleration [m/s^2], or `NULL`
+
+  Level: intermediate
+
+  Note:
+  The vectors are the body's own; they have the layout of the global vectors of its `DM`.
+
+.seealso: `Body`, `BodyGetReferencePositions()`
+@*/
+PetscErrorCode BodyGetSolution(Body body, Vec *u, Vec *v, Vec *a)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (u) *u = body->state.u;
+  if (v) *v = body->state.v;
+  if (a) *a = body->state.a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetReferencePositions - positions of the nodes in the undeformed body
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. positions - [m], owned by the body, laid out as its displacements
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetSolution()`
+@*/
+PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *positions = body->positions;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetDimension - dimension of the space that the body lies in
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. dim - 1, 2 or 3: displacements of a node
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetDM()`
+@*/
+PetscErrorCode BodyGetDimension(Body body, PetscInt *dim)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(DMGetCoordinateDim(body->dm, dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsExplicit - whether the body is integrated by central differences
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. is_explicit - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Body`, `TSCENTRALDIFFERENCE`
+@*/
+PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *is_explicit = body->is_explicit;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsStatic - whether the body has no inertia
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. is_static - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Body`, `TSSTATIC`
+@*/
+PetscErrorCode BodyIsStatic(Body body, PetscBool *is_static)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *is_static = body->is_static;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsRedistributed - whether the contact nodes of the body are massless
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. redistributed - `PETSC_TRUE` if so, also of a static body, which has no inertia at all
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetFromOptions()`
+@*/
+PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *redistributed = (PetscBool)(body->mass_redistribute || body->is_static);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  BodyGetHeldDofs - degrees of freedom whose displacement is prescribed
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetFromOptions()`
+
+  Output Parameters:
++ n    - how many of this rank's
+- dofs - their numbers among those of this rank, ascending; owned by the body
+
+  Level: developer
+
+.seealso: `Body`, `BodySetFromOptions()`
+@*/
+PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *n    = body->n_held;
+  *dofs = body->held_dofs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetNewmark - velocity and acceleration at the end of a substep as linear functions of the displacement in it
+
+  Not Collective
+
+  Input Parameter:
+. body - an implicit `Body`, set up
+
+  Output Parameters:
++ v_u - v1 = v_u (u1 - u0) + v_v v0 + v_a a0 [1/s]
+. v_v - see `v_u`
+. v_a - see `v_u` [s]
+. a_u - a1 = a_u (u1 - u0) + a_v v0 + a_a a0 [1/s^2]
+. a_v - see `a_u` [1/s]
+- a_a - see `a_u`
+
+  Level: developer
+
+  Note:
+  Newmark's formulas. Massless nodes, which have no dynamics, report u1 - u0 over the step and zero instead.
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetNewmark(Body body, PetscReal *v_u, PetscReal *v_v, PetscReal *v_a, PetscReal *a_u, PetscReal *a_v, PetscReal *a_a)
+{
+  const PetscReal dt = body->time_step, beta = body->beta, gamma = body->gamma;
+  const PetscBool massless = (PetscBool)(body->mass_redistribute || body->is_static);
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(!body->is_explicit, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
+  *a_u = massless ? 0 : 1 / (beta * dt * dt);
+  *a_v = massless ? 0 : -1 / (beta * dt);
+  *a_a = massless ? 0 : -(1 - 2 * beta) / (2 * beta);
+  *v_u = massless ? 1 / dt : gamma / (beta * dt);
+  *v_v = massless ? 0 : 1 - gamma / beta;
+  *v_a = massless ? 0 : dt * (1 - gamma / (2 * beta));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,69 @@
+/* Rows of the interface that get new entries while a run goes on. */
+#include <body/layout/bodyimpl.h>
+
+/* Rows that have changed, on every rank */
+static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscMPIInt all[])
+{
+  const BodyRows *rows = &body->rows;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(all, rows->global));
+  for (PetscInt i = 0; i < rows->local; i++) all[rows->begin + i] = changed[i] ? 1 : 0;
+  if (rows->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What a body tells of its rows, at the start of the controller step: from its saved state */
+static PetscErrorCode RewriteStart(Body body)
+{
+  const Vec   vecs[]   = {body->saved.u, body->saved.v, body->saved.a};
+  const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 3; t++) PetscCall(BodyWriteTrace(body, body->interface, vecs[t], traces[t], 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyUpdateInterface - gives the rows of the interface new entries, as contact surfaces slide and turn
+
+  Collective
+
+  Input Parameters:
++ body    - the `Body`, set up, at the start of a controller step
+. B       - matrix of as many rows as before
+- changed - for each row of this rank, whether it is another than before
+
+  Level: developer
+
+  Note:
+  No matrix of the body is factored again; what is known of the compliance of rows that have changed is forgotten.
+
+.seealso: `Body`, `BodySetInterface()`
+@*/
+PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
+{
+  PetscMPIInt *all;
+  Mat          layer_rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscObjectReference((PetscObject)B));
+  PetscCall(MatDestroy(&body->interface));
+  body->interface = B;
+  PetscCall(BodySetUpFreeRows(body));
+  PetscCall(PetscMalloc1(body->rows.global, &all));
+  PetscCall(GatherChanged(body, changed, all));
+  PetscCall(BodyForgetCompliance(body, all));
+  PetscCall(PetscFree(all));
+  if (body->solver && body->is_explicit) {
+    PetscCall(BodySetUpLayerRows(body, &layer_rows));
+    PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, changed));
+    PetscCall(MatDestroy(&layer_rows));
+  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, changed));
+  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, body->free_rows, changed));
+  if (body->response) PetscCall(BodyDestroyResponse(body));
+  PetscCall(BodySetConstraints(body));
+  PetscCall(RewriteStart(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,48 @@
+/* Substeps, and the TS of a body. */
+#include <body/layout/bodyimpl.h>
+
+/* A whole number of substeps to the controller step */
+PetscErrorCode BodySetUpSubsteps(Body body)
+{
+  MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
+  const char *prefix = ((PetscObject)body)->prefix;
+
+  PetscFunctionBegin;
+  PetscCheck(body->controller_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
+  if (body->is_explicit || body->requested_step < 0) PetscCall(BodyComputeStableStep(body));
+  if (body->requested_step < 0) {
+    /* the tolerance keeps a quotient that is a whole number but for round-off from being counted up */
+    body->substeps = (PetscInt)PetscCeilReal(body->controller_step / (0.9 * body->stable_step) * (1 - 1e-12));
+  } else {
+    const PetscReal step = body->requested_step > 0 ? body->requested_step : body->controller_step;
+
+    PetscCheck(body->controller_step / step < 1e9, comm, PETSC_ERR_USER_INPUT, "-%sts_time_step %g s is too small for the controller step -time_step %g s", prefix, (double)step, (double)body->controller_step);
+    body->substeps = (PetscInt)PetscFloorReal(0.5 + body->controller_step / step);
+    PetscCheck(body->substeps > 0 && PetscAbsReal(body->substeps * step - body->controller_step) <= 1e-6 * body->controller_step, comm, PETSC_ERR_USER_INPUT, "-%sts_time_step %g s does not divide the controller step -time_step %g s (ratio %.9g); choose a whole fraction of it, or 'auto'", prefix, (double)step, (double)body->controller_step, (double)(body->controller_step / step));
+  }
+  body->time_step = body->controller_step / body->substeps;
+  if (body->is_explicit) PetscCheck(body->time_step <= body->stable_step * (1 + 1e-12), comm, PETSC_ERR_USER_INPUT, "-%sts_time_step %g s of the explicit body '%s' is larger than its stable step, %.6g s; choose a smaller one, or 'auto'", prefix, (double)body->time_step, body->hdr.name, (double)body->stable_step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The TS, on the state's vectors, at the start time */
+PetscErrorCode BodySetUpTime(Body body)
+{
+  TSAdapt   adapt;
+  PetscBool none;
+
+  PetscFunctionBegin;
+  PetscCall(TS2SetSolution(body->ts, body->state.u, body->state.v));
+  PetscCall(TSGetAdapt(body->ts, &adapt));
+  PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &none));
+  PetscCheck(none, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sts_adapt_type: adaptive substeps within a controller step are not supported; leave it at none", ((PetscObject)body)->prefix);
+  PetscCall(TSSetMaxTime(body->ts, 1e300));
+  PetscCall(TSSetExactFinalTime(body->ts, TS_EXACTFINALTIME_STEPOVER));
+  if (body->is_explicit) PetscCall(BodySetUpExplicit(body));
+  else PetscCall(BodySetUpImplicit(body));
+  PetscCall(TSSetUp(body->ts));
+  body->time = body->time_start;
+  body->step = 0;
+  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,182 @@
+/* Loads of a body, from options: what is prescribed on its surfaces, and forces from outside. */
+#include "loadsimpl.h"
+
+/* PetscStrToArray() would skip it */
+static PetscBool HasEmptyName(const char text[])
+{
+  for (const char *c = text;; c++) {
+    const size_t length = strcspn(c, ",");
+
+    if (strspn(c, " \t") >= length) return PETSC_TRUE;
+    c += length;
+    if (!*c) return PETSC_FALSE;
+  }
+}
+
+/* The names in a list such as -<body>_boundary_traction a,b; none if it is not given */
+static PetscErrorCode GetNames(Body body, const char name[], PetscInt *n, char ***names)
+{
+  MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
+  const char *prefix = ((PetscObject)body)->prefix, *text;
+  int         count  = 0;
+  PetscBool   twice  = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  *n     = 0;
+  *names = NULL;
+  PetscCall(BodyLoadsGetText(body, name, &text));
+  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!HasEmptyName(text), comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' has an empty name in it; give names of surfaces with commas between them", prefix, name, text);
+  PetscCall(PetscStrToArray(text, ',', &count, names));
+  for (int i = 0; i < count && !twice; i++)
+    for (int k = 0; k < i && !twice; k++) PetscCall(PetscStrcasecmp((*names)[i], (*names)[k], &twice));
+  if (twice) PetscCall(PetscStrToArrayDestroy(count, *names));
+  PetscCheck(!twice, comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' names a surface twice (upper and lower case are the same in options)", prefix, name, text);
+  *n = count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -<body>_<list>_<surface> */
+static PetscErrorCode GetSurfaceComponents(Body body, const char list[], const char surface[], PetscBool allow_free, Expression components[])
+{
+  const char *prefix = ((PetscObject)body)->prefix, *text;
+  char        name[LOADS_NAME_LENGTH];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s", list, surface));
+  PetscCall(BodyLoadsGetText(body, name, &text));
+  PetscCheck(text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s names '%s', but there is no -%s%s with its components", prefix, list, surface, prefix, name);
+  PetscCall(BodyLoadsGetComponents(body, name, text, allow_free, components));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadDisplacements(Body body, PetscInt n, char **names)
+{
+  struct _BodyLoads *loads = body->loads;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(n, &loads->prescribed));
+  loads->n_prescribed = n;
+  for (PetscInt i = 0; i < n; i++) {
+    char name[LOADS_NAME_LENGTH];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "boundary_displacement_%s", names[i]));
+    PetscCall(GetSurfaceComponents(body, "boundary_displacement", names[i], PETSC_TRUE, loads->prescribed[i].component));
+    PetscCall(BodyLoadsRefuseNormal(body, name, loads->prescribed[i].component));
+  }
+  PetscCall(BodyLoadsSetUpHeld(body, n, names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadForces(Body body, PetscInt n, char **names, const char body_force[])
+{
+  struct _BodyLoads *loads = body->loads;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(n + 1, &loads->loads));
+  for (PetscInt i = 0; i < n; i++) {
+    Load *load = &loads->loads[loads->n_loads++];
+
+    load->on_faces = PETSC_TRUE;
+    PetscCall(GetSurfaceComponents(body, "boundary_traction", names[i], PETSC_FALSE, load->component));
+    PetscCall(BodyFacesCreate(body, names[i], &load->faces));
+  }
+  if (body_force) {
+    Load *load = &loads->loads[loads->n_loads++];
+
+    PetscCheck(body->element->ops.points, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "-%sbody_force: elements of shape '%s' do not support it", ((PetscObject)body)->prefix, DMPolytopeTypes[body->cell_shape]);
+    PetscCall(BodyLoadsGetComponents(body, "body_force", body_force, PETSC_FALSE, load->component));
+    PetscCall(BodyLoadsRefuseNormal(body, "body_force", load->component));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadGravity(Body body, const char text[])
+{
+  struct _BodyLoads *loads    = body->loads;
+  Expression         list[3]  = {NULL};
+  PetscBool          constant = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyLoadsGetComponents(body, "gravity", text, PETSC_FALSE, list));
+  loads->has_gravity = PETSC_TRUE;
+  for (PetscInt d = 0; d < body->dim; d++) {
+    PetscBool is_number;
+
+    PetscCall(ExpressionIsConstant(list[d], &is_number, &loads->gravity[d]));
+    if (!is_number) constant = PETSC_FALSE;
+    PetscCall(ExpressionDestroy(&list[d]));
+  }
+  PetscCheck(constant, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sgravity '%s': components are numbers; -%sbody_force takes formulas", ((PetscObject)body)->prefix, text, ((PetscObject)body)->prefix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyLoadsSetFromOptions - prescribed displacements, tractions, forces in the volume and the initial state from options
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with mesh and elements
+
+  Options Database Keys:
++ -<body>_boundary_displacement a,b                  - surfaces, or node sets, with prescribed displacements
+. -<body>_boundary_displacement_<surface> ux,uy,uz   - those displacements: for each component an expression in x, y, z, t [m], or the word `free`
+. -<body>_boundary_traction a,b                      - surfaces with tractions
+. -<body>_boundary_traction_<surface> tx,ty,tz       - those tractions: expressions in x, y, z, t, nx, ny, nz [Pa] per area of the reference configuration
+. -<body>_gravity gx,gy,gz                           - constant acceleration of all mass [m/s^2]
+. -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the reference configuration
+. -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
+- -<body>_initial_velocity vx,vy,vz                  - expressions in x, y, z [m/s], default 0
+
+  Level: intermediate
+
+  Notes:
+  Expressions are those of `ExpressionCreate()`: formulas or `table:file`; positions are those of the reference configuration, and the
+  normal is its outward unit normal, so that a pressure p is -p*nx,-p*ny,-p*nz. A traction of plane bodies acts on the edge times
+  the thickness, of bars on the cross-section.
+
+  Where several surfaces prescribe the same component of a node, that named last holds. `free` says nothing of a component: what
+  another surface prescribes there, holds.
+
+  Where velocity and acceleration of prescribed displacements are wanted, they are differences in time
+  (`ExpressionEvaluateRates()`); the initial velocity of held dofs is theirs too.
+
+.seealso: `Body`, `BodySetFromOptions()`, `ExpressionCreate()`, `MeshGetSurface()`
+@*/
+PetscErrorCode BodyLoadsSetFromOptions(Body body)
+{
+  PetscInt       n_displacements = 0, n_tractions = 0;
+  char         **displacements = NULL, **tractions = NULL;
+  const char    *gravity, *body_force;
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCheck(!body->loads, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has its loads already", body->hdr.name);
+  PetscCall(BodyLoadsReadInitialState(body));
+  PetscCall(BodyLoadsGetText(body, "gravity", &gravity));
+  PetscCall(BodyLoadsGetText(body, "body_force", &body_force));
+  PetscCall(GetNames(body, "boundary_displacement", &n_displacements, &displacements));
+  error = GetNames(body, "boundary_traction", &n_tractions, &tractions);
+  if (!error && (gravity || body_force || n_displacements || n_tractions)) {
+    error = PetscNew(&body->loads);
+    if (!error) error = ReadDisplacements(body, n_displacements, displacements);
+    if (!error) error = ReadForces(body, n_tractions, tractions, body_force);
+    if (!error) error = ReadGravity(body, gravity);
+  }
+  if (n_displacements) PetscCall(PetscStrToArrayDestroy((int)n_displacements, displacements));
+  if (n_tractions) PetscCall(PetscStrToArrayDestroy((int)n_tractions, tractions));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyLoadsDestroy(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyLoadsDestroyHeld(body->loads));
+  PetscCall(BodyLoadsDestroyForces(body->loads));
+  PetscCall(PetscFree(body->loads));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

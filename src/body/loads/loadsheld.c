@@ -1,0 +1,177 @@
+/* Displacements prescribed on surfaces. */
+#include "loadsimpl.h"
+#include <impakt/mesh.h>
+
+/* The i-th prescription puts its mark on the rank's dofs, over those of earlier ones */
+static PetscErrorCode MarkHeld(Body body, PetscInt i, const char surface[], Vec local)
+{
+  Expression *const component = body->loads->prescribed[i].component;
+  PetscInt          n, *vertices;
+  PetscScalar      *mark;
+
+  PetscFunctionBegin;
+  PetscCall(MeshGetNodeSet(body->dm, surface, &n, &vertices));
+  PetscCall(VecGetArray(local, &mark));
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt d = 0; d < body->dim; d++)
+      if (component[d]) mark[body->node_of_vertex[vertices[k] - body->vertex_start] * body->dim + d] = i + 1;
+  PetscCall(VecRestoreArray(local, &mark));
+  PetscCall(PetscFree(vertices));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For each owned dof 1 + the number of the last prescription that holds it, else 0. A rank may own a node of a surface without
+   having a face of it. */
+static PetscErrorCode MarkAllHeld(Body body, PetscInt n, char **names, Vec marks)
+{
+  const PetscBool ghosted = (PetscBool)(body->rows.size > 1);
+  PetscErrorCode  error   = PETSC_SUCCESS;
+  Vec             local   = marks;
+
+  PetscFunctionBegin;
+  if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
+  PetscCall(VecSet(local, 0));
+  for (PetscInt i = 0; i < n && !error; i++) error = MarkHeld(body, i, names[i], local);
+  if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
+  PetscCall(error);
+  if (ghosted) {
+    PetscCall(VecGhostUpdateBegin(marks, MAX_VALUES, SCATTER_REVERSE));
+    PetscCall(VecGhostUpdateEnd(marks, MAX_VALUES, SCATTER_REVERSE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void GetPoint(Body body, PetscInt dof, PetscReal t, ExpressionPoint *point)
+{
+  const PetscReal *x = body->coordinates + dof / body->dim * body->dim;
+
+  for (PetscInt d = 0; d < 3; d++) {
+    point->x[d] = d < body->dim ? x[d] : 0;
+    point->n[d] = 0;
+  }
+  point->t = t;
+}
+
+static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt prescription, PetscInt component, HeldDofs *group)
+{
+  const PetscInt n     = body->owned_nodes * body->dim;
+  PetscInt       count = 0;
+
+  PetscFunctionBegin;
+  group->displacement = body->loads->prescribed[prescription].component[component];
+  PetscCall(ExpressionIsSteady(group->displacement, &group->steady));
+  PetscCall(ExpressionIsUniform(group->displacement, &group->uniform));
+  for (PetscInt dof = component; dof < n; dof += body->dim) count += marks[dof] == prescription + 1;
+  PetscCall(PetscMalloc1(count, &group->held.dofs));
+  if (group->steady) PetscCall(PetscMalloc1(count, &group->held.values));
+  for (PetscInt dof = component; dof < n; dof += body->dim) {
+    ExpressionPoint point;
+
+    if (marks[dof] != prescription + 1) continue;
+    GetPoint(body, dof, 0, &point);
+    if (group->steady) PetscCall(ExpressionEvaluate(group->displacement, &point, &group->held.values[group->held.n]));
+    group->held.dofs[group->held.n++] = dof;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which dofs are held, and by which prescription */
+PetscErrorCode BodyLoadsSetUpHeld(Body body, PetscInt n, char **names)
+{
+  struct _BodyLoads *loads  = body->loads;
+  const PetscInt     n_dofs = body->owned_nodes * body->dim;
+  PetscInt64         count[2];
+  PetscScalar       *mark;
+  Vec                marks;
+  PetscErrorCode     error;
+
+  PetscFunctionBegin;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyCreateVec(body, &marks));
+  error = MarkAllHeld(body, n, names, marks);
+  if (error) PetscCall(VecDestroy(&marks));
+  PetscCall(error);
+  PetscCall(VecGetArray(marks, &mark));
+  for (PetscInt dof = 0; dof < n_dofs; dof++) loads->n_held += mark[dof] > 0;
+  PetscCall(PetscMalloc1(loads->n_held, &loads->held_dofs));
+  for (PetscInt dof = 0, k = 0; dof < n_dofs; dof++)
+    if (mark[dof] > 0) loads->held_dofs[k++] = dof;
+  PetscCall(PetscCalloc1(n * body->dim, &loads->groups));
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt d = 0; d < body->dim; d++)
+      if (loads->prescribed[i].component[d]) PetscCall(FillGroup(body, mark, i, d, &loads->groups[loads->n_groups++]));
+  PetscCall(VecRestoreArray(marks, &mark));
+  PetscCall(VecDestroy(&marks));
+  count[0] = loads->n_held;
+  count[1] = n_dofs;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT64, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCheck(count[0] < count[1], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sboundary_displacement prescribes all components of all nodes of body '%s': there is nothing left to find; leave some free", ((PetscObject)body)->prefix, body->hdr.name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Owned dofs (rank numbering) with a prescribed displacement, ascending; owned by the loads */
+PetscErrorCode BodyLoadsGetHeld(Body body, PetscInt *n, const PetscInt *dofs[])
+{
+  PetscFunctionBegin;
+  *n    = body->loads ? body->loads->n_held : 0;
+  *dofs = body->loads ? body->loads->held_dofs : NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacement, and with rates velocity and acceleration, of the i-th dof of a group */
+static PetscErrorCode EvaluateHeld(Body body, const HeldDofs *group, PetscInt i, PetscReal t, PetscBool rates, PetscReal values[])
+{
+  const PetscReal step = body->time_step > 0 ? body->time_step : body->controller_step;
+  ExpressionPoint point;
+
+  PetscFunctionBegin;
+  GetPoint(body, group->held.dofs[i], t, &point);
+  if (rates) {
+    PetscCheck(step > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
+    PetscCall(ExpressionEvaluateRates(group->displacement, &point, body->time_start, step, values));
+  } else PetscCall(ExpressionEvaluate(group->displacement, &point, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Held dofs of u [m], v [m/s] and a [m/s^2] at time t; any of them may be NULL, ghosts are left alone */
+PetscErrorCode BodyLoadsPrescribe(Body body, PetscReal t, Vec u, Vec v, Vec a)
+{
+  const Vec          vecs[]    = {u, v, a};
+  struct _BodyLoads *loads     = body->loads;
+  PetscScalar       *arrays[3] = {NULL};
+
+  PetscFunctionBegin;
+  /* ranks without held dofs must open the vectors too: PETSc keeps norms with them, and would take the reduction for done on some ranks alone */
+  if (!loads || !body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 3; k++)
+    if (vecs[k]) PetscCall(VecGetArray(vecs[k], &arrays[k]));
+  for (PetscInt g = 0; g < loads->n_groups; g++) {
+    const HeldDofs *group     = &loads->groups[g];
+    PetscReal       values[3] = {0};
+
+    for (PetscInt i = 0; i < group->held.n; i++) {
+      if (group->steady) values[0] = group->held.values[i];
+      else if (!i || !group->uniform) PetscCall(EvaluateHeld(body, group, i, t, (PetscBool)(v || a), values));
+      for (int k = 0; k < 3; k++)
+        if (arrays[k]) arrays[k][group->held.dofs[i]] = values[k];
+    }
+  }
+  for (int k = 0; k < 3; k++)
+    if (vecs[k]) PetscCall(VecRestoreArray(vecs[k], &arrays[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *loads)
+{
+  PetscFunctionBegin;
+  for (PetscInt g = 0; g < loads->n_groups; g++) {
+    PetscCall(PetscFree(loads->groups[g].held.dofs));
+    PetscCall(PetscFree(loads->groups[g].held.values));
+  }
+  for (PetscInt i = 0; i < loads->n_prescribed; i++)
+    for (int d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&loads->prescribed[i].component[d]));
+  PetscCall(PetscFree(loads->groups));
+  PetscCall(PetscFree(loads->held_dofs));
+  PetscCall(PetscFree(loads->prescribed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,82 @@
+#pragma once
+#include <body/layout/bodyimpl.h>
+#include <impakt/expression.h>
+
+#define LOADS_NAME_LENGTH 512 /* of options, as PETSc has it */
+#define FACE_MAX_NODES    4
+#define FACE_MAX_POINTS   4
+
+/* Faces of this rank on a surface, in the reference configuration */
+typedef struct {
+  PetscInt   count, nodes, n_points; /* of the rank; of one face */
+  PetscInt  *connectivity;           /* count x nodes: local node numbers */
+  PetscReal *side;                   /* 1, or -1 where the order of the nodes gives the inward normal */
+} BodyFaces;
+
+typedef enum {
+  LOAD_STEADY,
+  LOAD_UNIFORM, /* varies in time alone */
+  LOAD_VARYING, /* in time and place */
+  LOAD_KINDS
+} LoadKind;
+
+/* A force from outside with a density: per area of a surface [Pa], or per volume [N/m^3] */
+typedef struct {
+  Expression component[3];
+  Expression part[LOAD_KINDS][3]; /* the components of each kind, NULL for the others; borrowed */
+  PetscBool  on_faces;            /* else in the volume */
+  BodyFaces  faces;
+} Load;
+
+/* Values of a few owned dofs */
+typedef struct {
+  PetscInt   n, *dofs;
+  PetscReal *values;
+} DofValues;
+
+/* A force that varies in time alone: the values are those of a density of 1 */
+typedef struct {
+  Expression density; /* borrowed */
+  DofValues  unit;
+} UniformForce;
+
+/* Owned dofs with the same component of the same prescribed displacement */
+typedef struct {
+  Expression displacement; /* borrowed */
+  PetscBool  steady, uniform;
+  DofValues  held; /* values: of steady ones only [m] */
+} HeldDofs;
+
+typedef struct {
+  Expression component[3]; /* NULL: free */
+} PrescribedDisplacement;
+
+struct _BodyLoads {
+  /* displacements, in the order of their list */
+  PetscInt                n_prescribed, n_groups, n_held;
+  PrescribedDisplacement *prescribed;
+  HeldDofs               *groups;
+  PetscInt               *held_dofs; /* all of them, ascending */
+  /* forces; what comes below `ready` is made when they are first asked for */
+  PetscInt         n_loads, n_uniform;
+  Load            *loads;
+  PetscBool        has_gravity, ready;
+  PetscReal        gravity[3]; /* m/s^2 */
+  DofValues        steady;     /* of all that does not vary in time, weight included [N] */
+  UniformForce    *uniform;
+  Vec              varying; /* scratch for what is integrated anew each time; NULL: nothing is */
+  ExpressionPoint *points;  /* scratch, of one face or element */
+  PetscReal       *x, *weights, *shape;
+};
+
+PETSC_INTERN PetscErrorCode BodyLoadsGetText(Body, const char[], const char *[]);
+PETSC_INTERN PetscErrorCode BodyLoadsGetComponents(Body, const char[], const char[], PetscBool, Expression[]);
+PETSC_INTERN PetscErrorCode BodyLoadsRefuseNormal(Body, const char[], const Expression[]);
+PETSC_INTERN PetscErrorCode BodyLoadsSetUpHeld(Body, PetscInt, char **);
+PETSC_INTERN PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *);
+PETSC_INTERN PetscErrorCode BodyLoadsDestroyForces(struct _BodyLoads *);
+PETSC_INTERN PetscErrorCode BodyLoadsReadInitialState(Body);
+PETSC_INTERN PetscErrorCode BodyLoadsCompress(PetscInt, const PetscScalar[], PetscInt, PetscInt, DofValues *);
+PETSC_INTERN PetscErrorCode BodyFacesCreate(Body, const char[], BodyFaces *);
+PETSC_INTERN PetscErrorCode BodyFacesGetPoints(Body, const BodyFaces *, PetscInt, ExpressionPoint[], PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyFacesDestroy(BodyFaces *);

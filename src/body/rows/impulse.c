@@ -1,0 +1,215 @@
+/* Forces that act at the start of a step of an explicit body, as forward-increment Lagrange multipliers do. */
+#include <body/layout/bodyimpl.h>
+
+/* With more rows no column is made for each of them */
+#define MAX_PROBED_ROWS 2000
+
+/* work[2] = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank */
+PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[])
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
+  PetscCall(PetscArraycpy(row, force, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
+  PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
+  PetscCall(BodyZeroHeld(body, body->work[0]));
+  PetscCall(BodySolveMass(body, body->work[0], 0, PETSC_FALSE, body->work[2]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* B D B^T with a diagonal D that is not negative, without held dofs: sparse */
+static PetscErrorCode MultiplyRows(Body body, Vec diagonal, Mat *matrix)
+{
+  Mat scaled;
+  Vec root;
+
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(diagonal, &root));
+  PetscCall(VecCopy(diagonal, root));
+  PetscCall(VecSqrtAbs(root));
+  PetscCall(MatDuplicate(body->free_rows, MAT_COPY_VALUES, &scaled));
+  PetscCall(MatDiagonalScale(scaled, NULL, root));
+  PetscCall(MatMatTransposeMult(scaled, scaled, MAT_INITIAL_MATRIX, PETSC_DETERMINE, matrix));
+  PetscCall(MatDestroy(&scaled));
+  PetscCall(VecDestroy(&root));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* B M^{-1} B^T with a mass matrix that is not diagonal: dense, a solution for each row */
+static PetscErrorCode ProbeRows(Body body, Mat matrix)
+{
+  const BodyRows    *rows = &body->rows;
+  const PetscScalar *moved;
+  PetscScalar       *unit;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(rows->local, &unit));
+  for (PetscInt j = 0; j < rows->global; j++) {
+    const PetscInt local = j - rows->begin;
+
+    if (local >= 0 && local < rows->local) unit[local] = 1;
+    PetscCall(BodySolveMassOfRows(body, unit));
+    if (local >= 0 && local < rows->local) unit[local] = 0;
+    PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
+    PetscCall(VecGetArrayRead(body->row_vec[0], &moved));
+    for (PetscInt i = 0; i < rows->local; i++)
+      if (moved[i] != 0) PetscCall(MatSetValue(matrix, rows->begin + i, j, moved[i], INSERT_VALUES));
+    PetscCall(VecRestoreArrayRead(body->row_vec[0], &moved));
+  }
+  PetscCall(PetscFree(unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeInverseMass - velocity of the rows after unit impulses on them
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up, without prescribed rows
+
+  Output Parameter:
+. matrix - B M^{-1} B^T [1/kg], all rows by all rows; zero for massless nodes; destroy it with `MatDestroy()`
+
+  Level: developer
+
+  Note:
+  Sparse with lumped mass: rows are coupled that share a node. Other masses couple all rows, of which there may be 2000 then.
+
+.seealso: `Body`, `BodyAddVelocity()`, `BodyComputeForwardCompliance()`
+@*/
+PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
+{
+  const BodyRows *rows = &body->rows;
+  MPI_Comm        comm = PetscObjectComm((PetscObject)body);
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->inverse_mass && !body->is_static) {
+    PetscCall(MultiplyRows(body, body->inverse_mass, matrix));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCheck(body->is_static || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP, "Body '%s': a mass that is not lumped couples all contact nodes, of which there are %" PetscInt_FMT ", more than %d; set -%smass_type lumped, or choose -contact_type schwarz", body->hdr.name, rows->global, MAX_PROBED_ROWS, ((PetscObject)body)->prefix);
+  PetscCall(MatCreate(comm, matrix));
+  PetscCall(MatSetSizes(*matrix, rows->local, rows->local, rows->global, rows->global));
+  PetscCall(MatSetType(*matrix, MATAIJ));
+  PetscCall(MatSetUp(*matrix));
+  if (!body->is_static) PetscCall(ProbeRows(body, *matrix));
+  PetscCall(MatAssemblyBegin(*matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*matrix, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeForwardCompliance - displacement of the rows after one substep for unit forces at its start
+
+  Collective
+
+  Input Parameter:
+. body - an explicit `Body` without massless nodes
+
+  Output Parameter:
+. matrix - dt^2 B M^{-1} B^T [m/N], all rows by all rows; destroy it with `MatDestroy()`
+
+  Level: developer
+
+  Note:
+  Carpenter, Taylor, Katona 1991, the matrix of the forward-increment Lagrange multipliers.
+
+.seealso: `Body`, `BodyAddImpulse()`, `BodyBoundForwardCompliance()`
+@*/
+PetscErrorCode BodyComputeForwardCompliance(Body body, Mat *matrix)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyComputeInverseMass(body, matrix));
+  PetscCall(MatScale(*matrix, PetscSqr(body->time_step)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the mass matrix is at least, relative to the lumped one: the smallest eigenvalue of any element's pair of them, for linear
+   shape functions on lines, simplices, and products of lines */
+static PetscReal LeastMass(const struct _p_Body *body)
+{
+  const PetscBool simplex = (PetscBool)(body->element->nodes == body->dim + 1);
+  const PetscReal least   = simplex ? 1.0 / (body->dim + 2) : PetscPowRealInt(3, -body->dim);
+
+  return body->mass_type == BODY_MASS_AVERAGED ? 0.5 * (1 + least) : least;
+}
+
+/*@
+  BodyBoundForwardCompliance - bound of each row's displacement after one substep for a unit force on it at the start
+
+  Collective
+
+  Input Parameter:
+. body - an explicit `Body` without massless nodes
+
+  Output Parameter:
+. bound - one for each row of this rank [m/N]; the diagonal of `BodyComputeForwardCompliance()` itself, but for interfaces with many rows
+          and a mass that is not lumped, which have one from the eigenvalues of the elements' masses
+
+  Level: developer
+
+.seealso: `Body`, `BodyComputeForwardCompliance()`
+@*/
+PetscErrorCode BodyBoundForwardCompliance(Body body, PetscReal bound[])
+{
+  const PetscScalar *values;
+  Mat                matrix;
+  Vec                diagonal;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->inverse_mass || body->rows.global <= MAX_PROBED_ROWS) PetscCall(BodyComputeForwardCompliance(body, &matrix));
+  else {
+    Vec inverse;
+
+    PetscCall(VecDuplicate(body->mass_row_sum, &inverse));
+    PetscCall(VecCopy(body->mass_row_sum, inverse));
+    PetscCall(VecReciprocal(inverse));
+    PetscCall(MultiplyRows(body, inverse, &matrix));
+    PetscCall(MatScale(matrix, PetscSqr(body->time_step) / LeastMass(body)));
+    PetscCall(VecDestroy(&inverse));
+  }
+  PetscCall(MatCreateVecs(matrix, NULL, &diagonal));
+  PetscCall(MatGetDiagonal(matrix, diagonal));
+  PetscCall(VecGetArrayRead(diagonal, &values));
+  PetscCall(PetscArraycpy(bound, values, body->rows.local));
+  PetscCall(VecRestoreArrayRead(diagonal, &values));
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(MatDestroy(&matrix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyAddImpulse - changes velocity and acceleration at the start of the controller step by those of a force that acts on the
+  rows from half a step before to half a step after it
+
+  Collective
+
+  Input Parameters:
++ body  - an explicit `Body` at its saved state, with one substep to a controller step
+- force - one for each row of this rank [N]
+
+  Level: developer
+
+  Note:
+  The saved state is changed too: the forces of the forward-increment Lagrange multiplier are known only after the step that
+  they begin (Carpenter, Taylor, Katona 1991).
+
+.seealso: `Body`, `BodyComputeForwardCompliance()`
+@*/
+PetscErrorCode BodyAddImpulse(Body body, const PetscScalar force[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyRestore(body));
+  PetscCall(BodySolveMassOfRows(body, force));
+  PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
+  PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, body->work[2]));
+  PetscCall(VecCopy(body->state.v, body->saved.v));
+  PetscCall(VecCopy(body->state.a, body->saved.a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

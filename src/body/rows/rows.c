@@ -1,0 +1,253 @@
+/* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
+#include <body/layout/bodyimpl.h>
+
+const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
+
+/*@
+  BodySetInterface - sets the linear combinations of displacements by which the body meets others
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`
+- B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; a row that may be
+         prescribed is a vector on one node of this rank, a unit vector where nothing is held, but for what it has on held dofs
+
+  Level: developer
+
+  Note:
+  Rows of one node may have any directions; of those that depend on each other see `BodySetRowWeights()`.
+
+.seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodySetInterface(Body body, Mat B)
+{
+  BodyRows *rows = &body->rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidHeaderSpecific(B, MAT_CLASSID, 2);
+  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  PetscCall(PetscObjectReference((PetscObject)B));
+  PetscCall(MatDestroy(&body->interface));
+  body->interface = B;
+  PetscCall(MatGetLocalSize(B, &rows->local, NULL));
+  PetscCall(MatGetSize(B, &rows->global, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows of the interface without held dofs, which no contact force moves, and what prescribing them takes */
+PetscErrorCode BodySetUpFreeRows(Body body)
+{
+  Vec mask;
+
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&body->free_rows));
+  if (body->any_held) {
+    PetscCall(MatDuplicate(body->interface, MAT_COPY_VALUES, &body->free_rows));
+    PetscCall(VecDuplicate(body->state.u, &mask));
+    PetscCall(VecSet(mask, 1));
+    PetscCall(BodyZeroHeld(body, mask));
+    PetscCall(MatDiagonalScale(body->free_rows, NULL, mask));
+    PetscCall(VecDestroy(&mask));
+  } else {
+    PetscCall(PetscObjectReference((PetscObject)body->interface));
+    body->free_rows = body->interface;
+  }
+  PetscCall(BodySetUpGram(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetTractionType - chooses the nodal force that is reported for prescribed rows
+
+  Logically Collective
+
+  Input Parameters:
++ body - the `Body`
+- type - with or without the inertia of the nodes
+
+  Options Database Key:
+. -schwarz_traction (internal|reaction) - read by the contact method, for all bodies
+
+  Level: intermediate
+
+  Note:
+  On massless nodes both are the same.
+
+.seealso: `Body`, `BodyTractionType`
+@*/
+PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  body->traction = type;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetRowWeights - says how prescribed rows of one node that depend on each other share its displacement and force
+
+  Logically Collective
+
+  Input Parameters:
++ body    - the `Body`, set up
+- weights - one for each row of this rank, positive on rows that are prescribed; not copied, and looked at whenever rows or conditions change
+
+  Level: developer
+
+  Note:
+  Two rows with one direction are prescribed the weighted mean of their displacements, and each has its part of the force. Without this call
+  all weights are equal.
+
+.seealso: `Body`, `BodySetInterface()`, `BodySetConditions()`
+@*/
+PetscErrorCode BodySetRowWeights(Body body, const PetscReal weights[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  body->row_weights = weights;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetRobin - sets the springs of Robin rows
+
+  Logically Collective
+
+  Input Parameters:
++ body      - the `Body`, set up
+- stiffness - one for each row of this rank [N/m], positive on rows that are to be Robin rows
+
+  Level: developer
+
+  Note:
+  The force along the row is r - stiffness B u, with r from the input trace. Set before `BodySetConditions()` makes Robin rows.
+
+.seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
+  PetscCall(PetscArraycpy(body->robin, stiffness, body->rows.local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetConditions - says which rows are prescribed and which are loaded from now on
+
+  Collective
+
+  Input Parameters:
++ body       - the `Body`
+- conditions - one for each row of this rank
+
+  Level: developer
+
+  Note:
+  Never makes a matrix be factored again.
+
+.seealso: `Body`, `BodyCondition`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
+{
+  PetscInt  counts[3] = {0, 0, 0};
+  PetscBool changed   = PETSC_FALSE, known;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    if (conditions[i] != body->conditions[i]) changed = PETSC_TRUE;
+    body->conditions[i] = conditions[i];
+    counts[0] += conditions[i] == BODY_PRESCRIBED;
+    counts[1] += conditions[i] == BODY_FORCED || conditions[i] == BODY_ROBIN;
+    counts[2] += conditions[i] == BODY_ROBIN;
+  }
+  known = BodyMatchResponse(body);
+  if (body->rows.size > 1) {
+    PetscInt all[5] = {counts[0], counts[1], changed ? 1 : 0, known ? 0 : 1, counts[2]};
+
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 5, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+    counts[0] = all[0];
+    counts[1] = all[1];
+    counts[2] = all[4];
+    changed   = (PetscBool)(all[2] > 0);
+    known     = (PetscBool)(all[3] == 0);
+  }
+  if (!changed) PetscFunctionReturn(PETSC_SUCCESS);
+  body->n_prescribed = counts[0];
+  body->n_forced     = counts[1];
+  body->n_robin      = counts[2];
+  PetscCall(BodyValidateResponse(body, known));
+  PetscCall(BodySetConstraints(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells the solvers which rows they hold */
+PetscErrorCode BodySetConstraints(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyUpdateGram(body));
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    body->held[i]        = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN);
+    body->flexibility[i] = body->conditions[i] == BODY_ROBIN ? 1 / body->robin[i] : 0;
+  }
+  BodyUnmarkDependent(body, body->held);
+  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held, body->flexibility));
+  if (body->mass_solver && body->is_explicit && body->prescribed_mass) {
+    for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
+    BodyUnmarkDependent(body, body->held);
+    PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held, NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* vec += B^T G^{-1} (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step; held dofs must be in place
+   before, and stay there. Without a trace `vec` is a force, and its part along the rows, what holds dofs left aside, becomes zero. */
+PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec)
+{
+  PetscScalar *row, *target;
+
+  PetscFunctionBegin;
+  if (!body->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMult(trace ? body->interface : body->free_rows, vec, body->row_vec[0]));
+  PetscCall(VecGetArray(body->row_vec[0], &row));
+  if (trace) {
+    PetscCall(VecGetArrayWrite(body->row_vec[1], &target));
+    PetscCall(TraceInterpolate(trace, position, 0, body->rows.local, target));
+    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? target[i] - row[i] : 0;
+    PetscCall(VecRestoreArrayWrite(body->row_vec[1], &target));
+  } else {
+    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? -row[i] : 0;
+  }
+  BodyDivideByGram(body, row);
+  PetscCall(VecRestoreArray(body->row_vec[0], &row));
+  PetscCall(MatMultTransposeAdd(body->free_rows, body->row_vec[0], vec, vec));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f += scale B^T lambda on forced and Robin rows, with the force trace at that position of the controller step and the springs of
+   Robin rows at displacement u */
+PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar scale, Vec u, Vec f)
+{
+  const PetscScalar *at = NULL;
+  PetscScalar       *row;
+
+  PetscFunctionBegin;
+  if (!body->n_forced) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
+  PetscCall(TraceInterpolate(body->traces.force_in, position, 0, body->rows.local, row));
+  if (body->n_robin) {
+    PetscCall(MatMult(body->interface, u, body->row_vec[1]));
+    PetscCall(VecGetArrayRead(body->row_vec[1], &at));
+    for (PetscInt i = 0; i < body->rows.local; i++)
+      if (body->conditions[i] == BODY_ROBIN) row[i] -= body->robin[i] * at[i];
+    PetscCall(VecRestoreArrayRead(body->row_vec[1], &at));
+  }
+  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED || body->conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
+  PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
+  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], f, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

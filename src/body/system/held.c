@@ -1,0 +1,75 @@
+/* Whether what is held of a body holds it as a whole. */
+#include <body/layout/bodyimpl.h>
+#include <petscblaslapack.h>
+
+#define MAX_RIGID 6
+/* Smallest eigenvalue of the Gram matrix below, relative to the largest, at which a motion counts as free; its round-off is 1e-15 */
+#define FREE 1e-10
+
+/* Rigid motions of a node at r: translations, then rotations about the axes (in two dimensions: about the third) */
+static PetscReal RigidMotion(PetscInt dim, PetscInt motion, const PetscReal r[3], PetscInt component)
+{
+  const PetscInt axis = dim == 2 ? 2 : motion - dim;
+
+  if (motion < dim) return motion == component ? 1 : 0;
+  if (component == (axis + 1) % 3) return -r[(axis + 2) % 3];
+  if (component == (axis + 2) % 3) return r[(axis + 1) % 3];
+  return 0;
+}
+
+/* Adds what a fixed dof keeps each rigid motion from, as products of motions; lengths relative to the body's size */
+static void AddFixed(Body body, PetscInt dof, const PetscReal box[6], PetscReal size, PetscInt n, PetscReal gram[])
+{
+  const PetscInt dim = body->dim, component = dof % dim;
+  PetscReal      r[3] = {0};
+
+  for (PetscInt d = 0; d < dim; d++) r[d] = (body->coordinates[dof - component + d] - 0.5 * (box[d] + box[3 + d])) / size;
+  for (PetscInt a = 0; a < n; a++)
+    for (PetscInt b = 0; b < n; b++) gram[a * n + b] += RigidMotion(dim, a, r, component) * RigidMotion(dim, b, r, component);
+}
+
+/* Whether some rigid motion of the body leaves all of these owned dofs in place, those of all ranks together */
+static PetscErrorCode IsLoose(Body body, PetscInt n_fixed, const PetscInt fixed[], PetscBool others, PetscBool *loose)
+{
+  MPI_Comm       comm = PetscObjectComm((PetscObject)body);
+  const PetscInt dim = body->dim, n = dim == 1 ? 1 : 3 * (dim - 1);
+  PetscReal      gram[MAX_RIGID * MAX_RIGID] = {0}, eigenvalues[MAX_RIGID], work[4 * MAX_RIGID], box[6] = {0}, size = 0;
+  PetscBLASInt   order = (PetscBLASInt)n, lwork = 4 * MAX_RIGID, info;
+  PetscInt       next = 0;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetBoundingBox(body->dm, box, box + 3));
+  for (PetscInt d = 0; d < dim; d++) size = PetscMax(size, box[3 + d] - box[d]);
+  for (PetscInt dof = 0; dof < body->owned_nodes * dim; dof++) {
+    const PetscBool listed = (PetscBool)(next < n_fixed && fixed[next] == dof);
+
+    if (listed) next++;
+    if (listed != others) AddFixed(body, dof, box, size, n, gram);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, (PetscMPIInt)(n * n), MPIU_REAL, MPIU_SUM, comm));
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("N", "L", &order, gram, &order, eigenvalues, work, &lwork, &info));
+  PetscCheck(info == 0, comm, PETSC_ERR_LIB, "LAPACK syev info %d", (int)info);
+  *loose = (PetscBool) !(eigenvalues[0] > FREE * eigenvalues[n - 1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Errors where a body can move or turn without its matrix noticing: a static one by too few held displacements, since contact forces are found
+   from what the body does under them alone; one with a massless layer by too few nodes with mass. Factors of such a matrix need not show that it is singular. */
+PetscErrorCode BodyCheckHeld(Body body)
+{
+  MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
+  const char *prefix = ((PetscObject)body)->prefix;
+  PetscBool   loose, layer = (PetscBool)(body->n_layer_dofs > 0);
+
+  PetscFunctionBegin;
+  PetscCall(BodyAnyRank(body, &layer));
+  if (body->is_static) {
+    PetscCall(IsLoose(body, body->n_held, body->held_dofs, PETSC_FALSE, &loose));
+    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT, "Body '%s' is static, but nothing holds it, or not in all directions: it can move or turn as a whole; prescribe more displacements with -%sboundary_displacement%s", body->hdr.name, prefix, body->rows.global ? ", since contact cannot hold what has no stiffness of its own" : "");
+  }
+  if (layer) {
+    PetscCall(IsLoose(body, body->n_layer_dofs, body->layer_dofs, PETSC_TRUE, &loose));
+    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT, "Body '%s' has too few nodes with mass to hold its massless contact nodes, which can turn about them; refine the mesh, or set -%smass_redistribute false", body->hdr.name, prefix);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

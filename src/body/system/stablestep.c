@@ -1,0 +1,191 @@
+/*
+   The largest step for which central differences are stable: 2 / omega_max, from below. No eigenvalue of a body is larger than the
+   largest of its elements (Irons and Treharne 1971), K x = lambda M x, and that is found from the elements alone: the time in which
+   waves cross them, whatever their shape.
+
+   A lumped mass: power iteration with the internal force of each element on its own, which costs as much as some explicit steps;
+   it comes from below, so the elements that come out on top, and those close to them, are solved for exactly. Other masses: each
+   element exactly.
+*/
+#include <body/layout/bodyimpl.h>
+#include <petscblaslapack.h>
+
+#define POWER_ITERATIONS 24
+/* elements at a time; a multiple of what element loops take in a batch */
+#define CHUNK 1024
+/* Those within this factor of the largest estimate are solved for exactly, up to a number of them */
+#define CLOSE     0.8
+#define MAX_EXACT 200
+/* Displacement of power iteration, relative to the element: small against nonlinearity, large against round-off */
+#define PROBE_STRAIN 1e-6
+
+static PetscBool IsMassless(Body body, PetscInt node)
+{
+  return (PetscBool)(body->mass_redistribute && body->in_layer[node]);
+}
+
+/* Largest eigenvalue of one element, its massless nodes held, which holds whether they are free or prescribed */
+static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, PetscReal *largest)
+{
+  const PetscInt *nodes = body->connectivity + e * body->element->nodes;
+  const PetscInt  n     = body->element->nodes * body->dim;
+  PetscScalar     K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], work[4 * ELEMENT_MAX_DOFS];
+  PetscReal       eigenvalues[ELEMENT_MAX_DOFS];
+  PetscInt        kept[ELEMENT_MAX_DOFS], n_kept = 0;
+  PetscBLASInt    one = 1, m, lwork = 4 * ELEMENT_MAX_DOFS, info;
+
+  PetscFunctionBegin;
+  *largest = 0;
+  PetscCall((*body->element->ops.stiffness)(body->element, e, body->zero_displacement, K));
+  PetscCall(BodyGetElementMass(body, e, M));
+  for (PetscInt i = 0; i < n; i++)
+    if (!IsMassless(body, nodes[i / body->dim])) kept[n_kept++] = i;
+  if (!n_kept) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < n_kept; i++)
+    for (PetscInt j = 0; j < n_kept; j++) {
+      K[i * n_kept + j] = K[kept[i] * n + kept[j]];
+      M[i * n_kept + j] = M[kept[i] * n + kept[j]];
+    }
+  PetscCall(PetscBLASIntCast(n_kept, &m));
+  PetscCallBLAS("LAPACKsygv", LAPACKsygv_(&one, "N", "L", &m, K, &m, M, &m, eigenvalues, work, &lwork, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "Body '%s', element %" PetscInt_FMT ": no eigenvalues (LAPACK sygv info %d); is its mass matrix singular?", body->hdr.name, e, (int)info);
+  *largest = eigenvalues[n_kept - 1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Work space of power iteration on a chunk of elements, each with nodes of its own */
+typedef struct {
+  PetscInt   count;
+  PetscInt  *connectivity;
+  PetscReal *coordinates, *size;
+  PetscReal *inverse_mass, *u, *f;
+} Chunk;
+
+static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
+{
+  const PetscInt n = body->element->nodes, dim = body->dim;
+  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < chunk->count; c++) {
+    const PetscInt *nodes  = body->connectivity + (begin + c) * n;
+    PetscReal       extent = 0;
+
+    PetscCall(BodyGetElementMass(body, begin + c, M));
+    for (PetscInt a = 0; a < n; a++) {
+      const PetscInt own = c * n + a;
+
+      chunk->connectivity[own] = own;
+      for (PetscInt d = 0; d < dim; d++) {
+        const PetscInt  i    = a * dim + d;
+        const PetscReal mass = M[i * n * dim + i];
+
+        chunk->coordinates[own * dim + d]  = body->coordinates[nodes[a] * dim + d];
+        extent                             = PetscMax(extent, PetscAbsReal(body->coordinates[nodes[a] * dim + d] - body->coordinates[nodes[0] * dim + d]));
+        chunk->inverse_mass[own * dim + d] = mass > 0 && !IsMassless(body, nodes[a]) ? 1 / mass : 0;
+        /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
+        chunk->u[own * dim + d] = PetscSinReal(1 + 7.3 * i * i + 2.1 * i);
+      }
+    }
+    chunk->size[c] = extent;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rayleigh quotients after some iterations, one for each element of the chunk */
+static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscReal eigenvalues[])
+{
+  const PetscInt n = body->element->nodes * body->dim;
+
+  PetscFunctionBegin;
+  for (PetscInt iteration = 0; iteration <= POWER_ITERATIONS; iteration++) {
+    for (PetscInt c = 0; c < chunk->count; c++) {
+      PetscReal *u = chunk->u + c * n, norm = 0;
+
+      for (PetscInt i = 0; i < n; i++) {
+        if (chunk->inverse_mass[c * n + i] == 0) u[i] = 0;
+        norm = PetscMax(norm, PetscAbsReal(u[i]));
+      }
+      for (PetscInt i = 0; i < n && norm > 0; i++) u[i] *= PROBE_STRAIN * chunk->size[c] / norm;
+    }
+    PetscCall(PetscArrayzero(chunk->f, chunk->count * n));
+    PetscCall((*element->ops.internalforce)(element, chunk->u, chunk->f));
+    for (PetscInt c = 0; c < chunk->count; c++) {
+      PetscReal *u = chunk->u + c * n, *f = chunk->f + c * n, uKu = 0, uMu = 0;
+
+      for (PetscInt i = 0; i < n; i++) {
+        uKu += u[i] * f[i];
+        if (chunk->inverse_mass[c * n + i] > 0) uMu += u[i] * u[i] / chunk->inverse_mass[c * n + i];
+        u[i] = f[i] * chunk->inverse_mass[c * n + i];
+      }
+      eigenvalues[c] = uMu > 0 ? uKu / uMu : 0;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Estimates for all elements of this rank */
+static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
+{
+  const PetscInt n = body->element->nodes, dim = body->dim;
+  Chunk          chunk;
+  Element        element;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc6(CHUNK * n, &chunk.connectivity, CHUNK * n * dim, &chunk.coordinates, CHUNK, &chunk.size, CHUNK * n * dim, &chunk.inverse_mass, CHUNK * n * dim, &chunk.u, CHUNK * n * dim, &chunk.f));
+  for (PetscInt begin = 0; begin < body->element->count; begin += CHUNK) {
+    chunk.count = PetscMin(CHUNK, body->element->count - begin);
+    PetscCall(FillChunk(body, begin, &chunk));
+    PetscCall(ElementCreate(PETSC_COMM_SELF, ((PetscObject)body)->prefix, body->cell_shape, body->material, &element));
+    PetscCall(ElementSetUp(element, chunk.count, chunk.connectivity, chunk.coordinates));
+    PetscCall(Iterate(body, element, &chunk, eigenvalues + begin));
+    PetscCall(ElementDestroy(&element));
+  }
+  PetscCall(PetscFree6(chunk.connectivity, chunk.coordinates, chunk.size, chunk.inverse_mass, chunk.u, chunk.f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LargestOfLumped(Body body, PetscReal *largest)
+{
+  const PetscInt count = body->element->count;
+  PetscReal     *eigenvalues, top = 0, exact, last = -1;
+  PetscInt       n_exact = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(count, &eigenvalues));
+  PetscCall(EstimateEigenvalues(body, eigenvalues));
+  for (PetscInt e = 0; e < count; e++) top = PetscMax(top, eigenvalues[e]);
+  /* from the top down, band by band */
+  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - 1e-9) * top; above > CLOSE * top && n_exact < MAX_EXACT; above = bound, bound -= 0.02 * top)
+    for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
+      if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
+      last = eigenvalues[e];
+      PetscCall(GetElementEigenvalue(body, e, &exact));
+      *largest = PetscMax(*largest, exact);
+      n_exact++;
+    }
+  PetscCall(PetscFree(eigenvalues));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 2 / omega_max, from below */
+PetscErrorCode BodyComputeStableStep(Body body)
+{
+  PetscReal largest = 0;
+
+  PetscFunctionBegin;
+  if (body->stable_step > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(body->local_nodes * body->dim, &body->zero_displacement));
+  if (body->mass_type == BODY_MASS_LUMPED && body->dim > 1) PetscCall(LargestOfLumped(body, &largest));
+  else
+    for (PetscInt e = 0; e < body->element->count; e++) {
+      PetscReal eigenvalue;
+
+      PetscCall(GetElementEigenvalue(body, e, &eigenvalue));
+      largest = PetscMax(largest, eigenvalue);
+    }
+  PetscCall(PetscFree(body->zero_displacement));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
+  body->stable_step = 2 / PetscSqrtReal(largest);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,205 @@
+/* Internal force, tangent and stiffness matrix. */
+#include <body/layout/bodyimpl.h>
+
+/* f = internal force for displacement u [N] */
+PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
+{
+  const PetscScalar *u_array;
+  PetscScalar       *f_array;
+  Vec                u_local, f_local = f;
+  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  Element            element;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetElement(body, &element));
+  PetscCall(PetscLogEventBegin(BODY_InternalForce, body, 0, 0, 0));
+  PetscCall(BodyGetLocalRead(body, u, &u_local, &u_array));
+  if (ghosted) PetscCall(VecGhostGetLocalForm(f, &f_local));
+  PetscCall(VecGetArrayWrite(f_local, &f_array));
+  PetscCall(PetscArrayzero(f_array, body->local_nodes * body->dim));
+  PetscCall((*element->ops.internalforce)(element, u_array, f_array));
+  PetscCall(VecRestoreArrayWrite(f_local, &f_array));
+  PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
+  if (ghosted) {
+    PetscCall(VecGhostRestoreLocalForm(f, &f_local));
+    PetscCall(VecGhostUpdateBegin(f, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecGhostUpdateEnd(f, ADD_VALUES, SCATTER_REVERSE));
+  }
+  PetscCall(PetscLogEventEnd(BODY_InternalForce, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An error that names an element which the last internal force found inverted on any rank, if there is one. Collective: to be called
+   where it is known to all ranks that something is wrong. */
+PetscErrorCode BodyCheckInverted(Body body)
+{
+  MPI_Comm       comm      = PetscObjectComm((PetscObject)body);
+  const PetscInt n         = body->element->nodes;
+  PetscReal      centre[3] = {0};
+  PetscInt       e, number, offset;
+  PetscMPIInt    rank, first;
+  Element        element;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetElement(body, &element));
+  e = element->inverted;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  first = e < 0 ? body->rows.size : rank;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm));
+  if (first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Scan(&body->element->count, &offset, 1, MPIU_INT, MPI_SUM, comm));
+  number = offset - body->element->count + e;
+  PetscCallMPI(MPI_Bcast(&number, 1, MPIU_INT, first, comm));
+  if (rank == first)
+    for (PetscInt a = 0; a < n; a++)
+      for (PetscInt d = 0; d < body->dim; d++) centre[d] += body->coordinates[body->connectivity[e * n + a] * body->dim + d] / n;
+  PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, comm));
+  SETERRQ(comm, PETSC_ERR_FP, "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or not a number, at time %.9g s (step %" PetscInt_FMT " of the body); is a time step too large, a load too strong, or the mesh too coarse there?", body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->time, body->step);
+}
+
+/* The global numbers of an element's displacements, from the numbers of its nodes on this rank */
+PetscErrorCode BodyGetElementDofs(Body body, PetscInt e, PetscInt dofs[])
+{
+  const PetscInt *nodes = body->connectivity + e * body->element->nodes;
+  PetscInt        rstart;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
+  for (PetscInt n = 0; n < body->element->nodes; n++)
+    for (PetscInt d = 0; d < body->dim; d++) dofs[n * body->dim + d] = nodes[n] < body->owned_nodes ? rstart + nodes[n] * body->dim + d : body->ghost_dofs[(nodes[n] - body->owned_nodes) * body->dim + d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which nodes share an element, as a matrix of nodes by nodes: far smaller than one of displacements, and quick to make */
+static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
+{
+  const PetscInt n = body->element->nodes;
+  PetscScalar    ones[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscInt       nodes[ELEMENT_MAX_DOFS], dofs[ELEMENT_MAX_DOFS];
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n * n; i++) ones[i] = 1;
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), graph));
+  PetscCall(MatSetSizes(*graph, body->owned_nodes, body->owned_nodes, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(*graph, MATAIJ));
+  PetscCall(MatSetUp(*graph));
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    PetscCall(BodyGetElementDofs(body, e, dofs));
+    for (PetscInt a = 0; a < n; a++) nodes[a] = dofs[a * body->dim] / body->dim;
+    PetscCall(MatSetValues(*graph, n, nodes, n, nodes, ones, INSERT_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(*graph, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*graph, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An empty matrix with room for what elements couple. DMPLEX's own count goes through the mesh entity by entity, which takes ten times
+   as long as that of the graph. */
+PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
+{
+  const PetscInt dim = body->dim, n = body->owned_nodes * dim;
+  PetscInt       begin, end, *here, *elsewhere;
+  Mat            graph;
+
+  PetscFunctionBegin;
+  PetscCall(CreateNodeGraph(body, &graph));
+  PetscCall(MatGetOwnershipRange(graph, &begin, &end));
+  PetscCall(PetscCalloc2(n, &here, n, &elsewhere));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt *columns;
+    PetscInt        n_columns, inside = 0;
+
+    PetscCall(MatGetRow(graph, row, &n_columns, &columns, NULL));
+    for (PetscInt k = 0; k < n_columns; k++) inside += columns[k] >= begin && columns[k] < end;
+    for (PetscInt d = 0; d < dim; d++) {
+      here[(row - begin) * dim + d]      = dim * inside;
+      elsewhere[(row - begin) * dim + d] = dim * (n_columns - inside);
+    }
+    PetscCall(MatRestoreRow(graph, row, &n_columns, &columns, NULL));
+  }
+  PetscCall(MatDestroy(&graph));
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), A));
+  PetscCall(MatSetSizes(*A, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(*A, dim));
+  PetscCall(MatSetType(*A, MATAIJ));
+  PetscCall(MatSeqAIJSetPreallocation(*A, 0, here));
+  PetscCall(MatMPIAIJSetPreallocation(*A, 0, here, 0, elsewhere));
+  PetscCall(PetscFree2(here, elsewhere));
+  PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatSetOption(*A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
+  PetscCall(MatSetOption(*A, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K = tangent stiffness at displacement u; NULL: undeformed [N/m] */
+PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
+{
+  const PetscInt     n = body->element->nodes * body->dim;
+  PetscInt           dofs[ELEMENT_MAX_DOFS];
+  PetscScalar        tangent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero = NULL;
+  const PetscScalar *array;
+  Element            element;
+  Vec                local;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetElement(body, &element));
+  PetscCall(PetscLogEventBegin(BODY_Tangent, body, 0, 0, 0));
+  PetscCall(MatZeroEntries(K));
+  if (u) PetscCall(BodyGetLocalRead(body, u, &local, &array));
+  else {
+    PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
+    array = zero;
+  }
+  for (PetscInt e = 0; e < body->element->count; e++) {
+    PetscCall((*element->ops.stiffness)(element, e, array, tangent));
+    PetscCall(BodyGetElementDofs(body, e, dofs));
+    PetscCall(MatSetValues(K, n, dofs, n, dofs, tangent, ADD_VALUES));
+  }
+  if (u) PetscCall(BodyRestoreLocalRead(body, u, &local, &array));
+  PetscCall(PetscFree(zero));
+  PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
+  PetscCall(PetscLogEventEnd(BODY_Tangent, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The stiffness matrix of the undeformed body, made when it is first asked for: explicit bodies without contact never need it */
+PetscErrorCode BodyGetStiffness(Body body, Mat *K)
+{
+  PetscFunctionBegin;
+  if (!body->stiffness) {
+    PetscCall(BodyCreateMatrix(body, &body->stiffness));
+    PetscCall(BodyAssembleTangent(body, NULL, body->stiffness));
+  }
+  *K = body->stiffness;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeStress - mean Cauchy stress of each element at the current displacement
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. stress - xx, yy, zz, xy, yz, xz for each cell of this rank, in the order of `BodyGetCells()` [Pa]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetCells()`
+@*/
+PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
+{
+  const PetscScalar *u;
+  Vec                local;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
+  PetscCall((*body->element->ops.stress)(body->element, u, stress));
+  PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,36 @@
+/* Forces by springs and dampers at the contact nodes, for the penalty method and the augmented Lagrangian. Private to
+   src/contact/impls. */
+#pragma once
+#include <contact/compliance/forceproblem.h>
+#include <contact/compliance/forces.h>
+#include <contact/compliance/outersolver.h>
+
+typedef struct {
+  OuterSolver   outer;
+  PetscBool     springs;    /* there are any */
+  PetscReal     penalty;    /* N/m for each unit of area [N/m in one dimension]; 0: from materials and elements */
+  PetscReal     scale;      /* of the latter; 0: by the mass of the contact nodes */
+  PetscReal     damping;    /* N s/m for each unit of area */
+  PetscReal    *spring;     /* per row of this rank [N/m] */
+  PetscReal    *damper;     /* per row of this rank [N s/m] */
+  PetscReal    *stiffness;  /* of both over a controller step, per row of this rank [N/m] */
+  PetscReal     step;       /* the controller step [s] */
+  PetscReal     atol, rtol; /* on the force [N], and relative to it */
+  Forces        forces;
+  ForceProblem  problem;
+  PetscReal    *multiplier;                     /* force at a closed gap that does not change [N]; zero but for the augmented Lagrangian */
+  PetscBool    *pushing;                        /* rows with a force that answers to their gap */
+  PetscReal     residual, magnitude, round_off; /* [N] */
+  PetscScalar **start;                          /* per body: displacement of all rows at the start of the step, the body's own */
+  /* augmented Lagrangian */
+  PetscReal augmentation_tolerance; /* [m] */
+  PetscInt  augmentation_max_it;
+} Penalty;
+
+PETSC_INTERN PetscErrorCode PenaltyReadParameter(Contact);
+PETSC_INTERN PetscErrorCode PenaltySetUpSprings(Contact);
+PETSC_INTERN PetscErrorCode PenaltyViewParameter(Contact, PetscViewer);
+PETSC_INTERN PetscErrorCode PenaltySetUp(Contact);
+PETSC_INTERN PetscErrorCode PenaltySolve(Contact);
+PETSC_INTERN PetscErrorCode PenaltyRowsChanged(Contact);
+PETSC_INTERN PetscErrorCode PenaltyDestroy(Contact);

@@ -1,0 +1,192 @@
+/* What contact does at each node: force, pressure, gap, whether it touches. */
+#include <impakt/private/contactimpl.h>
+#include <math.h>
+
+/* What the transposes of the interface rows carry to the nodes; areas weigh the rows, so that both sides of a pair have the same pressures */
+typedef enum {
+  CARRY_FORCE,
+  CARRY_AREA,
+  CARRY_ACTIVE_AREA,
+  CARRY_GAP_AREA, /* of rows that have anything opposite, and so a gap */
+  CARRY_GAP,
+  N_CARRIED
+} Carried;
+
+struct _n_ContactFields {
+  Contact   contact;  /* borrowed */
+  Vec       rows;     /* one number for each row */
+  Vec      *nodes;    /* per body: N_CARRIED vectors of its displacements' layout */
+  PetscReal smallest; /* areas below are round-off [m^2] */
+};
+
+/*@
+  ContactFieldsCreate - what is needed to compute nodal fields of contact
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up; it must outlive the fields
+
+  Output Parameter:
+. fields - the `ContactFields`
+
+  Level: intermediate
+
+.seealso: `ContactFields`, `ContactFieldsCompute()`
+@*/
+PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
+{
+  MPI_Comm      comm    = PetscObjectComm((PetscObject)contact);
+  PetscReal     largest = 0;
+  ContactFields f;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCheck(contact->setup, comm, PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetUp() first");
+  PetscCall(PetscNew(&f));
+  *fields    = f;
+  f->contact = contact;
+  PetscCall(VecCreateMPI(comm, contact->n_rows, PETSC_DETERMINE, &f->rows));
+  PetscCall(PetscCalloc1(N_CARRIED * contact->n_bodies, &f->nodes));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    Vec positions;
+
+    PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
+    for (PetscInt k = 0; k < N_CARRIED; k++) PetscCall(VecDuplicate(positions, &f->nodes[N_CARRIED * b + k]));
+  }
+  for (PetscInt i = 0; i < contact->n_rows; i++) largest = PetscMax(largest, contact->area[i] * contact->cross_section[contact->row_pair[i]]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
+  f->smallest = 1e-9 * largest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* `along`: component of the normal of its node along the row. Tied nodes have a row for each axis, and what they carry of areas is to point along
+   the normal as that of others does. */
+static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried kind)
+{
+  const PetscReal area = contact->area[i] * contact->cross_section[contact->row_pair[i]];
+
+  switch (kind) {
+  case CARRY_FORCE:
+    return contact->force[i];
+  case CARRY_AREA:
+    return along * area;
+  case CARRY_ACTIVE_AREA:
+    return contact->active[i] ? along * area : 0;
+  case CARRY_GAP_AREA:
+    return contact->opposite[i] ? along * area : 0;
+  default:
+    return contact->opposite[i] ? area * contact->gap[i] : 0;
+  }
+}
+
+/* To the nodes of a body, along the rows on Neumann sides and against them on Dirichlet sides */
+static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
+{
+  Contact      contact = fields->contact;
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(fields->rows, &values));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscInt     sign = (pair->body[1] == b) - (pair->body[0] == b);
+    TransferRows       rows;
+
+    PetscCall(TransferGetRows(pair->transfer, &rows));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+      const PetscReal along = contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+
+      values[i] = sign ? sign * RowValue(contact, i, along, kind) : 0;
+    }
+  }
+  PetscCall(VecRestoreArrayWrite(fields->rows, &values));
+  PetscCall(MatMultTranspose(contact->interfaces[b], fields->rows, fields->nodes[N_CARRIED * b + kind]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* a.b / b.b, or `none` where b is round-off */
+static PetscReal Ratio(PetscInt dim, const PetscScalar a[], const PetscScalar b[], PetscReal smallest, PetscReal none)
+{
+  PetscReal product = 0, square = 0;
+
+  for (PetscInt d = 0; d < dim; d++) {
+    product += PetscRealPart(a[d]) * PetscRealPart(b[d]);
+    square += PetscSqr(PetscRealPart(b[d]));
+  }
+  return square > PetscSqr(smallest) ? product / square : none;
+}
+
+/*@
+  ContactFieldsCompute - nodal fields of a body at the end of the last step
+
+  Collective
+
+  Input Parameters:
++ fields - the `ContactFields`
+- body   - number of the body
+
+  Output Parameter:
+. values - for each node of this rank `CONTACT_FIELDS_SIZE` numbers: `CONTACT_FIELDS_FORCE` and following, the contact force
+           that acts on the body there; `CONTACT_FIELDS_PRESSURE`; `CONTACT_FIELDS_GAP`, not-a-number where there is none;
+           `CONTACT_FIELDS_ACTIVE`. Zeros where the node is on no contact surface
+
+  Level: intermediate
+
+  Note:
+  A Dirichlet node has the values of its row. A Neumann node has means of the rows that act on it, weighed by the areas that
+  they bring there: the pressure is sum_i P_ij f_i / sum_i P_ij A_i, so that it is uniform on both sides if it is on one. It
+  touches if any of them does. A node on several contact surfaces has the mean of their values.
+
+.seealso: `ContactFields`, `ContactGetPairState()`
+@*/
+PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscReal values[])
+{
+  Contact            contact = fields->contact;
+  const PetscScalar *carried[N_CARRIED];
+  Vec               *nodes = fields->nodes + N_CARRIED * body;
+  PetscInt           dim, n;
+
+  PetscFunctionBegin;
+  PetscCheck(body >= 0 && body < contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "There is no body %" PetscInt_FMT "; there are %" PetscInt_FMT, body, contact->n_bodies);
+  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
+  PetscCall(VecGetLocalSize(nodes[0], &n));
+  for (Carried k = 0; k < N_CARRIED; k++) {
+    PetscCall(Carry(fields, body, k));
+    PetscCall(VecGetArrayRead(nodes[k], &carried[k]));
+  }
+  for (PetscInt dof = 0; dof < n; dof += dim, values += CONTACT_FIELDS_SIZE) {
+    const PetscScalar *area = carried[CARRY_AREA] + dof;
+
+    for (PetscInt d = 0; d < 3; d++) values[CONTACT_FIELDS_FORCE + d] = d < dim ? PetscRealPart(carried[CARRY_FORCE][dof + d]) : 0;
+    values[CONTACT_FIELDS_PRESSURE] = Ratio(dim, carried[CARRY_FORCE] + dof, area, fields->smallest, 0);
+    values[CONTACT_FIELDS_GAP]      = Ratio(dim, carried[CARRY_GAP] + dof, carried[CARRY_GAP_AREA] + dof, fields->smallest, NAN);
+    values[CONTACT_FIELDS_ACTIVE]   = PetscAbsReal(Ratio(dim, carried[CARRY_ACTIVE_AREA] + dof, area, fields->smallest, 0)) > 1e-9 ? 1 : 0;
+  }
+  for (Carried k = 0; k < N_CARRIED; k++) PetscCall(VecRestoreArrayRead(nodes[k], &carried[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactFieldsDestroy - frees what `ContactFieldsCreate()` made
+
+  Collective
+
+  Input Parameter:
+. fields - the `ContactFields`, set to `NULL`
+
+  Level: intermediate
+
+.seealso: `ContactFields`
+@*/
+PetscErrorCode ContactFieldsDestroy(ContactFields *fields)
+{
+  PetscFunctionBegin;
+  if (!*fields) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < N_CARRIED * (*fields)->contact->n_bodies; k++) PetscCall(VecDestroy(&(*fields)->nodes[k]));
+  PetscCall(PetscFree((*fields)->nodes));
+  PetscCall(VecDestroy(&(*fields)->rows));
+  PetscCall(PetscFree(*fields));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

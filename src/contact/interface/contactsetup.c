@@ -1,0 +1,238 @@
+/* Set-up, and what contact tells of itself. */
+#include <impakt/private/contactimpl.h>
+
+/*@
+  ContactSetUp - finds the contact rows, sets up the bodies and the method
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, with bodies, pairs and type
+
+  Level: developer
+
+.seealso: `Contact`, `ContactSetFromOptions()`, `ContactStep()`
+@*/
+PetscErrorCode ContactSetUp(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactSetUpPairs(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodySetUp(contact->bodies[b]));
+    PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
+  }
+  PetscCall(ContactSetUpObstacleTraces(contact));
+  PetscCall(ContactSetUpResultants(contact));
+  PetscCall(ContactSetUpStabilization(contact));
+  if (contact->n_all_rows) PetscTryTypeMethod(contact, setup);
+  contact->setup = PETSC_TRUE;
+  PetscCall(ContactCheckInitialGap(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactCheckInitialGap - takes the present states as the start, and refuses bodies that overlap
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Level: developer
+
+  Note:
+  To be called again when the initial states have been changed after `ContactSetUp()`.
+
+.seealso: `Contact`, `BodySetInitialState()`
+@*/
+PetscErrorCode ContactCheckInitialGap(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactDropShared(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    ContactPairState   state;
+
+    PetscCall(ContactGetPairState(contact, p, &state));
+    PetscCheck(!pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the body is %g m inside the obstacle at the start; move one of them", pair->name, (double)-state.gap);
+    PetscCheck(pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)", ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetNumPairs - number of contact pairs
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. n - their number
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPair()`
+@*/
+PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  *n = contact->n_pairs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ContactGetPair - name and bodies of a pair
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameters:
++ name      - as it was given, or `NULL`
+. dirichlet - body that takes displacements, or `NULL`
+- neumann   - body that takes tractions, `NULL` for an obstacle; or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetNumPairs()`
+@*/
+PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[], Body *dirichlet, Body *neumann)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  if (name) *name = contact->pairs[pair].name;
+  if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[0]];
+  if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1]];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairNormal - mean outward normal of the Dirichlet side of a pair
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. normal - 3 numbers, zeros beyond the space dimension
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal normal[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPenaltyEnergy - energy stored in the penalty springs, 0 with other methods
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. energy - [J]
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetPenaltyEnergy(Contact contact, PetscReal *energy)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  *energy = contact->penalty_energy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetCounts - sweeps and changes of the active set
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. counts - see `ContactCounts`
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  *counts = contact->counts_made;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetBodyTrace - mean position and velocity of the contact nodes of a body, in the first pair it takes part in
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- body    - number of the body
+
+  Output Parameters:
++ position - 3 numbers [m]
+- velocity - 3 numbers [m/s]
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal position[], PetscReal velocity[])
+{
+  const PetscScalar *x, *u, *v;
+  Vec                positions, displacements, velocities;
+  PetscReal          sums[6] = {0};
+  PetscInt           dim;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
+  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+  PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
+  PetscCall(VecGetArrayRead(positions, &x));
+  PetscCall(VecGetArrayRead(displacements, &u));
+  PetscCall(VecGetArrayRead(velocities, &v));
+  for (PetscInt i = 0; i < contact->n_node_dofs[body]; i++) {
+    const PetscInt dof = contact->node_dofs[body][i];
+
+    for (PetscInt d = 0; d < dim; d++) {
+      sums[d] += x[dof + d] + u[dof + d];
+      sums[3 + d] += v[dof + d];
+    }
+  }
+  PetscCall(VecRestoreArrayRead(velocities, &v));
+  PetscCall(VecRestoreArrayRead(displacements, &u));
+  PetscCall(VecRestoreArrayRead(positions, &x));
+  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt d = 0; d < 3; d++) {
+    position[d] = contact->n_all_nodes[body] ? sums[d] / contact->n_all_nodes[body] : 0;
+    velocity[d] = contact->n_all_nodes[body] ? sums[3 + d] / contact->n_all_nodes[body] : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

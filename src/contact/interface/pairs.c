@@ -1,0 +1,271 @@
+/* Contact pairs: from their names to surfaces of bodies, and which side takes displacements. */
+#include <impakt/private/contactimpl.h>
+#include <sys/names.h>
+
+/* One side of a pair; the second may be an obstacle, for which the body is one past the last */
+static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)
+{
+  char     *dot;
+  char      name[256], known[1024] = "";
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(name, side, sizeof(name)));
+  PetscCall(PetscStrchr(name, '.', &dot));
+  *surface = NULL;
+  if (dot) {
+    *dot = 0;
+    PetscCall(PetscStrallocpy(dot + 1, surface));
+  }
+  *body = -1;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(PetscStrcmp(((PetscObject)contact->bodies[b])->name, name, &same));
+    if (same) *body = b;
+    PetscCall(PetscStrlcat(known, b ? ", " : "", sizeof(known)));
+    PetscCall(PetscStrlcat(known, ((PetscObject)contact->bodies[b])->name, sizeof(known)));
+  }
+  for (PetscInt o = 0; obstacle && !dot && *body < 0 && o < contact->n_obstacles; o++) {
+    const char *other;
+
+    PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+    PetscCall(PetscStrcmp(other, name, &same));
+    if (!same) continue;
+    *body     = contact->n_bodies;
+    *obstacle = contact->obstacles[o];
+  }
+  PetscCheck(*body >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: there is no body '%s'; -bodies has %s (obstacles stand second, without a surface)", pair, name, known);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactAddPair - adds a pair of bodies that may touch
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, with its bodies
+- pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`; or of a body and an
+            obstacle, `ball:floor`
+
+  Options Database Key:
+. -contact_pairs a:b,b:c - pairs
+
+  Level: beginner
+
+.seealso: `Contact`, `SurfaceCreate()`
+@*/
+PetscErrorCode ContactAddPair(Contact contact, const char pair[])
+{
+  ContactPair *p;
+  char         text[512], *colon;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
+  PetscCall(PetscStrncpy(text, pair, sizeof(text)));
+  PetscCall(PetscStrchr(text, ':', &colon));
+  PetscCheck(colon, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: a pair is two bodies with a colon between them, Dirichlet side first, as in left:right", pair);
+  *colon = 0;
+  if (contact->n_pairs == contact->max_pairs) {
+    contact->max_pairs = 2 * contact->max_pairs + 4;
+    PetscCall(PetscRealloc((size_t)contact->max_pairs * sizeof(ContactPair), &contact->pairs));
+  }
+  p = &contact->pairs[contact->n_pairs++];
+  PetscCall(PetscMemzero(p, sizeof(*p)));
+  PetscCall(PetscStrallocpy(pair, &p->name));
+  PetscCall(ParseSide(contact, pair, text, &p->body[0], &p->surface[0], NULL));
+  PetscCall(ParseSide(contact, pair, colon + 1, &p->body[1], &p->surface[1], &p->obstacle));
+  PetscCheck(p->body[0] != p->body[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: a body cannot touch itself", pair);
+  for (PetscInt other = 0; other < contact->n_pairs - 1; other++) {
+    PetscBool same;
+
+    PetscCall(PetscStrcmp(pair, contact->pairs[other].name, &same));
+    PetscCheck(!same, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs: pair %s is given twice", pair);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddObstacle(Contact contact, const char name[])
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool same;
+
+    PetscCall(PetscStrcmp(name, ((PetscObject)contact->bodies[b])->name, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
+  }
+  PetscCall(ObstacleCreateFromOptions(comm, name, &contact->obstacles[contact->n_obstacles]));
+  contact->n_obstacles++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rigid obstacles, by the options */
+PetscErrorCode ContactReadObstacles(Contact contact)
+{
+  PetscErrorCode error = PETSC_SUCCESS;
+  char         **names;
+  PetscInt       n;
+
+  PetscFunctionBegin;
+  PetscCall(NamesRead(NULL, "-obstacles", &n, &names, NULL));
+  PetscCall(PetscMalloc1(n, &contact->obstacles));
+  for (PetscInt o = 0; o < n && !error; o++) error = AddObstacle(contact, names[o]);
+  PetscCall(NamesDestroy(n, &names));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What decides which of two bodies takes displacements */
+typedef struct {
+  PetscBool is_explicit;
+  PetscReal size; /* mean edge length of its elements, of all that are alike the largest [m] */
+} Preference;
+
+/* Of all bodies. Elements of sizes that differ by less than a thousandth, from the largest of them, are alike: for two bodies on their own that
+   could go round in circles. */
+static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
+{
+  PetscReal *size, level = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_bodies, &size));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
+    PetscCall(BodyGetElementSize(contact->bodies[b], &size[b]));
+    preferences[b].size = -1;
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt largest = -1;
+
+    for (PetscInt c = 0; c < contact->n_bodies; c++)
+      if (preferences[c].size < 0 && (largest < 0 || size[c] > size[largest])) largest = c;
+    if (size[largest] < 0.999 * level) level = size[largest];
+    preferences[largest].size = level;
+  }
+  PetscCall(PetscFree(size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A pair of whole bodies whose order is not stated: an implicit one before an explicit one, then the one with the finer mesh, then the one that is
+   named first, takes displacements */
+static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const Preference preferences[])
+{
+  const Preference *a = &preferences[first], *b = &preferences[second];
+  const PetscBool   turn = a->is_explicit == b->is_explicit ? (PetscBool)(b->size < a->size) : a->is_explicit;
+  char              pair[256];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[turn ? second : first])->name, ((PetscObject)contact->bodies[turn ? first : second])->name));
+  PetscCall(ContactAddPair(contact, pair));
+  contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Middle of a body in one dimension [m] */
+static PetscErrorCode GetMiddle(Body body, PetscReal middle[3])
+{
+  PetscReal lower[3], upper[3];
+  DM        dm;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDM(body, &dm));
+  PetscCall(DMGetBoundingBox(dm, lower, upper));
+  middle[0] = 0.5 * (lower[0] + upper[0]);
+  middle[1] = middle[2] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether another body keeps body `a` from ever touching body `b`, or an obstacle: on a line, where it lies between them */
+static PetscErrorCode IsHidden(Contact contact, PetscInt a, PetscInt b, Obstacle obstacle, PetscBool *hidden)
+{
+  PetscReal first[3], second[3], normal[3], distance = 0;
+
+  PetscFunctionBegin;
+  *hidden = PETSC_FALSE;
+  if (contact->dim > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetMiddle(contact->bodies[a], first));
+  if (obstacle) PetscCall(ObstacleGetGap(obstacle, first, &distance, normal));
+  else PetscCall(GetMiddle(contact->bodies[b], second));
+  for (PetscInt c = 0; c < contact->n_bodies; c++) {
+    PetscReal middle[3], between;
+
+    if (c == a || c == b) continue;
+    PetscCall(GetMiddle(contact->bodies[c], middle));
+    if (obstacle) {
+      PetscCall(ObstacleGetGap(obstacle, middle, &between, normal));
+      if (between < distance && between > 0) *hidden = PETSC_TRUE;
+    } else if ((middle[0] - first[0]) * (middle[0] - second[0]) < 0) *hidden = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest dimension of a body: set-up refuses pairs of others */
+PetscErrorCode ContactFindDimension(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt dim;
+
+    PetscCall(BodyGetDimension(contact->bodies[b], &dim));
+    contact->dim = PetscMax(contact->dim, dim);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All bodies with each other and with all obstacles */
+PetscErrorCode ContactAddAllPairs(Contact contact)
+{
+  Preference *preferences;
+  PetscBool   hidden;
+
+  PetscFunctionBegin;
+  PetscCall(ContactFindDimension(contact));
+  PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
+  PetscCall(GetPreferences(contact, preferences));
+  for (PetscInt a = 0; a < contact->n_bodies; a++)
+    for (PetscInt b = a + 1; b < contact->n_bodies; b++) {
+      PetscCall(IsHidden(contact, a, b, NULL, &hidden));
+      if (!hidden) PetscCall(AddUnordered(contact, a, b, preferences));
+    }
+  PetscCall(PetscFree(preferences));
+  for (PetscInt a = 0; a < contact->n_bodies; a++)
+    for (PetscInt o = 0; o < contact->n_obstacles; o++) {
+      const char *name;
+      char        pair[256];
+
+      PetscCall(IsHidden(contact, a, -1, contact->obstacles[o], &hidden));
+      if (hidden) continue;
+      PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+      PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[a])->name, name));
+      PetscCall(ContactAddPair(contact, pair));
+      contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bodies in an order in which every Dirichlet side comes before its Neumann side */
+PetscErrorCode ContactOrderBodies(Contact contact)
+{
+  PetscInt  done  = 0;
+  PetscBool moved = PETSC_TRUE, *placed;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(contact->n_bodies, &placed));
+  while (done < contact->n_bodies && moved) {
+    moved = PETSC_FALSE;
+    for (PetscInt b = 0; b < contact->n_bodies; b++) {
+      PetscBool ready = (PetscBool)!placed[b];
+
+      for (PetscInt p = 0; p < contact->n_pairs; p++)
+        if (contact->pairs[p].body[1] == b && !placed[contact->pairs[p].body[0]]) ready = PETSC_FALSE;
+      if (!ready) continue;
+      contact->order[done++] = b;
+      placed[b] = moved = PETSC_TRUE;
+    }
+  }
+  PetscCall(PetscFree(placed));
+  PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a instead of a:b)");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,201 @@
+/* What the contact forces of each pair amount to: resultant, moment, impulse, area. */
+#include <impakt/private/contactimpl.h>
+
+/* What is summed over the rows of a pair */
+enum {
+  SUM_FORCE,
+  SUM_ACTIVE,
+  SUM_AREA,
+  SUM_VECTOR,
+  SUM_MOMENT  = SUM_VECTOR + 3,
+  SUM_IMPULSE = SUM_MOMENT + 3,
+  N_SUMS      = SUM_IMPULSE + 3
+};
+
+/* ... and what is the largest of them */
+enum {
+  MAX_PENETRATION,
+  MAX_TENSION,
+  N_MAXIMA
+};
+
+/* Memory, and what stays as it is; after the bodies have been set up */
+PetscErrorCode ContactSetUpResultants(Contact contact)
+{
+  PetscInt substeps;
+  TS       ts;
+
+  PetscFunctionBegin;
+  if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc4(contact->n_pairs, &contact->cross_section, N_SUMS * contact->n_pairs, &contact->sums, N_MAXIMA * contact->n_pairs, &contact->maxima, 6 * contact->n_pairs, &contact->impulse));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->cross_section[p]));
+  PetscCall(BodyGetTS(contact->bodies[0], &ts));
+  PetscCall(TSGetTimeStep(ts, &contact->step));
+  PetscCall(BodyGetSubsteps(contact->bodies[0], &substeps));
+  contact->step *= substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyResultants(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree4(contact->cross_section, contact->sums, contact->maxima, contact->impulse));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's share of the resultant of a pair, on its second body */
+static void SumForces(Contact contact, const ContactPair *pair, PetscReal force[])
+{
+  for (PetscInt d = 0; d < 3; d++) force[d] = 0;
+  for (PetscInt i = pair->begin; i < pair->end; i++)
+    for (PetscInt d = 0; d < 3; d++) force[d] += contact->force[i] * contact->row_normal[3 * i + d];
+}
+
+/* The controller step that has been accepted adds to the impulses */
+PetscErrorCode ContactAddImpulses(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscReal *impulse = contact->impulse + 6 * p, *last = impulse + 3, force[3];
+
+    SumForces(contact, &contact->pairs[p], force);
+    for (PetscInt d = 0; d < 3; d++) {
+      impulse[d] += 0.5 * contact->step * (last[d] + force[d]);
+      last[d] = force[d];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's share of the moment about the origin */
+static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, PetscReal moment[])
+{
+  const Body         body = contact->bodies[pair->body[0]];
+  const PetscScalar *reference, *displacement;
+  Vec                positions, u;
+  PetscInt           dim;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(BodyGetReferencePositions(body, &positions));
+  PetscCall(BodyGetSolution(body, &u, NULL, NULL));
+  PetscCall(VecGetArrayRead(positions, &reference));
+  PetscCall(VecGetArrayRead(u, &displacement));
+  if (contact->merger) PetscCall(ContactSumMergedMoments(contact, pair, reference, displacement, moment));
+  for (PetscInt i = pair->begin; i < pair->end && !contact->merger; i++) {
+    const PetscReal *normal = contact->row_normal + 3 * i;
+    const PetscInt   dof    = contact->row_dof[i];
+    PetscReal        x[3]   = {0};
+
+    for (PetscInt d = 0; d < dim; d++) x[d] = PetscRealPart(reference[dof + d] + displacement[dof + d]);
+    for (PetscInt d = 0; d < 3; d++) moment[d] += contact->force[i] * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
+  }
+  PetscCall(VecRestoreArrayRead(u, &displacement));
+  PetscCall(VecRestoreArrayRead(positions, &reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
+{
+  const ContactPair *pair    = &contact->pairs[p];
+  PetscInt           counted = -1; /* node that has been counted last: a tied one has several rows, side by side */
+  TransferRows       rows;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  PetscCall(PetscArrayzero(sums, N_SUMS));
+  maxima[MAX_PENETRATION] = -PETSC_MAX_REAL;
+  maxima[MAX_TENSION]     = 0;
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+    const PetscReal along = contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+
+    sums[SUM_FORCE] += along * contact->force[i];
+    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->gap[i]);
+    if (!contact->tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
+    if (!contact->active[i]) continue;
+    /* the rows of a node may have different areas then */
+    if (contact->merger) sums[SUM_AREA] += PetscSqr(along) * contact->area[i] * contact->cross_section[p];
+    if (contact->row_dof[i] == counted) continue;
+    sums[SUM_ACTIVE] += 1;
+    if (!contact->merger) sums[SUM_AREA] += contact->area[i] * contact->cross_section[p];
+    counted = contact->row_dof[i];
+  }
+  SumForces(contact, pair, sums + SUM_VECTOR);
+  PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
+  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->impulse + 6 * p, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs begin <= p < end */
+static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt end, ContactPairState states[])
+{
+  PetscReal *sums = contact->sums, *maxima = contact->maxima;
+
+  PetscFunctionBegin;
+  for (PetscInt p = begin; p < end; p++) PetscCall(SumPair(contact, p, sums + N_SUMS * (p - begin), maxima + N_MAXIMA * (p - begin)));
+  if (contact->size > 1 && end > begin) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(N_SUMS * (end - begin)), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  }
+  for (PetscInt p = begin; p < end; p++, sums += N_SUMS, maxima += N_MAXIMA) {
+    ContactPairState *state = &states[p - begin];
+
+    state->force   = sums[SUM_FORCE];
+    state->active  = (PetscInt)sums[SUM_ACTIVE];
+    state->gap     = -maxima[MAX_PENETRATION];
+    state->tension = maxima[MAX_TENSION];
+    state->area    = sums[SUM_AREA];
+    PetscCall(PetscArraycpy(state->force_vector, sums + SUM_VECTOR, 3));
+    PetscCall(PetscArraycpy(state->moment, sums + SUM_MOMENT, 3));
+    PetscCall(PetscArraycpy(state->impulse, sums + SUM_IMPULSE, 3));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairState - forces, gap and active nodes of a pair at the end of the last step
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. state - see `ContactPairState`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPairStates()`, `ContactStep()`
+@*/
+PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(ComputeStates(contact, pair, pair + 1, state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairStates - forces, gaps and active nodes of all pairs at the end of the last step
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameter:
+. states - see `ContactPairState`; one for each pair
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPairState()`, `ContactGetNumPairs()`, `ContactStep()`
+@*/
+PetscErrorCode ContactGetPairStates(Contact contact, ContactPairState states[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(ComputeStates(contact, 0, contact->n_pairs, states));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

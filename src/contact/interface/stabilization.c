@@ -1,0 +1,45 @@
+/* What is done against chatter, whatever the method: the naive stabilisation. */
+#include <impakt/private/contactimpl.h>
+
+const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilized", "ContactStabilization", "CONTACT_STABILIZATION_", NULL};
+
+/* Refuses what would have no effect */
+PetscErrorCode ContactSetUpStabilization(Contact contact)
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)contact);
+  PetscBool lagrange, all_massless = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  if (contact->stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++) {
+      PetscBool massless;
+
+      PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[side]], &massless));
+      if (!massless) all_massless = PETSC_FALSE;
+    }
+  PetscCheck(!all_massless, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization %s acts on contact nodes with mass, and all are massless here, which do not chatter; leave it at none, or set -<body>_mass_redistribute false", ContactStabilizations[contact->stabilization]);
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_LAGRANGE, &lagrange));
+  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCheck(lagrange, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose these, or -contact_stabilization naive", ((PetscObject)contact)->type_name);
+  PetscCall(PetscCalloc1(contact->n_rows, &contact->stabilized));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The naive stabilisation (Hoy, Tezaur, Mota, section 5): after a step in contact the nodes in contact have no acceleration */
+PetscErrorCode ContactStabilize(Contact contact)
+{
+  PetscBool in_contact;
+
+  PetscFunctionBegin;
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+
+      contact->stabilized[i] = (PetscBool)(contact->active[i] && (pair->body[0] == b || pair->body[1] == b));
+    }
+    PetscCall(BodyClearAcceleration(contact->bodies[b], contact->stabilized));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

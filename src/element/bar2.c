@@ -1,0 +1,219 @@
+/* Two-node bar along a line: linear displacement, uniaxial stress. */
+#include <impakt/private/elementimpl.h>
+#include <sys/simd.h>
+
+typedef struct {
+  PetscReal        cross_section; /* m^2 */
+  PetscBool        linear;
+  const PetscReal *coordinates;    /* of the rank's nodes; owned by the body */
+  PetscReal       *inverse_length; /* of the coordinate of the second node less that of the first, so it may be negative [1/m] */
+  PetscReal       *pull_area;      /* cross-section, with the sign of the length: an element may run against the axis [m^2] */
+  PetscReal       *strain, *stress;
+} Bar2;
+
+/* Shape functions at the two Gauss points, (1 +- 1 / sqrt 3) / 2 */
+static const PetscReal shape[4] = {0.78867513459481288225, 0.21132486540518711775, 0.21132486540518711775, 0.78867513459481288225};
+
+static PetscErrorCode ElementSetFromOptions_Bar2(Element element, MPI_Comm comm, const char prefix[])
+{
+  Bar2 *bar = (Bar2 *)element->data;
+
+  PetscFunctionBegin;
+  PetscOptionsBegin(comm, prefix, "Bar element", "Element");
+  PetscCall(PetscOptionsReal("-cross_section", "Cross-sectional area [m^2]", "", bar->cross_section, &bar->cross_section, NULL));
+  PetscOptionsEnd();
+  PetscCheck(bar->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive", prefix, (double)bar->cross_section);
+  element->cross_section = bar->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementCopyOptions_Bar2(Element element, Element other)
+{
+  PetscFunctionBegin;
+  ((Bar2 *)other->data)->cross_section = ((const Bar2 *)element->data)->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordinates[])
+{
+  Bar2 *bar = (Bar2 *)element->data;
+
+  PetscFunctionBegin;
+  bar->coordinates = coordinates;
+  PetscCall(MaterialIsLinear(element->material, &bar->linear));
+  PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain, element->count, &bar->stress));
+  for (PetscInt e = 0; e < element->count; e++) {
+    const PetscInt *node   = element->connectivity + 2 * e;
+    const PetscReal length = coordinates[node[1]] - coordinates[node[0]];
+
+    bar->inverse_length[e] = 1 / length;
+    bar->pull_area[e]      = length > 0 ? bar->cross_section : -bar->cross_section;
+    PetscCheck(length != 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "A bar element at x = %g has no length", (double)coordinates[node[0]]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal GetStrain(const Bar2 *bar, const PetscInt nodes[], PetscInt e, const PetscScalar u[])
+{
+  return (u[nodes[2 * e + 1]] - u[nodes[2 * e]]) * bar->inverse_length[e];
+}
+
+/* Notes the first element that is turned over, which means nothing to linear materials, or whose stress is not a number */
+static void NoteInverted(Element element, const PetscReal strain[], const PetscReal stress[])
+{
+  const PetscBool linear = ((const Bar2 *)element->data)->linear;
+  PetscInt        bad    = 0;
+
+  element->inverted = -1;
+  for (PetscInt e = 0; e < element->count; e++) bad |= stress[e] != stress[e] || (!linear && !(1 + strain[e] > 0));
+  for (PetscInt e = 0; bad && element->inverted < 0; e++)
+    if (stress[e] != stress[e] || (!linear && !(1 + strain[e] > 0))) element->inverted = e;
+}
+
+static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScalar u[], PetscScalar f[])
+{
+  Bar2           *bar    = (Bar2 *)element->data;
+  const PetscInt *nodes  = element->connectivity;
+  const PetscInt  count  = element->count;
+  PetscReal      *strain = bar->strain, *stress = bar->stress;
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < count; e++) strain[e] = GetStrain(bar, nodes, e, u);
+  PetscCall(MaterialComputeUniaxial(element->material, count, strain, stress));
+  for (PetscInt e = 0; e < count; e++) {
+    const PetscReal pull = bar->pull_area[e] * stress[e];
+
+    f[nodes[2 * e]] -= pull;
+    f[nodes[2 * e + 1]] += pull;
+  }
+  NoteInverted(element, strain, stress);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementEnergy_Bar2(Element element, const PetscScalar u[], PetscReal *energy)
+{
+  Bar2      *bar    = (Bar2 *)element->data;
+  PetscReal *strain = bar->strain, *density = bar->stress;
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < element->count; e++) strain[e] = GetStrain(bar, element->connectivity, e, u);
+  PetscCall(MaterialComputeUniaxialEnergy(element->material, element->count, strain, density));
+  *energy = 0;
+  for (PetscInt e = 0; e < element->count; e++) *energy += bar->cross_section / PetscAbsReal(bar->inverse_length[e]) * density[e];
+  NoteInverted(element, strain, density);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementStiffness_Bar2(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+{
+  const Bar2     *bar    = (const Bar2 *)element->data;
+  const PetscReal strain = GetStrain(bar, element->connectivity, e, u);
+  PetscReal       modulus, k;
+
+  PetscFunctionBegin;
+  PetscCall(MaterialComputeUniaxialTangent(element->material, 1, &strain, &modulus));
+  k    = modulus * bar->cross_section * PetscAbsReal(bar->inverse_length[e]);
+  K[0] = K[3] = k;
+  K[1] = K[2] = -k;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How much a bar with free sides is wider than undeformed, less 1: the strain across that leaves no stress there, by Newton's method */
+static PetscReal FindWidening(const MaterialKernels *kernels, PetscReal strain)
+{
+  PetscReal across = 0;
+
+  for (PetscInt iteration = 0; iteration < 50; iteration++) {
+    SimdReal  H[9]   = {{0}}, P[9];
+    PetscReal one[9] = {strain, 0, 0, 0, across, 0, 0, 0, across}, tangent[81], change;
+
+    for (PetscInt i = 0; i < 9; i++)
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[i][p] = one[i];
+    (*kernels->stress)(kernels->data, (const PetscReal(*)[SIMD_WIDTH])H, P);
+    (*kernels->tangent)(kernels->data, one, tangent);
+    /* no further than half way to a width of zero */
+    change = PetscMax(-P[4][0] / (tangent[9 * 4 + 4] + tangent[9 * 4 + 8]), -0.5 * (1 + across));
+    across += change;
+    if (!(PetscAbsReal(change) > 1e-15)) break;
+  }
+  return across;
+}
+
+/* Force over the cross-section, as it is then; of linear materials as it was */
+static PetscErrorCode ElementStress_Bar2(Element element, const PetscScalar u[], PetscReal stress[])
+{
+  Bar2           *bar = (Bar2 *)element->data;
+  MaterialKernels kernels;
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < element->count; e++) bar->strain[e] = GetStrain(bar, element->connectivity, e, u);
+  PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
+  if (!bar->linear) {
+    PetscCall(MaterialGetKernels(element->material, &kernels));
+    for (PetscInt e = 0; e < element->count; e++) bar->stress[e] /= PetscSqr(1 + FindWidening(&kernels, bar->strain[e]));
+  }
+  for (PetscInt e = 0; e < element->count; e++)
+    for (PetscInt k = 0; k < 6; k++) stress[6 * e + k] = k == 0 ? bar->stress[e] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementPoints_Bar2(Element element, PetscInt e, PetscReal positions[], PetscReal weights[])
+{
+  const Bar2     *bar   = (const Bar2 *)element->data;
+  const PetscInt *nodes = element->connectivity + 2 * e;
+
+  PetscFunctionBegin;
+  for (PetscInt g = 0; g < 2; g++) {
+    positions[g] = shape[2 * g] * bar->coordinates[nodes[0]] + shape[2 * g + 1] * bar->coordinates[nodes[1]];
+    weights[g]   = 0.5 * bar->cross_section / PetscAbsReal(bar->inverse_length[e]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementMass_Bar2(Element element, PetscInt e, PetscScalar M[])
+{
+  const Bar2 *bar = (const Bar2 *)element->data;
+  PetscReal   density, mass;
+
+  PetscFunctionBegin;
+  PetscCall(MaterialGetDensity(element->material, &density));
+  mass = density * bar->cross_section / PetscAbsReal(bar->inverse_length[e]);
+  M[0] = M[3] = mass / 3;
+  M[1] = M[2] = mass / 6;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementDestroy_Bar2(Element element)
+{
+  Bar2 *bar = (Bar2 *)element->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree4(bar->inverse_length, bar->pull_area, bar->strain, bar->stress));
+  PetscCall(PetscFree(element->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ElementCreate_Bar2(Element element)
+{
+  Bar2 *bar;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&bar));
+  bar->cross_section          = 1;
+  element->data               = bar;
+  element->dim                = 1;
+  element->nodes              = 2;
+  element->n_points           = 2;
+  element->shape              = shape;
+  element->ops.setfromoptions = ElementSetFromOptions_Bar2;
+  element->ops.copyoptions    = ElementCopyOptions_Bar2;
+  element->ops.setup          = ElementSetUp_Bar2;
+  element->ops.internalforce  = ElementInternalForce_Bar2;
+  element->ops.energy         = ElementEnergy_Bar2;
+  element->ops.stress         = ElementStress_Bar2;
+  element->ops.points         = ElementPoints_Bar2;
+  element->ops.stiffness      = ElementStiffness_Bar2;
+  element->ops.mass           = ElementMass_Bar2;
+  element->ops.destroy        = ElementDestroy_Bar2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

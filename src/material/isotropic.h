@@ -1,0 +1,12 @@
+/* What the isotropic models share: the data of each is one of these. */
+#pragma once
+#include <impakt/private/materialimpl.h>
+
+typedef struct {
+  PetscReal youngs_modulus; /* Pa */
+  PetscReal poissons_ratio;
+  PetscReal lambda, mu;   /* Lame's constants [Pa] */
+  PetscReal plane_lambda; /* lambda of plane stress: 2 lambda mu / (lambda + 2 mu) [Pa] */
+} Isotropic;
+
+PETSC_INTERN PetscErrorCode MaterialCreate_Isotropic(Material);

@@ -1,0 +1,197 @@
+/* What a material answers: stress, energy, tangent and moduli. */
+#include <impakt/private/materialimpl.h>
+
+/*@
+  MaterialGetUniaxialModulus - tangent of uniaxial stress against uniaxial strain, at zero strain (Young's modulus)
+
+  Not Collective
+
+  Input Parameter:
+. material - the `Material`
+
+  Output Parameter:
+. modulus - [Pa]
+
+  Level: developer
+
+.seealso: `Material`, `MaterialComputeUniaxial()`
+@*/
+PetscErrorCode MaterialGetUniaxialModulus(Material material, PetscReal *modulus)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscUseTypeMethod(material, uniaxialmodulus, modulus);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialIsLinear - whether stress is proportional to strain, so that stiffness matrices are constant
+
+  Not Collective
+
+  Input Parameter:
+. material - the `Material`
+
+  Output Parameter:
+. linear - `PETSC_TRUE` if so
+
+  Level: developer
+
+.seealso: `Material`
+@*/
+PetscErrorCode MaterialIsLinear(Material material, PetscBool *linear)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  *linear = material->linear;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialGetWaveModulus - the modulus M of the fastest wave at zero strain, of speed sqrt(M / density)
+
+  Not Collective
+
+  Input Parameter:
+. material - the `Material`
+
+  Output Parameter:
+. modulus - lambda + 2 mu; in plane stress E / (1 - nu^2) [Pa]
+
+  Level: developer
+
+.seealso: `Material`, `MaterialSetPlaneStress()`, `MaterialGetUniaxialModulus()`
+@*/
+PetscErrorCode MaterialGetWaveModulus(Material material, PetscReal *modulus)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscUseTypeMethod(material, wavemodulus, material->plane_stress, modulus);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialSetPlaneStress - whether the body is a thin plate in its plane, free of stress across it
+
+  Logically Collective
+
+  Input Parameters:
++ material     - the `Material`
+- plane_stress - `PETSC_TRUE` if so; else the displacement gradient is taken as given (plane strain where its third row and column vanish)
+
+  Level: developer
+
+.seealso: `Material`, `MaterialGetKernels()`
+@*/
+PetscErrorCode MaterialSetPlaneStress(Material material, PetscBool plane_stress)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  material->plane_stress = plane_stress;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MaterialGetKernels - the functions that element loops call
+
+  Not Collective
+
+  Input Parameter:
+. material - the `Material`, its constants set
+
+  Output Parameter:
+. kernels - stress, energy and tangent; their data is the material's own and lives until it is destroyed or changes its type
+
+  Level: developer
+
+  Note:
+  In plane stress or not, as `MaterialSetPlaneStress()` said before.
+
+.seealso: `Material`, `MaterialKernels`, `MaterialSetPlaneStress()`
+@*/
+PetscErrorCode MaterialGetKernels(Material material, MaterialKernels *kernels)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscUseTypeMethod(material, kernels, material->plane_stress, kernels);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialComputeUniaxial - nominal stress of bars with free sides, for a batch of strains
+
+  Not Collective
+
+  Input Parameters:
++ material - the `Material`
+. n        - number of points
+- strain   - engineering strains: stretch less 1, n of them
+
+  Output Parameter:
+. stress - stresses: force over reference cross-section [Pa], n of them; NaN where the material is not defined
+
+  Level: developer
+
+  Note:
+  Nonlinear models are not defined at strains of -1 and below; nor is Saint-Venant-Kirchhoff's where the sides would have no width left,
+  2 nu (e + e^2/2) >= 1, and the neo-Hookean one where they have no equilibrium (large stretches with a negative Poisson's ratio).
+
+.seealso: `Material`, `MaterialComputeUniaxialTangent()`, `MaterialComputeUniaxialEnergy()`
+@*/
+PetscErrorCode MaterialComputeUniaxial(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscUseTypeMethod(material, uniaxial, n, strain, stress);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialComputeUniaxialTangent - derivative of the nominal stress of bars with free sides by the strain, for a batch of strains
+
+  Not Collective
+
+  Input Parameters:
++ material - the `Material`
+. n        - number of points
+- strain   - engineering strains: stretch less 1, n of them
+
+  Output Parameter:
+. tangent - derivatives [Pa], n of them; NaN where the material is not defined
+
+  Level: developer
+
+.seealso: `Material`, `MaterialComputeUniaxial()`, `MaterialComputeUniaxialEnergy()`
+@*/
+PetscErrorCode MaterialComputeUniaxialTangent(Material material, PetscInt n, const PetscReal strain[], PetscReal tangent[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscUseTypeMethod(material, uniaxialtangent, n, strain, tangent);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialComputeUniaxialEnergy - stored energy of bars with free sides, for a batch of strains
+
+  Not Collective
+
+  Input Parameters:
++ material - the `Material`
+. n        - number of points
+- strain   - engineering strains: stretch less 1, n of them
+
+  Output Parameter:
+. energy - energies per reference volume [J/m^3], n of them; NaN where the material is not defined
+
+  Level: developer
+
+.seealso: `Material`, `MaterialComputeUniaxial()`, `MaterialComputeUniaxialTangent()`
+@*/
+PetscErrorCode MaterialComputeUniaxialEnergy(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscUseTypeMethod(material, uniaxialenergy, n, strain, energy);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,94 @@
+/* Plane stress from the kernels of a solid: the stretch across the plane that leaves it free of stress is found first. */
+#include <impakt/private/materialimpl.h>
+#include "tensor.h"
+
+#define MAX_ITERATIONS 50
+
+/* Where a model has no formula for it: Newton's method, from no strain across the plane. The step after which the next one could not be
+   seen is the last; a point without a solution gets NaN. */
+static void FindThickness(const MaterialKernels *solid, PetscReal H[9][8])
+{
+  PetscReal P[9][8], point[9], tangent[81];
+  PetscBool done[8] = {PETSC_FALSE};
+  int       left    = 8;
+
+  for (int iteration = 0; iteration < MAX_ITERATIONS && left; iteration++) {
+    (*solid->stress)(solid->data, H, P);
+    for (int p = 0; p < 8; p++) {
+      const PetscReal limit = -0.5 * (1 + H[8][p]); /* not beyond an inverted point */
+      PetscReal       size  = 0, step;
+
+      if (done[p]) continue;
+      for (int i = 0; i < 9; i++) point[i] = H[i][p];
+      for (int i = 0; i < 9; i++) size = PetscMax(size, PetscAbsReal(point[i]));
+      (*solid->tangent)(solid->data, point, tangent);
+      step = -P[8][p] / tangent[80];
+      /* convergence is quadratic: the error left is the square of this step, relative to the strain. NaN remains what it is. */
+      done[p] = PetscNot(PetscAbsReal(step) > 1e-9 * size || step < limit);
+      H[8][p] += step < limit ? limit : step;
+      if (done[p]) left--;
+    }
+  }
+  for (int p = 0; p < 8; p++)
+    if (!done[p]) H[8][p] = NAN;
+}
+
+/* Displacement gradients with the third row and column that plane stress asks for. With vectors: stores narrower than the loads of the
+   solid's kernels would hold those up. */
+SIMD_CLONES static void Complete(const PlaneStressData *plane, const PetscReal H[9][8], PetscReal full[9][8])
+{
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) TensorStore((Tensor){H[0][p], H[1][p], 0, H[3][p], H[4][p], 0, 0, 0, 0}, full, p);
+  if (plane->thickness) (*plane->thickness)(plane->solid.data, full, full[8]);
+  else FindThickness(&plane->solid, full);
+}
+
+SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
+{
+  const PlaneStressData *plane = (const PlaneStressData *)data;
+  SimdReal               full[9];
+
+  Complete(plane, H, full);
+  (*plane->solid.stress)(plane->solid.data, full, P);
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) P[8][p] *= 0; /* round-off; NaN stays */
+}
+
+static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
+{
+  const PlaneStressData *plane = (const PlaneStressData *)data;
+  SimdReal               full[9];
+
+  Complete(plane, H, full);
+  (*plane->solid.energy)(plane->solid.data, full, W);
+}
+
+/* Of P_zz = 0: dH_zz = - A_zzkl dH_kl / A_zzzz, put into dP_ij = A_ijkl dH_kl + A_ijzz dH_zz */
+static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81])
+{
+  const PlaneStressData *plane       = (const PlaneStressData *)data;
+  const int              in_plane[4] = {0, 1, 3, 4};
+  PetscReal              full[9][8], point[9], solid[81];
+
+  for (int i = 0; i < 9; i++)
+    for (int p = 0; p < 8; p++) full[i][p] = H[i];
+  Complete(plane, full, full);
+  for (int i = 0; i < 9; i++) point[i] = full[i][0];
+  (*plane->solid.tangent)(plane->solid.data, point, solid);
+  for (int i = 0; i < 81; i++) tangent[i] = 0;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      const int row = 9 * in_plane[i], column = in_plane[j];
+
+      tangent[row + column] = solid[row + column] - solid[row + 8] * solid[72 + column] / solid[80];
+    }
+}
+
+/* Makes the kernels of a solid those of plane stress; thickness, unless NULL, gives H_zz for displacement gradients in the plane */
+PetscErrorCode MaterialCondenseKernels(Material material, void (*thickness)(const void *, const PetscReal[9][8], PetscReal[8]), MaterialKernels *kernels)
+{
+  PetscFunctionBegin;
+  material->plane = (PlaneStressData){*kernels, thickness};
+  *kernels        = (MaterialKernels){&material->plane, Stress, Energy, Tangent};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
