@@ -34,12 +34,7 @@ PETSC_EXTERN PetscClassId BODY_CLASSID;
 
 .seealso: `BodySetConditions()`, `BodySetRobin()`
 E*/
-typedef enum {
-  BODY_FREE,
-  BODY_PRESCRIBED,
-  BODY_FORCED,
-  BODY_ROBIN
-} BodyCondition;
+typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyCondition;
 
 /*E
    BodyMassType - how the mass of an element is put on its nodes
@@ -53,11 +48,7 @@ typedef enum {
 
 .seealso: `BodySetFromOptions()`
 E*/
-typedef enum {
-  BODY_MASS_LUMPED,
-  BODY_MASS_CONSISTENT,
-  BODY_MASS_AVERAGED
-} BodyMassType;
+typedef enum { BODY_MASS_LUMPED, BODY_MASS_CONSISTENT, BODY_MASS_AVERAGED } BodyMassType;
 PETSC_EXTERN const char *const BodyMassTypes[];
 
 /*E
@@ -71,10 +62,7 @@ PETSC_EXTERN const char *const BodyMassTypes[];
 
 .seealso: `BodySetTractionType()`
 E*/
-typedef enum {
-  BODY_TRACTION_INTERNAL,
-  BODY_TRACTION_REACTION
-} BodyTractionType;
+typedef enum { BODY_TRACTION_INTERNAL, BODY_TRACTION_REACTION } BodyTractionType;
 PETSC_EXTERN const char *const BodyTractionTypes[];
 
 /*S
@@ -122,7 +110,8 @@ PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
 PETSC_EXTERN PetscErrorCode BodySetTractionType(Body, BodyTractionType);
 PETSC_EXTERN PetscErrorCode BodySetRowWeights(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);
-PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *), void *);
+PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *),
+                                                void *);
 
 PETSC_EXTERN PetscErrorCode BodyGetDM(Body, DM *);
 PETSC_EXTERN PetscErrorCode BodyGetTS(Body, TS *);

@@ -42,10 +42,7 @@ typedef const char *ContactType;
 
 .seealso: `ContactSetFromOptions()`
 E*/
-typedef enum {
-  CONTACT_LAW_FRICTIONLESS,
-  CONTACT_LAW_TIED
-} ContactLaw;
+typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
 
 /*E
@@ -63,11 +60,7 @@ PETSC_EXTERN const char *const ContactLaws[];
 
 .seealso: `ContactSetFromOptions()`
 E*/
-typedef enum {
-  CONTACT_CONSTRAINT_GAP,
-  CONTACT_CONSTRAINT_GAP_RATE,
-  CONTACT_CONSTRAINT_BOTH
-} ContactConstraint;
+typedef enum { CONTACT_CONSTRAINT_GAP, CONTACT_CONSTRAINT_GAP_RATE, CONTACT_CONSTRAINT_BOTH } ContactConstraint;
 PETSC_EXTERN const char *const ContactConstraints[];
 
 /*E
@@ -82,11 +75,7 @@ PETSC_EXTERN const char *const ContactConstraints[];
 
 .seealso: `ContactSetFromOptions()`
 E*/
-typedef enum {
-  CONTACT_STABILIZATION_NONE,
-  CONTACT_STABILIZATION_NAIVE,
-  CONTACT_STABILIZATION_CONTACT_STABILIZED
-} ContactStabilization;
+typedef enum { CONTACT_STABILIZATION_NONE, CONTACT_STABILIZATION_NAIVE, CONTACT_STABILIZATION_CONTACT_STABILIZED } ContactStabilization;
 PETSC_EXTERN const char *const ContactStabilizations[];
 
 PETSC_EXTERN PetscClassId CONTACT_CLASSID;

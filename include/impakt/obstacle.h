@@ -23,11 +23,7 @@ typedef struct _n_Obstacle *Obstacle;
 
 .seealso: `Obstacle`
 E*/
-typedef enum {
-  OBSTACLE_PLANE,
-  OBSTACLE_SPHERE,
-  OBSTACLE_CYLINDER
-} ObstacleType;
+typedef enum { OBSTACLE_PLANE, OBSTACLE_SPHERE, OBSTACLE_CYLINDER } ObstacleType;
 PETSC_EXTERN const char *const ObstacleTypes[];
 
 PETSC_EXTERN PetscErrorCode ObstacleCreateFromOptions(MPI_Comm, const char[], Obstacle *);

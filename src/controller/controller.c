@@ -39,7 +39,8 @@ PetscErrorCode ControllerRegisterAll(void)
 PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
 {
   PetscFunctionBegin;
-  PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm, ControllerDestroy, ControllerView));
+  PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm,
+                              ControllerDestroy, ControllerView));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -52,7 +53,9 @@ static PetscErrorCode CreateBodies(Controller controller)
 
   PetscFunctionBegin;
   PetscCall(NamesRead(NULL, "-bodies", &n, &names, &set));
-  PetscCheck(set && n, comm, PETSC_ERR_USER_INPUT, "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
+  PetscCheck(
+      set && n, comm, PETSC_ERR_USER_INPUT,
+      "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
   controller->n_bodies = n;
   PetscCall(PetscCalloc1(n, &controller->bodies));
   for (PetscInt b = 0; b < n; b++) PetscCall(BodyCreate(comm, names[b], &controller->bodies[b]));
@@ -106,12 +109,15 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscCall(CreateBodies(controller));
   PetscCheck(set_end && set_step, comm, PETSC_ERR_USER_INPUT, "-time_end and -time_step are needed, in s");
   PetscCheck(controller->time_step > 0, comm, PETSC_ERR_USER_INPUT, "-time_step %g s must be positive", (double)controller->time_step);
-  PetscCheck(controller->time_end > controller->time_start, comm, PETSC_ERR_USER_INPUT, "-time_end %g s must be later than -time_start %g s", (double)controller->time_end, (double)controller->time_start);
+  PetscCheck(controller->time_end > controller->time_start, comm, PETSC_ERR_USER_INPUT,
+             "-time_end %g s must be later than -time_start %g s", (double)controller->time_end, (double)controller->time_start);
   quotient = (controller->time_end - controller->time_start) / controller->time_step;
-  PetscCheck(quotient < 2e9, comm, PETSC_ERR_USER_INPUT, "-time_step %g s is too small for %g s of simulated time", (double)controller->time_step, (double)(controller->time_end - controller->time_start));
+  PetscCheck(quotient < 2e9, comm, PETSC_ERR_USER_INPUT, "-time_step %g s is too small for %g s of simulated time",
+             (double)controller->time_step, (double)(controller->time_end - controller->time_start));
   /* the tolerance keeps a quotient that is a whole number but for round-off from being counted up */
   controller->steps = (PetscInt)PetscCeilReal(quotient * (1 - 1e-12) - 1e-9);
-  for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
+  for (PetscInt b = 0; b < controller->n_bodies; b++)
+    PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ContactCreate(comm, &controller->contact));
   PetscCall(ContactSetBodies(controller->contact, controller->n_bodies, controller->bodies));
   PetscCall(ContactSetFromOptions(controller->contact));
@@ -140,11 +146,13 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   if (controller->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(controller->contact, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE, "Call ControllerSetFromOptions() first");
+  PetscCheck(controller->contact, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE,
+             "Call ControllerSetFromOptions() first");
   PetscCall(PetscTime(&begin));
   PetscCall(ContactSetUp(controller->contact));
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
-  PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n, &controller->contact_velocities, n_pairs, &controller->pair_states));
+  PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
+                         &controller->contact_velocities, n_pairs, &controller->pair_states));
   for (PetscInt p = 0; p < n_pairs; p++) {
     Body first, second;
 
@@ -177,7 +185,8 @@ PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscCheck(controller->n_monitors < MAX_MONITORS, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE, "Too many monitors, at most %d", MAX_MONITORS);
+  PetscCheck(controller->n_monitors < MAX_MONITORS, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
+             "Too many monitors, at most %d", MAX_MONITORS);
   controller->monitor[controller->n_monitors]           = monitor;
   controller->monitor_ctx[controller->n_monitors]       = ctx;
   controller->monitor_destroy[controller->n_monitors++] = destroy;
@@ -186,7 +195,13 @@ PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *
 
 static PetscErrorCode Observe(Controller controller, PetscInt step)
 {
-  ControllerFrame frame = {.step = step, .steps = controller->steps, .n_bodies = controller->n_bodies, .bodies = controller->measures, .contact_positions = controller->contact_positions, .contact_velocities = controller->contact_velocities, .pairs = controller->pair_states};
+  ControllerFrame frame = {.step               = step,
+                           .steps              = controller->steps,
+                           .n_bodies           = controller->n_bodies,
+                           .bodies             = controller->measures,
+                           .contact_positions  = controller->contact_positions,
+                           .contact_velocities = controller->contact_velocities,
+                           .pairs              = controller->pair_states};
   ContactCounts   counts;
 
   PetscFunctionBegin;
@@ -202,14 +217,16 @@ static PetscErrorCode Observe(Controller controller, PetscInt step)
   PetscCall(ContactGetCounts(controller->contact, &counts));
   frame.sweeps = step ? counts.sweeps : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
-  for (PetscInt i = 0; i < controller->n_monitors; i++) PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));
+  for (PetscInt i = 0; i < controller->n_monitors; i++)
+    PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* CPU time of a process, its own and the system's on its behalf */
 static PetscLogDouble Seconds(const struct rusage *usage)
 {
-  return (PetscLogDouble)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) + 1e-6 * (PetscLogDouble)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
+  return (PetscLogDouble)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) +
+         1e-6 * (PetscLogDouble)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
 }
 
 /*@
@@ -264,7 +281,9 @@ PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g s, %" PetscInt_FMT " controller steps of %g s\n", (double)controller->time_start, (double)(controller->time_start + controller->steps * controller->time_step), controller->steps, (double)controller->time_step));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g s, %" PetscInt_FMT " controller steps of %g s\n", (double)controller->time_start,
+                                   (double)(controller->time_start + controller->steps * controller->time_step), controller->steps,
+                                   (double)controller->time_step));
   for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodyView(controller->bodies[b], viewer));
   PetscCall(ContactView(controller->contact, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -39,8 +39,11 @@ static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *fr
     active += frame->pairs[p].active;
   }
   if (!frame->step) lines->initial_energy = energy;
-  PetscCall(PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e s  energy error %10.3e", frame->step, (double)frame->time, (double)(lines->initial_energy > 0 ? energy / lines->initial_energy - 1 : energy)));
-  if (frame->n_pairs) PetscCall(PetscPrintf(comm, "  gap %10.3e m  active %" PetscInt_FMT "  force %12.5e N  sweeps %" PetscInt_FMT, (double)gap, active, (double)force, frame->sweeps));
+  PetscCall(PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e s  energy error %10.3e", frame->step, (double)frame->time,
+                        (double)(lines->initial_energy > 0 ? energy / lines->initial_energy - 1 : energy)));
+  if (frame->n_pairs)
+    PetscCall(PetscPrintf(comm, "  gap %10.3e m  active %" PetscInt_FMT "  force %12.5e N  sweeps %" PetscInt_FMT, (double)gap, active,
+                          (double)force, frame->sweeps));
   PetscCall(PetscPrintf(comm, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,7 +22,8 @@ static PetscErrorCode ElementSetFromOptions_Bar2(Element element, MPI_Comm comm,
   PetscOptionsBegin(comm, prefix, "Bar element", "Element");
   PetscCall(PetscOptionsReal("-cross_section", "Cross-sectional area [m^2]", "", bar->cross_section, &bar->cross_section, NULL));
   PetscOptionsEnd();
-  PetscCheck(bar->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive", prefix, (double)bar->cross_section);
+  PetscCheck(bar->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive", prefix,
+             (double)bar->cross_section);
   element->cross_section = bar->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -41,7 +42,8 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
   PetscFunctionBegin;
   bar->coordinates = coordinates;
   PetscCall(MaterialIsLinear(element->material, &bar->linear));
-  PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain, element->count, &bar->stress));
+  PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain,
+                         element->count, &bar->stress));
   for (PetscInt e = 0; e < element->count; e++) {
     const PetscInt *node   = element->connectivity + 2 * e;
     const PetscReal length = coordinates[node[1]] - coordinates[node[0]];

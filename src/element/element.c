@@ -47,7 +47,10 @@ PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType 
 
   PetscFunctionBegin;
   PetscCall(PetscFunctionListFind(ElementList, DMPolytopeTypes[cell], &create));
-  PetscCheck(create, comm, PETSC_ERR_SUP, "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar), triangle (3 nodes), quad (4 nodes), tetrahedron (4 nodes), hexahedron (8 nodes)", prefix, DMPolytopeTypes[cell]);
+  PetscCheck(create, comm, PETSC_ERR_SUP,
+             "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar), triangle (3 "
+             "nodes), quad (4 nodes), tetrahedron (4 nodes), hexahedron (8 nodes)",
+             prefix, DMPolytopeTypes[cell]);
   PetscCall(Create(create, material, element));
   if ((*element)->ops.setfromoptions) PetscCall((*(*element)->ops.setfromoptions)(*element, comm, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -8,24 +8,10 @@
 #define WEIGHT 1
 #define G      0.57735026918962576451
 
-static const PetscReal points[POINTS][DIM] = {
-    {-G, -G, -G},
-    {G, -G, -G},
-    {G, G, -G},
-    {-G, G, -G},
-    {-G, -G, G},
-    {G, -G, G},
-    {G, G, G},
-    {-G, G, G}};
-static const PetscReal corners[NODES][DIM] = {
-    {-1, -1, -1},
-    {1, -1, -1},
-    {1, 1, -1},
-    {-1, 1, -1},
-    {-1, -1, 1},
-    {1, -1, 1},
-    {1, 1, 1},
-    {-1, 1, 1}};
+static const PetscReal points[POINTS][DIM] = {{-G, -G, -G}, {G, -G, -G}, {G, G, -G}, {-G, G, -G},
+                                              {-G, -G, G},  {G, -G, G},  {G, G, G},  {-G, G, G}};
+static const PetscReal corners[NODES][DIM] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                              {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 
 SIMD_INLINE void ModesOfNodes(const SimdVector n[NODES], SimdVector m[MODES])
 {

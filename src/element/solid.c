@@ -18,7 +18,9 @@ static PetscReal GetShape(Element element, PetscInt e, const PetscReal xi[], Pet
     for (PetscInt i = 0; i < dim; i++)
       for (PetscInt j = 0; j < dim; j++) x[i][j] += solid->coordinates[dim * nodes[a] + i] * dN[dim * a + j];
   for (PetscInt i = 0; i < 3; i++)
-    for (PetscInt j = 0; j < 3; j++) cofactor[i][j] = x[(i + 1) % 3][(j + 1) % 3] * x[(i + 2) % 3][(j + 2) % 3] - x[(i + 1) % 3][(j + 2) % 3] * x[(i + 2) % 3][(j + 1) % 3];
+    for (PetscInt j = 0; j < 3; j++)
+      cofactor[i][j] = x[(i + 1) % 3][(j + 1) % 3] * x[(i + 2) % 3][(j + 2) % 3] -
+                       x[(i + 1) % 3][(j + 2) % 3] * x[(i + 2) % 3][(j + 1) % 3];
   determinant = x[0][0] * cofactor[0][0] + x[0][1] * cofactor[0][1] + x[0][2] * cofactor[0][2];
   for (PetscInt a = 0; a < element->nodes; a++)
     for (PetscInt i = 0; i < dim; i++) {
@@ -47,14 +49,18 @@ static PetscErrorCode CheckElement(Element element, PetscInt e)
 
     if (!(determinant >= least)) least = determinant; /* keeps a NaN */
   }
-  PetscCheck(least > DEGENERATE * PetscPowRealInt(extent, (int)dim), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Element %" PetscInt_FMT " of this rank, with a node at (%g, %g, %g) m, is inverted or degenerate: its Jacobian falls to %g; mend the mesh, in which vertices must run counterclockwise (the lower face of a hexahedron seen from above, the first face of a tetrahedron seen from its fourth vertex)", e, (double)origin[0], (double)origin[1],
-             (double)(dim == 3 ? origin[2] : 0), (double)least);
+  PetscCheck(least > DEGENERATE * PetscPowRealInt(extent, (int)dim), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "Element %" PetscInt_FMT " of this rank, with a node at (%g, %g, %g) m, is inverted or degenerate: its Jacobian falls to %g; "
+             "mend the mesh, in which vertices must run counterclockwise (the lower face of a hexahedron seen "
+             "from above, the first face of a tetrahedron seen from its fourth vertex)",
+             e, (double)origin[0], (double)origin[1], (double)(dim == 3 ? origin[2] : 0), (double)least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether CheckElement() would pass all elements of a batch, beyond doubt: extents are taken twice as large, for round-off. At all the
    points at once, as one by one they would cost more than several time steps. */
-SIMD_CLONES static PetscBool IsSound(const PetscInt connectivity[], PetscInt first, PetscInt count, PetscInt dim, PetscInt nodes, PetscInt n, const PetscReal dN[][SOLID_MAX_NODES * 3], const PetscReal coordinates[])
+SIMD_CLONES static PetscBool IsSound(const PetscInt connectivity[], PetscInt first, PetscInt count, PetscInt dim, PetscInt nodes,
+                                     PetscInt n, const PetscReal dN[][SOLID_MAX_NODES * 3], const PetscReal coordinates[])
 {
   SimdReal  x[SOLID_MAX_NODES][3], allowed;
   PetscBool sound = PETSC_TRUE;
@@ -78,7 +84,8 @@ SIMD_CLONES static PetscBool IsSound(const PetscInt connectivity[], PetscInt fir
       for (PetscInt a = 0; a < nodes; a++)
         for (PetscInt i = 0; i < dim; i++)
           for (PetscInt j = 0; j < dim; j++) J[i][j] += SimdGetParts(x[a][i])[part] * dN[k][dim * a + j];
-      margin = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) + J[0][1] * (J[1][2] * J[2][0] - J[1][0] * J[2][2]) + J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]) - SimdGetParts(allowed)[part];
+      margin = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) + J[0][1] * (J[1][2] * J[2][0] - J[1][0] * J[2][2]) +
+               J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]) - SimdGetParts(allowed)[part];
       for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++)
         if (!(margin[p] > 0)) sound = PETSC_FALSE;
     }
@@ -93,9 +100,12 @@ static PetscErrorCode CheckElements(Element element)
   PetscReal         N[SOLID_MAX_NODES], dN[SOLID_MAX_POINTS + SOLID_MAX_NODES][SOLID_MAX_NODES * 3];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < n; k++) (*shape->shape)(k < shape->n_points ? shape->points + dim * k : shape->corners + dim * (k - shape->n_points), N, dN[k]);
+  for (PetscInt k = 0; k < n; k++)
+    (*shape->shape)(k < shape->n_points ? shape->points + dim * k : shape->corners + dim * (k - shape->n_points), N, dN[k]);
   for (PetscInt first = 0; first < element->count; first += SIMD_WIDTH) {
-    if (IsSound(element->connectivity, first, element->count, dim, element->nodes, n, (const PetscReal(*)[SOLID_MAX_NODES * 3]) dN, solid->coordinates)) continue;
+    if (IsSound(element->connectivity, first, element->count, dim, element->nodes, n, (const PetscReal(*)[SOLID_MAX_NODES * 3]) dN,
+                solid->coordinates))
+      continue;
     for (PetscInt e = first; e < PetscMin(first + SIMD_WIDTH, element->count); e++) PetscCall(CheckElement(element, e));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -109,9 +119,11 @@ static PetscErrorCode ElementSetFromOptions_Solid(Element element, MPI_Comm comm
   if (element->dim == 3) PetscFunctionReturn(PETSC_SUCCESS);
   PetscOptionsBegin(comm, prefix, "Plane elements", "Element");
   PetscCall(PetscOptionsReal("-thickness", "Thickness of a plane body [m]", "", element->cross_section, &element->cross_section, NULL));
-  PetscCall(PetscOptionsBool("-plane_stress", "Plane stress, else plane strain", "MaterialSetPlaneStress", plane_stress, &plane_stress, NULL));
+  PetscCall(
+      PetscOptionsBool("-plane_stress", "Plane stress, else plane strain", "MaterialSetPlaneStress", plane_stress, &plane_stress, NULL));
   PetscOptionsEnd();
-  PetscCheck(element->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%sthickness is %g m; it must be positive", prefix, (double)element->cross_section);
+  PetscCheck(element->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%sthickness is %g m; it must be positive", prefix,
+             (double)element->cross_section);
   PetscCall(MaterialSetPlaneStress(element->material, plane_stress));
   ((Solid *)element->data)->plane_stress = plane_stress;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -151,7 +163,8 @@ static PetscErrorCode ElementStiffness_Solid(Element element, PetscInt e, const 
   PetscCall(PetscArrayzero(K, n * n));
   for (PetscInt g = 0; g < shape->n_points; g++) {
     PetscReal       N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3], H[9] = {0}, tangent[81];
-    const PetscReal weight = GetShape(element, e, shape->points + dim * g, N, gradient) * element->cross_section * shape->volume / shape->n_points;
+    const PetscReal weight = GetShape(element, e, shape->points + dim * g, N, gradient) * element->cross_section * shape->volume /
+                             shape->n_points;
 
     for (PetscInt a = 0; a < element->nodes; a++)
       for (PetscInt i = 0; i < dim; i++)
@@ -185,7 +198,8 @@ static PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal
   for (PetscInt g = 0; g < shape->n_load_points; g++) {
     PetscReal N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3];
 
-    weights[g] = GetShape(element, e, shape->load_points + dim * g, N, gradient) * element->cross_section * shape->volume / shape->n_load_points;
+    weights[g] = GetShape(element, e, shape->load_points + dim * g, N, gradient) * element->cross_section * shape->volume /
+                 shape->n_load_points;
     for (PetscInt i = 0; i < dim; i++) {
       positions[dim * g + i] = 0;
       for (PetscInt a = 0; a < element->nodes; a++) positions[dim * g + i] += N[a] * solid->coordinates[dim * nodes[a] + i];
@@ -208,7 +222,8 @@ static PetscErrorCode ElementMass_Solid(Element element, PetscInt e, PetscScalar
     for (PetscInt b = 0; b < element->nodes; b++) {
       PetscReal mass = 0;
 
-      for (PetscInt g = 0; g < element->n_points; g++) mass += density * weights[g] * element->shape[g * element->nodes + a] * element->shape[g * element->nodes + b];
+      for (PetscInt g = 0; g < element->n_points; g++)
+        mass += density * weights[g] * element->shape[g * element->nodes + a] * element->shape[g * element->nodes + b];
       for (PetscInt i = 0; i < dim; i++) M[(dim * a + i) * n + dim * b + i] = mass;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -256,7 +271,8 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   PetscFunctionBegin;
   PetscCall(PetscNew(&solid));
   solid->shape = shape;
-  for (PetscInt g = 0; g < shape->n_load_points; g++) (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, gradient);
+  for (PetscInt g = 0; g < shape->n_load_points; g++)
+    (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, gradient);
   element->data               = solid;
   element->dim                = shape->dim;
   element->nodes              = shape->nodes;

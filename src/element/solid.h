@@ -10,10 +10,10 @@
 /* A reference element, all of whose integration points of one rule have the same weight */
 typedef struct {
   PetscInt         dim, nodes;
-  PetscInt         n_points, n_load_points;                           /* of the internal force; of what loads and masses are integrated with */
-  PetscReal        volume;                                            /* of the reference element */
-  const PetscReal *points, *load_points;                              /* dim coordinates each */
-  const PetscReal *corners;                                           /* reference coordinates of the nodes */
+  PetscInt         n_points, n_load_points; /* of the internal force; of what loads and masses are integrated with */
+  PetscReal        volume;                  /* of the reference element */
+  const PetscReal *points, *load_points;    /* dim coordinates each */
+  const PetscReal *corners;                 /* reference coordinates of the nodes */
   void (*shape)(const PetscReal xi[], PetscReal N[], PetscReal dN[]); /* shape functions and their gradients, nodes x dim */
 } SolidShape;
 

@@ -22,7 +22,8 @@ typedef struct {
 } Gradients;
 
 /* Values at the nodes of a batch of elements, as coefficients of monomials; past the last element, it is taken again */
-SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[], SimdVector modes[SIMD_PARTS][DIM][MODES])
+SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[],
+                          SimdVector modes[SIMD_PARTS][DIM][MODES])
 {
   SimdReal nodal[DIM][NODES];
 
@@ -65,7 +66,8 @@ SIMD_INLINE void Cofactors(SimdVector a[DIM][DIM], SimdVector c[DIM][DIM], SimdV
 #endif
 }
 
-SIMD_INLINE void GetGradientsOfPart(PetscInt part, SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], const PetscReal xi[DIM], Gradients *at)
+SIMD_INLINE void GetGradientsOfPart(PetscInt part, SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], const PetscReal xi[DIM],
+                                    Gradients *at)
 {
   SimdVector x[DIM][DIM], u[DIM][DIM], c[DIM][DIM], determinant, inverse;
 
@@ -90,13 +92,15 @@ SIMD_INLINE void GetGradientsOfPart(PetscInt part, SimdVector X[DIM][MODES], Sim
     }
 }
 
-SIMD_INLINE void GetGradients(SimdVector X[SIMD_PARTS][DIM][MODES], SimdVector U[SIMD_PARTS][DIM][MODES], const PetscReal xi[DIM], Gradients *at)
+SIMD_INLINE void GetGradients(SimdVector X[SIMD_PARTS][DIM][MODES], SimdVector U[SIMD_PARTS][DIM][MODES], const PetscReal xi[DIM],
+                              Gradients *at)
 {
   for (PetscInt part = 0; part < SIMD_PARTS; part++) GetGradientsOfPart(part, X[part], U[part], xi, at);
 }
 
 /* Adds the force of one point, by monomials: the stress against the axes of the reference element against their gradients */
-SIMD_INLINE void AddPointOfPart(PetscInt part, SimdReal P[9], SimdVector cofactor[DIM][DIM], const PetscReal xi[DIM], SimdVector F[DIM][MODES])
+SIMD_INLINE void AddPointOfPart(PetscInt part, SimdReal P[9], SimdVector cofactor[DIM][DIM], const PetscReal xi[DIM],
+                                SimdVector F[DIM][MODES])
 {
 #pragma GCC unroll 3
   for (PetscInt i = 0; i < DIM; i++) {
@@ -125,7 +129,8 @@ SIMD_INLINE PetscInt FindNaN(const SimdReal values)
 }
 
 /* Returns the first element with a stress that is no number; -1: none */
-SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[], const PetscReal u[], PetscReal f[])
+SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[],
+                                      const PetscReal u[], PetscReal f[])
 {
   PetscInt  inverted = -1;
   Gradients at[2]    = {0};
@@ -169,7 +174,8 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
   return inverted;
 }
 
-SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[], PetscReal *energy)
+SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
+                                      PetscReal *energy)
 {
   PetscInt  inverted = -1;
   Gradients at       = {0};
@@ -197,7 +203,8 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
 /* sigma = P F^T / det F; of linear materials P, for which they are the same */
 SIMD_INLINE void Cauchy(SimdReal H[9], SimdReal P[9], PetscBool linear, PetscInt p, PetscReal sigma[6])
 {
-  const PetscReal xx = 1 + H[0][p], yy = 1 + H[4][p], zz = 1 + H[8][p], xy = H[1][p], xz = H[2][p], yx = H[3][p], yz = H[5][p], zx = H[6][p], zy = H[7][p];
+  const PetscReal xx = 1 + H[0][p], yy = 1 + H[4][p], zz = 1 + H[8][p], xy = H[1][p], xz = H[2][p], yx = H[3][p], yz = H[5][p],
+                  zx = H[6][p], zy = H[7][p];
   const PetscReal s = 1 / (xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx));
 
   if (linear) {
@@ -217,7 +224,8 @@ SIMD_INLINE void Cauchy(SimdReal H[9], SimdReal P[9], PetscBool linear, PetscInt
   }
 }
 
-SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[], PetscReal stress[])
+SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
+                                  PetscReal stress[])
 {
   Gradients at = {0};
 

@@ -37,7 +37,10 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscCall(PetscObjectGetName((PetscObject)body, &bar->name));
   PetscCall(BodyGetMaterial(body, &material));
   PetscCall(MaterialIsLinear(material, &linear));
-  PetscCheck(linear, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-exact: the exact solutions are those of linear elastic bars, and body '%s' is nonlinear; leave the option out, or choose -%s_material_type linear_elastic", ((PetscObject)body)->name, ((PetscObject)body)->name);
+  PetscCheck(linear, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-exact: the exact solutions are those of linear elastic bars, and body '%s' is nonlinear; leave the option out, or choose "
+             "-%s_material_type linear_elastic",
+             ((PetscObject)body)->name, ((PetscObject)body)->name);
   PetscCall(MaterialGetDensity(material, &bar->density));
   PetscCall(MaterialGetUniaxialModulus(material, &bar->modulus));
   PetscCall(BodyGetMass(body, &bar->mass));
@@ -60,12 +63,19 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
 static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar bars[2], const BodyMeasures measures[2])
 {
   PetscFunctionBegin;
-  PetscCheck(bars[0].velocity > bars[1].velocity, comm, PETSC_ERR_USER_INPUT, "-exact %s needs bars that approach each other, but along the contact normal '%s' moves at %g m/s and '%s' at %g m/s; change an initial velocity, or leave -exact out", type, bars[0].name, (double)bars[0].velocity, bars[1].name, (double)bars[1].velocity);
+  PetscCheck(bars[0].velocity > bars[1].velocity, comm, PETSC_ERR_USER_INPUT,
+             "-exact %s needs bars that approach each other, but along the contact normal '%s' moves at %g m/s and '%s' at %g m/s; change "
+             "an initial velocity, or leave -exact out",
+             type, bars[0].name, (double)bars[0].velocity, bars[1].name, (double)bars[1].velocity);
   for (PetscInt i = 0; i < 2; i++) {
     const PetscReal scale   = bars[i].mass * (PetscSqr(bars[0].velocity) + PetscSqr(bars[1].velocity));
     const PetscReal kinetic = 0.5 * bars[i].mass * PetscSqr(bars[i].velocity);
 
-    PetscCheck(PetscAbsReal(measures[i].potential) <= 1e-9 * scale && PetscAbsReal(measures[i].kinetic - kinetic) <= 1e-9 * scale, comm, PETSC_ERR_USER_INPUT, "-exact %s needs bars that start undeformed and move as a whole along the contact normal, but '%s' starts with %g J potential and %g J kinetic energy, where its mean velocity makes %g J; change its initial state, or leave -exact out", type, bars[i].name, (double)measures[i].potential, (double)measures[i].kinetic, (double)kinetic);
+    PetscCheck(PetscAbsReal(measures[i].potential) <= 1e-9 * scale && PetscAbsReal(measures[i].kinetic - kinetic) <= 1e-9 * scale, comm,
+               PETSC_ERR_USER_INPUT,
+               "-exact %s needs bars that start undeformed and move as a whole along the contact normal, but '%s' starts with %g J "
+               "potential and %g J kinetic energy, where its mean velocity makes %g J; change its initial state, or leave -exact out",
+               type, bars[i].name, (double)measures[i].potential, (double)measures[i].kinetic, (double)kinetic);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -86,7 +96,10 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
   PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCheck(n_bodies == 2 && n_pairs == 1, comm, PETSC_ERR_USER_INPUT, "-exact %s is known for two bodies and one contact pair, but there are %" PetscInt_FMT " bodies and %" PetscInt_FMT " pairs; leave -exact out", exact->type, n_bodies, n_pairs);
+  PetscCheck(n_bodies == 2 && n_pairs == 1, comm, PETSC_ERR_USER_INPUT,
+             "-exact %s is known for two bodies and one contact pair, but there are %" PetscInt_FMT " bodies and %" PetscInt_FMT
+             " pairs; leave -exact out",
+             exact->type, n_bodies, n_pairs);
   PetscCall(ContactGetPair(contact, 0, &pair, &sides[0], &sides[1]));
   PetscCall(ContactGetPairNormal(contact, 0, exact->normal));
   for (PetscInt i = 0; i < 2; i++) {

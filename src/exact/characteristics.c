@@ -96,7 +96,10 @@ static PetscErrorCode FindEvents(MPI_Comm comm, Characteristics *c, const ExactB
 
     time = PetscMin(closing, PetscMin(arrivals[0], arrivals[1]));
     if (time > c->end) break;
-    PetscCheck(c->n < MAX_EVENTS, comm, PETSC_ERR_USER_INPUT, "-exact characteristics: waves arrive at the contact more than %d times until %g s, and the run goes on to %g s; choose an earlier -time_end, or leave -exact out", MAX_EVENTS, (double)time, (double)c->end);
+    PetscCheck(c->n < MAX_EVENTS, comm, PETSC_ERR_USER_INPUT,
+               "-exact characteristics: waves arrive at the contact more than %d times until %g s, and the run goes on to %g s; choose an "
+               "earlier -time_end, or leave -exact out",
+               MAX_EVENTS, (double)time, (double)c->end);
     for (PetscInt side = 0; side < 2; side++) {
       position[side] = last->position[side] + last->velocity[side] * (time - last->time);
       if (arrivals[side] <= time + small) state.in[side] = c->events[state.next[side]++].out[side];
@@ -159,7 +162,8 @@ static PetscErrorCode ExactEvaluate_Characteristics(Exact exact, PetscInt side, 
   PetscReal              integrals[3];
 
   PetscFunctionBegin;
-  PetscCheck(time >= exact->start - small && time <= c->end + small, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The solution is known from %g to %g s, not at %g s", (double)exact->start, (double)c->end, (double)time);
+  PetscCheck(time >= exact->start - small && time <= c->end + small, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "The solution is known from %g to %g s, not at %g s", (double)exact->start, (double)c->end, (double)time);
   Integrate(c, side, time, integrals);
   solution->contact_position = event->position[side] + event->velocity[side] * (time - event->time);
   solution->contact_velocity = event->velocity[side];
@@ -222,7 +226,8 @@ static PetscErrorCode FindPeak(Exact exact)
   PetscCall(TryPeak(exact, c->end));
   for (PetscInt k = 0; k < c->n; k++) {
     PetscCall(TryPeak(exact, c->events[k].time));
-    for (PetscInt j = k; j >= 0 && c->events[k].time - c->events[j].time <= c->period[0]; j--) PetscCall(TryPeak(exact, 0.5 * (c->period[0] + c->events[k].time + c->events[j].time)));
+    for (PetscInt j = k; j >= 0 && c->events[k].time - c->events[j].time <= c->period[0]; j--)
+      PetscCall(TryPeak(exact, 0.5 * (c->period[0] + c->events[k].time + c->events[j].time)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -251,7 +256,8 @@ PetscErrorCode ExactCreate_Characteristics(Controller controller, Exact exact)
   PetscCall(ControllerGetTimes(controller, NULL, &step, &steps));
   PetscCall(PetscNew(&c));
   for (PetscInt side = 0; side < 2; side++) {
-    c->impedance[side] = PetscSqrtReal(bars[side].modulus * bars[side].density) * bars[side].mass / (bars[side].density * bars[side].length);
+    c->impedance[side] = PetscSqrtReal(bars[side].modulus * bars[side].density) * bars[side].mass /
+                         (bars[side].density * bars[side].length);
     c->period[side]    = 2 * bars[side].length * PetscSqrtReal(bars[side].density / bars[side].modulus);
     c->before[side]    = 0.5 * bars[side].velocity;
   }

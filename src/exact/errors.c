@@ -3,14 +3,7 @@
 #include <math.h>
 
 /* Members of ExactSolution in their order */
-enum {
-  CONTACT_POSITION,
-  CONTACT_VELOCITY,
-  CONTACT_FORCE,
-  KINETIC,
-  POTENTIAL,
-  MEAN_VELOCITY
-};
+enum { CONTACT_POSITION, CONTACT_VELOCITY, CONTACT_FORCE, KINETIC, POTENTIAL, MEAN_VELOCITY };
 
 _Static_assert(sizeof(ExactSolution) == EXACT_QUANTITIES * sizeof(PetscReal), "ExactSolution is read as an array here");
 
@@ -64,7 +57,8 @@ PetscErrorCode ExactMonitor(Controller controller, const ControllerFrame *frame,
     computed.kinetic          = body->kinetic;
     computed.potential        = body->potential;
     computed.mean_velocity    = Along(exact->normal, body->mean_velocity);
-    for (PetscInt i = 0; i < EXACT_QUANTITIES; i++) AddToDistance(&exact->distance[side][i], ((const PetscReal *)&solution)[i], ((const PetscReal *)&computed)[i]);
+    for (PetscInt i = 0; i < EXACT_QUANTITIES; i++)
+      AddToDistance(&exact->distance[side][i], ((const PetscReal *)&solution)[i], ((const PetscReal *)&computed)[i]);
   }
   exact->peak_potential = PetscMax(exact->peak_potential, frame->bodies[exact->body[0]].potential);
   if (frame->pairs[0].active > 0) exact->last_contact = frame->time;
@@ -112,7 +106,8 @@ PetscErrorCode ExactGetErrors(Exact exact, ExactErrors *errors)
   errors->potential        = RelativeNorm(&distance[POTENTIAL]);
   errors->mean_velocity    = RelativeNorm(&distance[MEAN_VELOCITY]);
   errors->peak_potential   = exact->last_time >= exact->turn ? (exact->peak_potential - exact->peak) / exact->peak : NAN;
-  errors->release_time     = exact->last_contact < exact->last_time ? (exact->last_contact - exact->release) / (exact->release - exact->impact) : NAN;
+  errors->release_time = exact->last_contact < exact->last_time ? (exact->last_contact - exact->release) / (exact->release - exact->impact)
+                                                                : NAN;
   for (PetscInt side = 0; side < 2; side++) {
     ExactBodyErrors *body = &errors->bodies[side];
 

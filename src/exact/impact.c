@@ -1,10 +1,14 @@
 /* Impact of two equal elastic bars: Hoy, Tezaur, Mota, eqs. (4.1) to (4.7), after Carpenter, Taylor, Katona (1991). */
 #include "exactimpl.h"
 
-static PetscErrorCode CheckEqual(MPI_Comm comm, const ExactBar bars[2], const char what[], const char unit[], PetscReal one, PetscReal other)
+static PetscErrorCode CheckEqual(MPI_Comm comm, const ExactBar bars[2], const char what[], const char unit[], PetscReal one,
+                                 PetscReal other)
 {
   PetscFunctionBegin;
-  PetscCheck(PetscAbsReal(one - other) <= 1e-9 * PetscMax(PetscAbsReal(one), PetscAbsReal(other)), comm, PETSC_ERR_USER_INPUT, "-exact impact is known for two equal bars only, but the %s of '%s' is %.12g %s and that of '%s' %.12g %s; make them equal, or leave -exact out", what, bars[0].name, (double)one, unit, bars[1].name, (double)other, unit);
+  PetscCheck(PetscAbsReal(one - other) <= 1e-9 * PetscMax(PetscAbsReal(one), PetscAbsReal(other)), comm, PETSC_ERR_USER_INPUT,
+             "-exact impact is known for two equal bars only, but the %s of '%s' is %.12g %s and that of '%s' %.12g %s; make them equal, "
+             "or leave -exact out",
+             what, bars[0].name, (double)one, unit, bars[1].name, (double)other, unit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,7 +16,9 @@ static PetscErrorCode Fill(Expression expression, MPI_Comm comm)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscStrcmp(expression->text, "free", &is_free));
-  PetscCheck(!is_free, comm, PETSC_ERR_USER_INPUT, "-%s: 'free' can only be a component of a prescribed displacement; give a number, a formula or table:file", expression->option);
+  PetscCheck(!is_free, comm, PETSC_ERR_USER_INPUT,
+             "-%s: 'free' can only be a component of a prescribed displacement; give a number, a formula or table:file",
+             expression->option);
   PetscCall(ExpressionParse(expression, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -82,7 +84,10 @@ PetscErrorCode ExpressionEvaluate(Expression expression, const ExpressionPoint *
   if (expression->parser) {
     expression->point = *point;
     PetscCall(ExpressionEvaluateFormula(expression, value));
-    PetscCheck(PetscAbsReal(*value) <= PETSC_MAX_REAL, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-%s: '%s' is %g at x = %g, y = %g, z = %g, t = %g; it must be a finite number wherever and whenever it is needed", expression->option, expression->text, (double)*value, (double)point->x[0], (double)point->x[1], (double)point->x[2], (double)point->t);
+    PetscCheck(PetscAbsReal(*value) <= PETSC_MAX_REAL, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "-%s: '%s' is %g at x = %g, y = %g, z = %g, t = %g; it must be a finite number wherever and whenever it is needed",
+               expression->option, expression->text, (double)*value, (double)point->x[0], (double)point->x[1], (double)point->x[2],
+               (double)point->t);
   } else *value = expression->uses_time ? TableEvaluate(expression->table, point->t) : expression->constant;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

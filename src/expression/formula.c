@@ -99,10 +99,14 @@ PetscErrorCode ExpressionParse(Expression expression, MPI_Comm comm)
   PetscCheck(!mupError(parser), comm, PETSC_ERR_LIB, "muParser does not take the names of variables: %s", mupGetErrorMsg(parser));
   PetscCall(Compile(parser, expression->text, reason, sizeof(reason), &position));
   if (position > 0) PetscCall(PetscSNPrintf(where, sizeof(where), " at character %" PetscInt_FMT, position));
-  PetscCheck(!reason[0], comm, PETSC_ERR_USER_INPUT, "-%s: the formula '%s' is not understood%s: %s. A formula may use x, y, z, t (and nx, ny, nz on surfaces), pi, e, and muParser's operators and functions", expression->option, expression->text, where, reason);
+  PetscCheck(!reason[0], comm, PETSC_ERR_USER_INPUT,
+             "-%s: the formula '%s' is not understood%s: %s. A formula may use x, y, z, t (and nx, ny, nz on surfaces), pi, e, and "
+             "muParser's operators and functions",
+             expression->option, expression->text, where, reason);
   PetscCall(FindVariables(expression));
   if (expression->uses_position || expression->uses_normal || expression->uses_time) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(PetscAbsReal(expression->constant) <= PETSC_MAX_REAL, comm, PETSC_ERR_USER_INPUT, "-%s: '%s' is %g, which is not a finite number", expression->option, expression->text, (double)expression->constant);
+  PetscCheck(PetscAbsReal(expression->constant) <= PETSC_MAX_REAL, comm, PETSC_ERR_USER_INPUT,
+             "-%s: '%s' is %g, which is not a finite number", expression->option, expression->text, (double)expression->constant);
   PetscCall(ExpressionDestroyParser(expression));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,7 +116,8 @@ PetscErrorCode ExpressionEvaluateFormula(Expression expression, PetscReal *value
 {
   PetscFunctionBegin;
   *value = mupEval(expression->parser);
-  PetscCheck(!mupError(expression->parser), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-%s: '%s' cannot be evaluated: %s", expression->option, expression->text, mupGetErrorMsg(expression->parser));
+  PetscCheck(!mupError(expression->parser), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-%s: '%s' cannot be evaluated: %s", expression->option,
+             expression->text, mupGetErrorMsg(expression->parser));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -43,7 +43,8 @@ PetscErrorCode ExpressionListCount(const char text[], PetscInt *n)
 }
 
 /* One component, without the blanks around it; NULL for a free one */
-static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const char text[], size_t length, PetscBool allow_free, Expression *expression)
+static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const char text[], size_t length, PetscBool allow_free,
+                                      Expression *expression)
 {
   char          *component;
   PetscBool      is_free;
@@ -81,14 +82,17 @@ static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const 
 
 .seealso: `Expression`, `ExpressionCreate()`
 @*/
-PetscErrorCode ExpressionListCreate(MPI_Comm comm, const char option[], const char text[], PetscInt n, PetscBool allow_free, Expression list[])
+PetscErrorCode ExpressionListCreate(MPI_Comm comm, const char option[], const char text[], PetscInt n, PetscBool allow_free,
+                                    Expression list[])
 {
   PetscInt found;
 
   PetscFunctionBegin;
   PetscCall(ExpressionListCount(text, &found));
   for (PetscInt i = 0; i < n; i++) list[i] = NULL;
-  PetscCheck(found == n, comm, PETSC_ERR_USER_INPUT, "-%s: '%s' has %" PetscInt_FMT " component%s; it needs %" PetscInt_FMT ", separated by commas%s", option, text, found, found == 1 ? "" : "s", n, allow_free ? ", each a formula, table:file or free" : "");
+  PetscCheck(found == n, comm, PETSC_ERR_USER_INPUT,
+             "-%s: '%s' has %" PetscInt_FMT " component%s; it needs %" PetscInt_FMT ", separated by commas%s", option, text, found,
+             found == 1 ? "" : "s", n, allow_free ? ", each a formula, table:file or free" : "");
   for (PetscInt i = 0; i < n; i++) {
     const size_t         length = FindComma(text);
     const PetscErrorCode error  = CreateComponent(comm, option, text, length, allow_free, &list[i]);

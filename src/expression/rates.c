@@ -20,7 +20,8 @@ static void FindWeights(PetscReal x, PetscReal weights[3][RATE_POINTS])
 
       c2 *= c3;
       if (j == i - 1)
-        for (int m = PetscMin(i, 2); m >= 0; m--) weights[m][i] = c1 / c2 * ((m ? m * weights[m - 1][i - 1] : 0) - (i - 1 - x) * weights[m][i - 1]);
+        for (int m = PetscMin(i, 2); m >= 0; m--)
+          weights[m][i] = c1 / c2 * ((m ? m * weights[m - 1][i - 1] : 0) - (i - 1 - x) * weights[m][i - 1]);
       for (int m = PetscMin(i, 2); m >= 0; m--) weights[m][j] = ((i - x) * weights[m][j] - (m ? m * weights[m - 1][j] : 0)) / c3;
     }
     c1 = c2;
@@ -53,7 +54,8 @@ static void FindWeights(PetscReal x, PetscReal weights[3][RATE_POINTS])
 
 .seealso: `Expression`, `ExpressionEvaluate()`
 @*/
-PetscErrorCode ExpressionEvaluateRates(Expression expression, const ExpressionPoint *point, PetscReal start, PetscReal step, PetscReal values[])
+PetscErrorCode ExpressionEvaluateRates(Expression expression, const ExpressionPoint *point, PetscReal start, PetscReal step,
+                                       PetscReal values[])
 {
   const PetscReal h      = step / 4;
   ExpressionPoint at     = *point;

@@ -60,11 +60,14 @@ static PetscErrorCode ReadRows(FILE *file, Table table, char problem[], size_t s
     rest = ReadNumber(rest, &time);
     if (rest) rest = ReadNumber(rest, &value);
     if (!rest || *rest) {
-      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT " is not a time and a value, two finite numbers separated by blanks or a comma", number));
+      PetscCall(PetscSNPrintf(
+          problem, size, "line %" PetscInt_FMT " is not a time and a value, two finite numbers separated by blanks or a comma", number));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     if (table->n && time <= table->times[table->n - 1]) {
-      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT ": time %g does not come after %g, that of the line before; times must ascend", number, (double)time, (double)table->times[table->n - 1]));
+      PetscCall(PetscSNPrintf(problem, size,
+                              "line %" PetscInt_FMT ": time %g does not come after %g, that of the line before; times must ascend", number,
+                              (double)time, (double)table->times[table->n - 1]));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     if (table->n == TABLE_ROWS_MAX) {

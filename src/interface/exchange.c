@@ -2,7 +2,8 @@
 #include "interfaceimpl.h"
 
 /* Sends record i, of `bytes` bytes, to rank destination[i]; what arrives is sorted by the rank it comes from. Free with PetscFree(). */
-PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const PetscMPIInt destination[], const void *records, PetscInt *n_received, void **received)
+PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const PetscMPIInt destination[], const void *records,
+                               PetscInt *n_received, void **received)
 {
   PetscMPIInt  size, *sent, *arrived, *sent_at, *arrived_at, total[2] = {0, 0};
   MPI_Datatype type;
@@ -21,7 +22,8 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const Pe
     total[1] += arrived[r];
   }
   PetscCall(PetscMalloc1((size_t)n * bytes, &sorted));
-  for (PetscInt i = 0; i < n; i++) PetscCall(PetscMemcpy(sorted + (size_t)(sent_at[destination[i]]++) * bytes, (const char *)records + (size_t)i * bytes, bytes));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(PetscMemcpy(sorted + (size_t)(sent_at[destination[i]]++) * bytes, (const char *)records + (size_t)i * bytes, bytes));
   for (PetscMPIInt r = 0; r < size; r++) sent_at[r] -= sent[r];
   *n_received = total[1];
   PetscCall(PetscMalloc((size_t)total[1] * bytes, received));
@@ -34,9 +36,10 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The star forest of `n_roots` and `n_leaves` nodes for three numbers of each. With a type of three numbers in its place PETSc takes that type
-   apart to compare it, and allocates memory, in each communication. */
-PetscErrorCode CreateVectorForest(MPI_Comm comm, PetscInt n_roots, PetscInt n_leaves, const PetscInt leaves[], const PetscSFNode roots[], PetscSF *vectors)
+/* The star forest of `n_roots` and `n_leaves` nodes for three numbers of each. With a type of three numbers in its place PETSc takes that
+   type apart to compare it, and allocates memory, in each communication. */
+PetscErrorCode CreateVectorForest(MPI_Comm comm, PetscInt n_roots, PetscInt n_leaves, const PetscInt leaves[], const PetscSFNode roots[],
+                                  PetscSF *vectors)
 {
   PetscInt    *numbers = NULL;
   PetscSFNode *from;
@@ -66,7 +69,8 @@ static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind,
 
     for (PetscInt k = 0; k < data->face_nodes; k++)
       for (PetscInt d = 0; d < 3; d++) {
-        const PetscReal x = data->positions[3 * data->faces[f * data->face_nodes + k] + d], to = x + normal[d] * (ahead + size), from = x - normal[d] * (behind + size);
+        const PetscReal x = data->positions[3 * data->faces[f * data->face_nodes + k] + d], to = x + normal[d] * (ahead + size),
+                        from = x - normal[d] * (behind + size);
 
         box[d]     = PetscMin(box[d], PetscMin(from, to) - 0.1 * size);
         box[3 + d] = PetscMax(box[3 + d], PetscMax(from, to) + 0.1 * size);

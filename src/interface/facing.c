@@ -33,7 +33,8 @@ static void Centroid(const SurfaceData *data, PetscInt f, PetscReal x[])
 {
   for (PetscInt d = 0; d < 3; d++) {
     x[d] = 0;
-    for (PetscInt k = 0; k < data->face_nodes; k++) x[d] += data->positions[3 * data->faces[f * data->face_nodes + k] + d] / data->face_nodes;
+    for (PetscInt k = 0; k < data->face_nodes; k++)
+      x[d] += data->positions[3 * data->faces[f * data->face_nodes + k] + d] / data->face_nodes;
   }
 }
 
@@ -90,7 +91,8 @@ static PetscBool SeesGroups(const PetscReal x[], const PetscReal normal[], Direc
 {
   for (PetscInt g = 0; g < GROUPS; g++) {
     Group          *group   = &others->groups[g];
-    const PetscReal back[3] = {-normal[0], -normal[1], -normal[2]}, from[3] = {x[0] - others->centre[0], x[1] - others->centre[1], x[2] - others->centre[2]};
+    const PetscReal back[3] = {-normal[0], -normal[1], -normal[2]},
+                    from[3] = {x[0] - others->centre[0], x[1] - others->centre[1], x[2] - others->centre[2]};
 
     if (group->support == PETSC_MAX_REAL || -LargestProduct(back, group->normal) >= OPPOSED) continue;
     if (LargestProduct(normal, group->x) - Dot(normal, x) < -depth) continue;
@@ -227,9 +229,9 @@ PetscErrorCode SurfaceComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Pet
   Level: developer
 
   Notes:
-  A face sees another one if their normals are opposed and each lies before the plane of the other, in the reference positions; where bodies overlap,
-  or behind it by as much. Faces of the partner are compared in groups of similar direction, which keeps all faces that see one, and may keep more.
-  Two blocks side by side keep the ends that face each other, two balls their front halves.
+  A face sees another one if their normals are opposed and each lies before the plane of the other, in the reference positions; where bodies
+overlap, or behind it by as much. Faces of the partner are compared in groups of similar direction, which keeps all faces that see one, and
+may keep more. Two blocks side by side keep the ends that face each other, two balls their front halves.
 
   What is left may be nothing.
 
@@ -244,7 +246,8 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
 
   PetscFunctionBegin;
   if (b) {
-    PetscCheck(a->data.dim == b->data.dim, PetscObjectComm((PetscObject)a->dm), PETSC_ERR_USER_INPUT, "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", a->data.dim, b->data.dim);
+    PetscCheck(a->data.dim == b->data.dim, PetscObjectComm((PetscObject)a->dm), PETSC_ERR_USER_INPUT,
+               "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", a->data.dim, b->data.dim);
     PetscCall(PetscMalloc1(2, &directions));
     for (PetscInt side = 0; side < 2; side++) PetscCall(GetDirections(surfaces[side], &directions[side]));
     PetscCall(ComputeOverlap(a, NULL, b, NULL, &directions[0], &directions[1], &depth));

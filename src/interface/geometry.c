@@ -117,7 +117,8 @@ void FaceShapes(PetscInt n, const PetscReal p[][2], const PetscReal s[], PetscRe
     shapes[1] = (s[0] - p[0][0]) / (p[1][0] - p[0][0]);
     shapes[0] = 1 - shapes[1];
   } else if (n == 3) {
-    const PetscReal a[2] = {p[1][0] - p[0][0], p[1][1] - p[0][1]}, b[2] = {p[2][0] - p[0][0], p[2][1] - p[0][1]}, c[2] = {s[0] - p[0][0], s[1] - p[0][1]};
+    const PetscReal a[2] = {p[1][0] - p[0][0], p[1][1] - p[0][1]}, b[2] = {p[2][0] - p[0][0], p[2][1] - p[0][1]},
+                    c[2]        = {s[0] - p[0][0], s[1] - p[0][1]};
     const PetscReal determinant = a[0] * b[1] - a[1] * b[0];
 
     shapes[1] = (c[0] * b[1] - c[1] * b[0]) / determinant;
@@ -155,7 +156,8 @@ PetscInt PolygonClip(PetscInt n, const PetscReal p[][2], PetscInt n_clip, const 
 
     for (PetscInt k = 0; k < count; k++) {
       const PetscReal *from = work[which][k], *to = work[which][(k + 1) % count];
-      const PetscReal  side_from = edge[0] * (from[1] - a[1]) - edge[1] * (from[0] - a[0]), side_to = edge[0] * (to[1] - a[1]) - edge[1] * (to[0] - a[0]);
+      const PetscReal  side_from = edge[0] * (from[1] - a[1]) - edge[1] * (from[0] - a[0]),
+                       side_to   = edge[0] * (to[1] - a[1]) - edge[1] * (to[0] - a[0]);
 
       if (side_from >= 0) {
         for (PetscInt d = 0; d < 2; d++) work[1 - which][kept][d] = from[d];
@@ -231,11 +233,12 @@ PetscInt PolygonQuadrature(PetscInt n, const PetscReal p[][2], PetscReal points[
   }
   for (PetscInt k = 1; k + 1 < n; k++) {
     const PetscReal *corners[3] = {p[0], p[k], p[k + 1]};
-    const PetscReal  area       = PetscAbsReal((p[k][0] - p[0][0]) * (p[k + 1][1] - p[0][1]) - (p[k][1] - p[0][1]) * (p[k + 1][0] - p[0][0])) / 2;
+    const PetscReal  area = PetscAbsReal((p[k][0] - p[0][0]) * (p[k + 1][1] - p[0][1]) - (p[k][1] - p[0][1]) * (p[k + 1][0] - p[0][0])) / 2;
 
     for (PetscInt set = 0; set < 2; set++)
       for (PetscInt q = 0; q < 3; q++) {
-        for (PetscInt d = 0; d < 2; d++) points[count][d] = (1 - 2 * place[set]) * corners[q][d] + place[set] * (corners[(q + 1) % 3][d] + corners[(q + 2) % 3][d]);
+        for (PetscInt d = 0; d < 2; d++)
+          points[count][d] = (1 - 2 * place[set]) * corners[q][d] + place[set] * (corners[(q + 1) % 3][d] + corners[(q + 2) % 3][d]);
         weights[count++] = area * share[set];
       }
   }

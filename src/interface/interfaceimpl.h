@@ -63,20 +63,21 @@ typedef struct {
 } RowSet;
 
 struct _n_Transfer {
-  MPI_Comm       comm;
-  Surface        dirichlet, neumann; /* neumann NULL: an obstacle */
-  Obstacle       obstacle;
-  PetscInt       dim, n;
-  PetscReal      slip_bound, angle_bound;
-  PetscBool      guards; /* nodes beyond the end of the partner have rows too */
-  RowSet         rows;
-  PetscBool      built;
-  PetscReal      built_near, smallest_size;
-  PetscReal     *built_x[2]; /* positions of the owned nodes of both sides at the last build */
-  PetscReal     *built_slip; /* per row: part of sum_j P_ij x_j - x_i across the normal at the last build, 3 each */
-  PetscReal     *slip;       /* per row: by how much the partner had slipped since the row was built, in parts of the face size, when that was last looked at */
-  PetscBool     *keep;       /* per row: it is near contact and within the bounds, and stays as it is in the next build */
-  PetscReal     *column_x;   /* work space: present positions of the columns */
+  MPI_Comm   comm;
+  Surface    dirichlet, neumann; /* neumann NULL: an obstacle */
+  Obstacle   obstacle;
+  PetscInt   dim, n;
+  PetscReal  slip_bound, angle_bound;
+  PetscBool  guards; /* nodes beyond the end of the partner have rows too */
+  RowSet     rows;
+  PetscBool  built;
+  PetscReal  built_near, smallest_size;
+  PetscReal *built_x[2]; /* positions of the owned nodes of both sides at the last build */
+  PetscReal *built_slip; /* per row: part of sum_j P_ij x_j - x_i across the normal at the last build, 3 each */
+  PetscReal *slip; /* per row: by how much the partner had slipped since the row was built, in parts of the face size, when that was last
+                      looked at */
+  PetscBool     *keep;     /* per row: it is near contact and within the bounds, and stays as it is in the next build */
+  PetscReal     *column_x; /* work space: present positions of the columns */
   TransferCounts counts;
 };
 
@@ -129,4 +130,4 @@ PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
-PETSC_INTERN void           RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);
+PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

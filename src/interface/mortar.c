@@ -65,8 +65,8 @@ static void IntegrateSegment(Patch *patch, const Segment *segment, PetscInt n_pa
   }
 }
 
-/* Dual functions psi_k = sum_l dual[k][l] phi_l with int psi_k phi_l = delta_kl int phi_k: dual = diag(lumped) mass^-1. The functions themselves
-   where that is nearly singular, which it is where only a small part in the middle of the face is covered. */
+/* Dual functions psi_k = sum_l dual[k][l] phi_l with int psi_k phi_l = delta_kl int phi_k: dual = diag(lumped) mass^-1. The functions
+   themselves where that is nearly singular, which it is where only a small part in the middle of the face is covered. */
 static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
 {
   PetscInt  which[4], n = 0;
@@ -112,7 +112,8 @@ static void SetUpPatch(const SurfaceData *data, PetscInt f, const PetscInt marks
   CombineFunctions(n, nodes, marks, patch->combine);
 }
 
-static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Face *partner, PetscReal values[4][4], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Face *partner, PetscReal values[4][4], PetscInt *n_shares,
+                      Share shares[], PetscMPIInt owners[])
 {
   const PetscInt n = surface->data.face_nodes;
 
@@ -122,13 +123,18 @@ static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Fac
     for (PetscInt j = 0; j < n_partner; j++) {
       if (values[k][j] == 0) continue;
       owners[*n_shares]     = surface->owner_rank[node];
-      shares[(*n_shares)++] = (Share){.row = surface->owner_index[node], .dof = partner->dofs[j], .owner_index = partner->owner_index[j], .owner_rank = partner->owner_rank[j], .value = values[k][j]};
+      shares[(*n_shares)++] = (Share){.row         = surface->owner_index[node],
+                                      .dof         = partner->dofs[j],
+                                      .owner_index = partner->owner_index[j],
+                                      .owner_rank  = partner->owner_rank[j],
+                                      .value       = values[k][j]};
     }
   }
 }
 
 /* Gap at a point of the face's plane, along the normal of one of its nodes */
-static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt nodes[], const Patch *patch, const Segment *segment, PetscInt n_partner, const Face *partner, const PetscReal s[])
+static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt nodes[], const Patch *patch, const Segment *segment,
+                       PetscInt n_partner, const Face *partner, const PetscReal s[])
 {
   const PetscReal *normal = data->normals + 3 * node;
   PetscReal        shapes[4], gap = 0;
@@ -141,7 +147,8 @@ static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt no
 }
 
 /* Where the partner ends before node k of the face: the smallest gap where the node's shape function is largest on the covered part */
-static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[])
+static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments,
+                          PetscInt begin, PetscInt end, const Face faces[])
 {
   PetscReal largest = 0, smallest = PETSC_MAX_REAL;
 
@@ -154,16 +161,21 @@ static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt no
 
         FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, segment->polygon[v], shapes);
         if (!pass) largest = PetscMax(largest, shapes[k]);
-        else if (shapes[k] >= largest - SAME_POINT) smallest = PetscMin(smallest, GapAt(data, nodes[k], nodes, patch, segment, segments->face_nodes, &faces[segment->partner], segment->polygon[v]));
+        else if (shapes[k] >= largest - SAME_POINT)
+          smallest = PetscMin(
+              smallest, GapAt(data, nodes[k], nodes, patch, segment, segments->face_nodes, &faces[segment->partner], segment->polygon[v]));
       }
     }
   return smallest;
 }
 
 /* The segments begin to end - 1 of one face */
-static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[], const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[],
+                                    const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscInt *n_shares, Share shares[],
+                                    PetscMPIInt owners[])
 {
-  const PetscInt n = surface->data.face_nodes, f = segments->list[begin].face, n_partner = segments->face_nodes, *nodes = surface->data.faces + f * n;
+  const PetscInt n = surface->data.face_nodes, f = segments->list[begin].face, n_partner = segments->face_nodes,
+                 *nodes = surface->data.faces + f * n;
   PetscReal(*cross)[4][4], dual[4][4];
   Patch patch;
 
@@ -177,7 +189,8 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
     for (PetscInt i = begin; i < end; i++) IntegrateSegment(&patch, &segments->list[i], n_partner, cross[i - begin]);
     ComputeDual(&patch, dual);
     for (PetscInt k = 0; k < n; k++)
-      if (marks[nodes[k]] == MARK_BEYOND) ends[nodes[k]] = PetscMin(ends[nodes[k]], GapAtEnd(&surface->data, k, nodes, &patch, segments, begin, end, faces));
+      if (marks[nodes[k]] == MARK_BEYOND)
+        ends[nodes[k]] = PetscMin(ends[nodes[k]], GapAtEnd(&surface->data, k, nodes, &patch, segments, begin, end, faces));
   }
   for (PetscInt k = 0; k < n; k++) lumped[nodes[k]] += patch.lumped[k];
   for (PetscInt i = begin; i < end; i++) {
@@ -192,9 +205,10 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* marks: what lies opposite to the nodes that this rank has; lumped: their D_i, summed on those it owns; ends: gaps where the partner ends, of owned
-   nodes beyond; shares: M_ij of the rows of this rank, in pieces, free with PetscFree() */
-PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscInt *n_shares, Share *shares[])
+/* marks: what lies opposite to the nodes that this rank has; lumped: their D_i, summed on those it owns; ends: gaps where the partner ends,
+   of owned nodes beyond; shares: M_ij of the rows of this rank, in pieces, free with PetscFree() */
+PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscInt marks[], PetscReal lumped[],
+                                 PetscReal ends[], PetscInt *n_shares, Share *shares[])
 {
   Surface      dirichlet = transfer->dirichlet;
   Segments     segments  = {.ahead = ahead, .behind = behind, .guards = transfer->guards, .face_nodes = transfer->neumann->data.face_nodes};

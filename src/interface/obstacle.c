@@ -13,7 +13,8 @@ struct _n_Obstacle {
 const char *const ObstacleTypes[] = {"plane", "sphere", "cylinder", "ObstacleType", "OBSTACLE_", NULL};
 
 /* Three numbers, or as many as there are dimensions; the rest is 0 */
-static PetscErrorCode GetVector(MPI_Comm comm, const char prefix[], const char option[], const char meaning[], PetscReal values[], PetscBool *set)
+static PetscErrorCode GetVector(MPI_Comm comm, const char prefix[], const char option[], const char meaning[], PetscReal values[],
+                                PetscBool *set)
 {
   PetscInt n = 3;
 
@@ -21,7 +22,9 @@ static PetscErrorCode GetVector(MPI_Comm comm, const char prefix[], const char o
   for (PetscInt d = 0; d < 3; d++) values[d] = 0;
   PetscCall(PetscOptionsGetRealArray(NULL, prefix, option, values, &n, set));
   PetscCheck(*set, comm, PETSC_ERR_USER_INPUT, "-%s%s is missing: %s, as x,y,z", prefix, option + 1, meaning);
-  for (PetscInt d = 0; d < n; d++) PetscCheck(PetscIsNormalReal(values[d]) || values[d] == 0, comm, PETSC_ERR_USER_INPUT, "-%s%s: %g is no number for %s", prefix, option + 1, (double)values[d], meaning);
+  for (PetscInt d = 0; d < n; d++)
+    PetscCheck(PetscIsNormalReal(values[d]) || values[d] == 0, comm, PETSC_ERR_USER_INPUT, "-%s%s: %g is no number for %s", prefix,
+               option + 1, (double)values[d], meaning);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,17 +77,21 @@ PetscErrorCode ObstacleCreateFromOptions(MPI_Comm comm, const char name[], Obsta
   o = *obstacle;
   PetscCall(PetscStrallocpy(name, &o->name));
   PetscCall(PetscOptionsGetEnum(NULL, prefix, "-obstacle_type", ObstacleTypes, &type, &set));
-  PetscCheck(set, comm, PETSC_ERR_USER_INPUT, "-%sobstacle_type is missing: obstacle '%s' is a plane, a sphere or a cylinder", prefix, name);
+  PetscCheck(set, comm, PETSC_ERR_USER_INPUT, "-%sobstacle_type is missing: obstacle '%s' is a plane, a sphere or a cylinder", prefix,
+             name);
   o->type = (ObstacleType)type;
-  PetscCall(GetVector(comm, prefix, "-point", o->type == OBSTACLE_SPHERE ? "the centre of the sphere" : o->type == OBSTACLE_PLANE ? "a point of the plane"
-                                                                                                                                  : "a point of the axis",
+  PetscCall(GetVector(comm, prefix, "-point",
+                      o->type == OBSTACLE_SPHERE  ? "the centre of the sphere"
+                      : o->type == OBSTACLE_PLANE ? "a point of the plane"
+                                                  : "a point of the axis",
                       o->point, &set));
   if (o->type == OBSTACLE_PLANE) {
     PetscCall(GetUnitVector(comm, prefix, "-normal", "the outward normal of the plane", o->direction));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscOptionsGetReal(NULL, prefix, "-radius", &o->radius, &set));
-  PetscCheck(set && o->radius > 0 && o->radius < PETSC_MAX_REAL, comm, PETSC_ERR_USER_INPUT, "-%sradius %g m: obstacle '%s' needs a positive radius", prefix, (double)o->radius, name);
+  PetscCheck(set && o->radius > 0 && o->radius < PETSC_MAX_REAL, comm, PETSC_ERR_USER_INPUT,
+             "-%sradius %g m: obstacle '%s' needs a positive radius", prefix, (double)o->radius, name);
   if (o->type == OBSTACLE_SPHERE) PetscFunctionReturn(PETSC_SUCCESS);
   o->direction[2] = 1;
   PetscCall(PetscOptionsHasName(NULL, prefix, "-axis", &set));

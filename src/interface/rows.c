@@ -9,7 +9,8 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
 {
   PetscFunctionBegin;
   PetscCall(PetscMemzero(set, sizeof(*set)));
-  PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1, &set->offsets));
+  PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
+                         &set->offsets));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -35,7 +36,8 @@ static int CompareShares(const void *a, const void *b, void *context)
 }
 
 /* Sums the pieces of each weight and divides by D_i; rows of nodes without enough cover come out empty */
-static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const PetscReal lumped[], const PetscReal areas[], PetscInt n_shares, Share shares[], RowSet *set)
+static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const PetscReal lumped[], const PetscReal areas[], PetscInt n_shares,
+                                  Share shares[], RowSet *set)
 {
   PetscInt count = 0, share = 0;
 
@@ -84,8 +86,10 @@ static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n
 }
 
 /* Smallest change of the weights, in proportion to their sizes, after which they sum to one and sum_j P_j x_j - x is along the normal: then
-   a force along the normal has the same resultant and moment on both sides. Directions in which the nodes do not differ stay as they are. */
-void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size, PetscReal weights[])
+   a force along the normal has the same resultant and moment on both sides. Directions in which the nodes do not differ stay as they are.
+ */
+void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
+                PetscReal weights[])
 {
   PetscReal tangents[2][3] = {{0}}, gram[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
   PetscInt  thinnest = 0;
@@ -132,13 +136,16 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
   for (PetscInt j = 0; j < n; j++) {
     const PetscReal from[3] = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
 
-    weights[j] += PetscAbsReal(weights[j]) * (factors[0] + factors[1] * Dot(from, tangents[0]) / size + factors[2] * Dot(from, tangents[1]) / size);
+    weights[j] += PetscAbsReal(weights[j]) *
+                  (factors[0] + factors[1] * Dot(from, tangents[0]) / size + factors[2] * Dot(from, tangents[1]) / size);
   }
 }
 
 /* Corrects a row, and takes it if its gap is within the limits. That of a node beyond the end of the partner, which is on the straight line
-   through what the face has opposite, is counted from where it ends: at `end`. So nothing touches before the partner does, nor overlaps it there. */
-static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal ahead, PetscReal behind, RowSet *set)
+   through what the face has opposite, is counted from where it ends: at `end`. So nothing touches before the partner does, nor overlaps it
+   there. */
+static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end,
+                                PetscReal ahead, PetscReal behind, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
@@ -154,7 +161,8 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     weights[j]  = set->shares[first + j].value;
     partners[j] = x + 3 * set->columns[first + j];
   }
-  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
+  for (PetscInt pass = 0; pass < 2; pass++)
+    RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
   gap = present = 0;
   for (PetscInt d = 0; d < dim; d++) {
     PetscReal there = 0, now = 0;
@@ -223,7 +231,8 @@ static PetscBool SameRow(PetscInt dim, PetscReal size, const RowSet *a, const Ro
   for (PetscInt d = 0; d < dim; d++)
     if (PetscAbsReal(a->normals[dim * row + d] - b->normals[dim * row + d]) > SAME) return PETSC_FALSE;
   if (!a->opposite[row]) return PETSC_TRUE;
-  if (n != b->offsets[row + 1] - b->offsets[row] || PetscAbsReal(a->area[row] - b->area[row]) > SAME * PetscAbsReal(a->area[row])) return PETSC_FALSE;
+  if (n != b->offsets[row + 1] - b->offsets[row] || PetscAbsReal(a->area[row] - b->area[row]) > SAME * PetscAbsReal(a->area[row]))
+    return PETSC_FALSE;
   for (PetscInt j = 0; j < n; j++) {
     const Share *left = &a->shares[a->offsets[row] + j], *right = &b->shares[b->offsets[row] + j];
 
@@ -241,7 +250,8 @@ static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], Petsc
     set->gap[row]  = old->gap[row];
     set->area[row] = old->area[row];
     for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = old->normals[dim * row + d];
-    for (PetscInt j = 0; set->opposite[row] && j < set->offsets[row + 1] - set->offsets[row]; j++) set->shares[set->offsets[row] + j].value = old->shares[old->offsets[row] + j].value;
+    for (PetscInt j = 0; set->opposite[row] && j < set->offsets[row + 1] - set->offsets[row]; j++)
+      set->shares[set->offsets[row] + j].value = old->shares[old->offsets[row] + j].value;
   }
 }
 

@@ -39,7 +39,8 @@ static PetscReal GapAt(const Target *target, const Face *face, PetscInt n, const
   FaceShapes(n, corners, s, shapes);
   for (PetscInt j = 0; j < n; j++) gap += shapes[j] * Dot(target->frame.normal, face->x[j]);
   FaceShapes(target->n, (const PetscReal(*)[2])target->corners, s, shapes);
-  for (PetscInt k = 0; k < target->n; k++) gap -= shapes[k] * Dot(target->frame.normal, target->data->positions + 3 * target->data->faces[target->face * target->n + k]);
+  for (PetscInt k = 0; k < target->n; k++)
+    gap -= shapes[k] * Dot(target->frame.normal, target->data->positions + 3 * target->data->faces[target->face * target->n + k]);
   return gap;
 }
 
@@ -65,10 +66,13 @@ static PetscErrorCode CompareFaces(const Target *target, const Segments *range, 
   if (Dot(target->frame.normal, face->normal) >= OPPOSED) PetscFunctionReturn(PETSC_SUCCESS);
   segment.steep = (PetscBool)(Dot(target->frame.normal, face->normal) >= STEEP);
   for (PetscInt j = 0; j < n; j++) FrameProject(&target->frame, face->x[j], segment.partner_corners[j]);
-  segment.n = PolygonClip(n, (const PetscReal(*)[2])segment.partner_corners, target->n, (const PetscReal(*)[2])target->corners, segment.polygon);
-  if (!segment.n || PolygonMeasure(segment.n, (const PetscReal(*)[2])segment.polygon, centroid) < SLIVER * target->area) PetscFunctionReturn(PETSC_SUCCESS);
+  segment.n = PolygonClip(n, (const PetscReal(*)[2])segment.partner_corners, target->n, (const PetscReal(*)[2])target->corners,
+                          segment.polygon);
+  if (!segment.n || PolygonMeasure(segment.n, (const PetscReal(*)[2])segment.polygon, centroid) < SLIVER * target->area)
+    PetscFunctionReturn(PETSC_SUCCESS);
   segment.gap = GapAt(target, face, n, (const PetscReal(*)[2])segment.partner_corners, centroid);
-  if (segment.gap > range->ahead + target->size || segment.gap < -range->behind - (range->behind > 0 ? target->size : 0.1 * target->size)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (segment.gap > range->ahead + target->size || segment.gap < -range->behind - (range->behind > 0 ? target->size : 0.1 * target->size))
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AddSegment(segments, &segment));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -89,7 +93,8 @@ static void DropHidden(const Target *target, Segments *segments, PetscInt begin)
       if (PetscAbsReal(mine->gap) - PetscAbsReal(other->gap) < 0.5 * target->size) continue;
       for (PetscInt k = 0; k < other->n; k++) /* segments run clockwise, as their partners do */
         for (PetscInt d = 0; d < 2; d++) corners[k][d] = other->polygon[other->n - 1 - k][d];
-      hidden = (PetscBool)(PolygonMeasure(PolygonClip(mine->n, mine->polygon, other->n, (const PetscReal(*)[2])corners, part), (const PetscReal(*)[2])part, centroid) > 0.1 * PolygonMeasure(mine->n, mine->polygon, centroid));
+      hidden = (PetscBool)(PolygonMeasure(PolygonClip(mine->n, mine->polygon, other->n, (const PetscReal(*)[2])corners, part),
+                                          (const PetscReal(*)[2])part, centroid) > 0.1 * PolygonMeasure(mine->n, mine->polygon, centroid));
     }
     segments->list[a].hidden = hidden;
   }
@@ -129,7 +134,8 @@ static void MarkNodes(const Target *target, const Segments *segments, PetscInt b
     const PetscInt node = target->data->faces[target->face * target->n + k];
 
     for (PetscInt i = begin; i < segments->n && marks[node] < MARK_COVERED; i++) {
-      const PetscReal distance = PolygonDistance(segments->face_nodes, (const PetscReal(*)[2])segments->list[i].partner_corners, target->corners[k]);
+      const PetscReal distance = PolygonDistance(segments->face_nodes, (const PetscReal(*)[2])segments->list[i].partner_corners,
+                                                 target->corners[k]);
 
       if (distance <= MARGIN * target->size) marks[node] = MARK_COVERED;
       else if (guards && distance <= REACH * target->size) marks[node] = MARK_BEYOND;
@@ -159,8 +165,8 @@ static PetscErrorCode CompareWithTree(const Target *target, Tree *tree, const Fa
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Compares the Dirichlet faces of this rank with those given. marks, one for each node, must be MARK_NONE; segments->ahead and behind say how
-   far a partner may be. */
+/* Compares the Dirichlet faces of this rank with those given. marks, one for each node, must be MARK_NONE; segments->ahead and behind say
+   how far a partner may be. */
 PetscErrorCode SegmentsFind(const SurfaceData *data, PetscInt n_faces, const Face faces[], PetscInt marks[], Segments *segments)
 {
   Tree tree;

@@ -55,7 +55,8 @@ static PetscErrorCode NumberNodes(Surface surface, PetscInt marks[])
   PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
   data->n_nodes = 0;
   for (PetscInt v = vstart; v < vend; v++) data->n_nodes += marks[v - start] ? 1 : 0;
-  PetscCall(PetscMalloc4(data->n_nodes, &data->vertices, data->n_nodes, &data->dofs, data->n_nodes, &surface->owner_index, data->n_nodes, &surface->owner_rank));
+  PetscCall(PetscMalloc4(data->n_nodes, &data->vertices, data->n_nodes, &data->dofs, data->n_nodes, &surface->owner_index, data->n_nodes,
+                         &surface->owner_rank));
   data->n_nodes = 0;
   for (PetscInt ghosts = 0; ghosts < 2; ghosts++) {
     for (PetscInt v = vstart; v < vend; v++) {
@@ -183,13 +184,16 @@ static PetscErrorCode SetUpFaces(Surface surface, const PetscInt numbers[])
   if (data->n_faces) PetscCall(GetVertices(surface->dm, surface->points[0], &n, vertices));
   PetscCallMPI(MPIU_Allreduce(&n, &data->face_nodes, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)surface->dm)));
   n = data->face_nodes;
-  PetscCall(PetscMalloc4(data->n_faces * n, &data->faces, data->n_faces, &surface->signs, 3 * data->n_faces, &data->face_normals, data->n_faces, &data->face_areas));
-  PetscCall(PetscMalloc5(3 * data->n_nodes, &data->reference, 3 * data->n_nodes, &data->positions, 3 * data->n_nodes, &data->normals, data->n_nodes, &data->areas, data->n_nodes, &data->sizes));
+  PetscCall(PetscMalloc4(data->n_faces * n, &data->faces, data->n_faces, &surface->signs, 3 * data->n_faces, &data->face_normals,
+                         data->n_faces, &data->face_areas));
+  PetscCall(PetscMalloc5(3 * data->n_nodes, &data->reference, 3 * data->n_nodes, &data->positions, 3 * data->n_nodes, &data->normals,
+                         data->n_nodes, &data->areas, data->n_nodes, &data->sizes));
   PetscCall(DMPlexGetChart(surface->dm, &start, NULL));
   PetscCall(DMGetCoordinatesLocal(surface->dm, &local));
   PetscCall(VecGetArrayRead(local, &coordinates));
   for (PetscInt f = 0; f < data->n_faces; f++) PetscCall(OrientFace(surface, f, numbers, start, coordinates));
-  for (PetscInt i = 0; i < data->n_nodes; i++) PetscCall(GetPosition(surface->dm, data->vertices[i], coordinates, data->dim, data->reference + 3 * i));
+  for (PetscInt i = 0; i < data->n_nodes; i++)
+    PetscCall(GetPosition(surface->dm, data->vertices[i], coordinates, data->dim, data->reference + 3 * i));
   PetscCall(VecRestoreArrayRead(local, &coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,8 +35,11 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->slip_bound  = 0.05;
   t->angle_bound = 0.02;
   t->guards      = PETSC_TRUE;
-  if (neumann) PetscCheck(t->dim == neumann->data.dim, comm, PETSC_ERR_USER_INPUT, "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
-  PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n, &t->slip, t->n, &t->keep));
+  if (neumann)
+    PetscCheck(t->dim == neumann->data.dim, comm, PETSC_ERR_USER_INPUT,
+               "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
+  PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n,
+                         &t->slip, t->n, &t->keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,7 +83,8 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
 PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal angle)
 {
   PetscFunctionBegin;
-  PetscCheck(slip >= 0 && angle >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The bounds of slip, %g, and angle, %g, must not be negative", (double)slip, (double)angle);
+  PetscCheck(slip >= 0 && angle >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "The bounds of slip, %g, and angle, %g, must not be negative", (double)slip, (double)angle);
   transfer->slip_bound  = slip;
   transfer->angle_bound = angle;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -98,7 +102,8 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
   Level: developer
 
   Notes:
-  The partner of a node beyond its end, on a face that it covers in part, is the straight line through what lies opposite to the face, as in Popp,
+  The partner of a node beyond its end, on a face that it covers in part, is the straight line through what lies opposite to the face, as in
+Popp,
   Seitz, Gee, Wall (2013), with the gap counted from where the partner ends. Without these rows the last node that is covered has the mean
   gap of the whole covered part, and the end of a tilting partner gets into the surface by half an element times the angle.
 
@@ -178,7 +183,8 @@ PetscErrorCode TransferSetValues(Transfer transfer, PetscInt row_begin, PetscInt
 
   PetscFunctionBegin;
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
-  PetscCheck(components == 1 || components == dim, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "A row has 1 or %" PetscInt_FMT " components, not %" PetscInt_FMT, dim, components);
+  PetscCheck(components == 1 || components == dim, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "A row has 1 or %" PetscInt_FMT " components, not %" PetscInt_FMT, dim, components);
   for (PetscInt i = 0; i < transfer->n; i++)
     for (PetscInt c = 0; c < components; c++) {
       const PetscInt row = row_begin + i * components + c;
@@ -189,7 +195,8 @@ PetscErrorCode TransferSetValues(Transfer transfer, PetscInt row_begin, PetscInt
         if (components > 1 && c != d) continue;
         PetscCall(MatSetValue(dirichlet, row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
         if (!neumann || !set->opposite[i]) continue;
-        for (PetscInt j = set->offsets[i]; j < set->offsets[i + 1]; j++) PetscCall(MatSetValue(neumann, row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));
+        for (PetscInt j = set->offsets[i]; j < set->offsets[i + 1]; j++)
+          PetscCall(MatSetValue(neumann, row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));
       }
     }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -24,7 +24,8 @@ static PetscReal LargestMotion(const SurfaceData *data, const PetscReal built[],
   return PetscSqrtReal(largest);
 }
 
-/* How far the nodes of either side that this rank has are from where they were at the last build at most, but for what all have moved together */
+/* How far the nodes of either side that this rank has are from where they were at the last build at most, but for what all have moved
+   together */
 static PetscErrorCode GetMotion(Transfer transfer, PetscReal largest[])
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
@@ -48,7 +49,8 @@ static void GetOffset(Transfer transfer, PetscInt row, PetscReal offset[])
 
   for (PetscInt d = 0; d < 3; d++) {
     offset[d] = -x[d];
-    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++) offset[d] += set->shares[j].value * transfer->column_x[3 * set->columns[j] + d];
+    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
+      offset[d] += set->shares[j].value * transfer->column_x[3 * set->columns[j] + d];
   }
 }
 
@@ -103,8 +105,8 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the surfaces have moved so far relative to each other since the last build that other faces may lie opposite, or along each other beyond
-   the bounds, on any rank */
+/* Whether the surfaces have moved so far relative to each other since the last build that other faces may lie opposite, or along each other
+   beyond the bounds, on any rank */
 static PetscErrorCode HasMoved(Transfer transfer, PetscBool *moved)
 {
   PetscReal largest[3]; /* motions of both sides, slip */
@@ -150,8 +152,8 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far to look ahead: at least as far as is wanted, and as far as the boxes about both surfaces are apart and some faces more, so that what is
-   closest is known at all times; faces further away need not be sent to other ranks */
+/* How far to look ahead: at least as far as is wanted, and as far as the boxes about both surfaces are apart and some faces more, so that
+   what is closest is known at all times; faces further away need not be sent to other ranks */
 static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *reach)
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
@@ -170,7 +172,8 @@ static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *rea
       corners[12] = PetscMax(corners[12], data[side]->sizes[i]);
     }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, corners, 13, MPIU_REAL, MPIU_MAX, transfer->comm));
-  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(-corners[3 + d] - corners[6 + d], -corners[9 + d] - corners[d])));
+  for (PetscInt d = 0; d < 3; d++)
+    square += PetscSqr(PetscMax(0, PetscMax(-corners[3 + d] - corners[6 + d], -corners[9 + d] - corners[d])));
   *reach = PetscMax(near, PetscSqrtReal(square) + FACES_AHEAD * corners[12]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -192,13 +195,13 @@ static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *rea
   Level: developer
 
   Notes:
-  The rows are built again when one with a gap of less than two face sizes has slipped by more than the bound, or its normal has turned by more
-  than the bound; when the surfaces have moved by more than a quarter of the smallest face relative to each other, so that other faces may lie
-  opposite; and when `near` exceeds that of the last build. Between builds a normal stays as it was, and in a build
-   rows near contact stay as they are that are within both bounds: each change of a row costs a little energy. In one dimension they are built once.
+  The rows are built again when one with a gap of less than two face sizes has slipped by more than the bound, or its normal has turned by
+more than the bound; when the surfaces have moved by more than a quarter of the smallest face relative to each other, so that other faces
+may lie opposite; and when `near` exceeds that of the last build. Between builds a normal stays as it was, and in a build rows near contact
+stay as they are that are within both bounds: each change of a row costs a little energy. In one dimension they are built once.
 
-  A build looks ahead of a node as far as is wanted, and as far as the boxes about both surfaces are apart and four faces more; behind it, as far as
-  the two bodies can overlap at all.
+  A build looks ahead of a node as far as is wanted, and as far as the boxes about both surfaces are apart and four faces more; behind it,
+as far as the two bodies can overlap at all.
 
 .seealso: `Transfer`, `TransferSetBounds()`, `TransferGetRows()`
 @*/
@@ -207,7 +210,8 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   PetscReal reach;
 
   PetscFunctionBegin;
-  PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative", (double)near);
+  PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
+             (double)near);
   PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   *rebuilt = (PetscBool)(!transfer->built || near > transfer->built_near);

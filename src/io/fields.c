@@ -48,10 +48,16 @@ static PetscInt LeastInterval(PetscInt steps, PetscInt n_frames)
 static PetscErrorCode SetInterval(Fields fields, PetscInt steps, PetscInt interval)
 {
   PetscFunctionBegin;
-  PetscCheck(interval >= 0, fields->comm, PETSC_ERR_USER_INPUT, "-output_fields_interval %" PetscInt_FMT " must be a number of controller steps, 1 or more; or 0 for one that makes at most %d frames", interval, DEFAULT_FRAMES);
+  PetscCheck(interval >= 0, fields->comm, PETSC_ERR_USER_INPUT,
+             "-output_fields_interval %" PetscInt_FMT
+             " must be a number of controller steps, 1 or more; or 0 for one that makes at most %d frames",
+             interval, DEFAULT_FRAMES);
   fields->interval = interval ? interval : LeastInterval(steps, DEFAULT_FRAMES);
   fields->n_frames = CountFrames(steps, fields->interval);
-  PetscCheck(fields->n_frames <= FIELDS_MAX_FRAMES, fields->comm, PETSC_ERR_USER_INPUT, "-output_fields_interval %" PetscInt_FMT " makes %" PetscInt_FMT " frames in this run of %" PetscInt_FMT " controller steps, and %d is the limit; give %" PetscInt_FMT " or more", fields->interval, fields->n_frames, steps, FIELDS_MAX_FRAMES, LeastInterval(steps, FIELDS_MAX_FRAMES));
+  PetscCheck(fields->n_frames <= FIELDS_MAX_FRAMES, fields->comm, PETSC_ERR_USER_INPUT,
+             "-output_fields_interval %" PetscInt_FMT " makes %" PetscInt_FMT " frames in this run of %" PetscInt_FMT
+             " controller steps, and %d is the limit; give %" PetscInt_FMT " or more",
+             fields->interval, fields->n_frames, steps, FIELDS_MAX_FRAMES, LeastInterval(steps, FIELDS_MAX_FRAMES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,7 +70,10 @@ static PetscErrorCode CheckSpace(Fields fields)
   PetscFunctionBegin;
   if (fields->first_rank) space = OutputFreeSpace(fields->path);
   PetscCallMPI(MPI_Bcast(&space, 1, MPI_DOUBLE, 0, fields->comm));
-  PetscCheck(needed <= space, fields->comm, PETSC_ERR_USER_INPUT, "-output_fields %s will have %" PetscInt_FMT " frames, %.3g GB in all, and there is room for %.3g GB; write fewer of them with -output_fields_interval", fields->path, fields->n_frames, 1e-9 * needed, 1e-9 * space);
+  PetscCheck(needed <= space, fields->comm, PETSC_ERR_USER_INPUT,
+             "-output_fields %s will have %" PetscInt_FMT
+             " frames, %.3g GB in all, and there is room for %.3g GB; write fewer of them with -output_fields_interval",
+             fields->path, fields->n_frames, 1e-9 * needed, 1e-9 * space);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,7 +83,9 @@ static PetscErrorCode CreateBuffers(Fields fields)
   size_t            length = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < fields->n_fields; i++) length = PetscMax(length, (size_t)fields_of_a_frame[i].components * (size_t)(fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).local);
+  for (PetscInt i = 0; i < fields->n_fields; i++)
+    length = PetscMax(length,
+                      (size_t)fields_of_a_frame[i].components * (size_t)(fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).local);
   PetscCall(PetscMalloc(PetscMax(1, length * (fields->precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float))), &fields->buffer));
   PetscCall(PetscMalloc1((size_t)mesh->cells.local * 6, &fields->stress));
   if (fields->contact) PetscCall(PetscMalloc1((size_t)mesh->nodes.local * CONTACT_FIELDS_SIZE, &fields->nodal));
@@ -191,7 +202,8 @@ static PetscErrorCode WriteField(Fields fields, FieldsKind kind)
 
   PetscFunctionBegin;
   PetscCall(FieldsFileGetDataset(kind, fields->written, sizeof(name), name));
-  PetscCall(FieldsFileWrite(fields->comm, fields->file, name, field->on_cells ? &fields->mesh.cells : &fields->mesh.nodes, field->components, fields->precision == FIELDS_DOUBLE ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, fields->buffer));
+  PetscCall(FieldsFileWrite(fields->comm, fields->file, name, field->on_cells ? &fields->mesh.cells : &fields->mesh.nodes,
+                            field->components, fields->precision == FIELDS_DOUBLE ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, fields->buffer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -247,7 +259,10 @@ static PetscErrorCode WriteStress(Fields fields)
 
 static PetscErrorCode WriteContact(Fields fields)
 {
-  static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE] = CONTACT_FIELDS_FORCE, [FIELDS_CONTACT_PRESSURE] = CONTACT_FIELDS_PRESSURE, [FIELDS_CONTACT_GAP] = CONTACT_FIELDS_GAP, [FIELDS_CONTACT_ACTIVE] = CONTACT_FIELDS_ACTIVE};
+  static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE]    = CONTACT_FIELDS_FORCE,
+                                                   [FIELDS_CONTACT_PRESSURE] = CONTACT_FIELDS_PRESSURE,
+                                                   [FIELDS_CONTACT_GAP]      = CONTACT_FIELDS_GAP,
+                                                   [FIELDS_CONTACT_ACTIVE]   = CONTACT_FIELDS_ACTIVE};
   const FieldsMesh     *mesh                    = &fields->mesh;
   size_t                first                   = 0;
 

@@ -37,8 +37,11 @@ PetscInt64 FieldsFileGetSize(const FieldsMesh *mesh, PetscInt n_fields, PetscInt
 {
   hsize_t numbers = 0;
 
-  for (PetscInt i = 0; i < n_fields; i++) numbers += (hsize_t)fields_of_a_frame[i].components * (fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).total;
-  return (PetscInt64)(numbers * (hsize_t)n_frames * (precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float)) + mesh->nodes.total * 3 * sizeof(double) + (mesh->topology.total * (hsize_t)mesh->cell_nodes + 2 * mesh->cells.total) * sizeof(int));
+  for (PetscInt i = 0; i < n_fields; i++)
+    numbers += (hsize_t)fields_of_a_frame[i].components * (fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).total;
+  return (PetscInt64)(numbers * (hsize_t)n_frames * (precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float)) +
+                      mesh->nodes.total * 3 * sizeof(double) +
+                      (mesh->topology.total * (hsize_t)mesh->cell_nodes + 2 * mesh->cells.total) * sizeof(int));
 }
 
 /* FieldsFileGetDataset - the name of a field of a frame in the file */
@@ -72,7 +75,8 @@ static PetscErrorCode WriteUnits(hid_t dataset, const char units[], const char p
 }
 
 /* A dataset with its place in the file; `dataset` may be NULL */
-static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, const char units[], const char path[], hid_t *dataset)
+static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, const char units[],
+                                    const char path[], hid_t *dataset)
 {
   const hsize_t size[2] = {rows, (hsize_t)components};
   hid_t         space, layout, created;
@@ -156,7 +160,8 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char 
 . precision - of their numbers
 - options   - all options of the run, as `PetscOptionsGetAll()` gives them: they become attributes of the root, beside `version`
 */
-PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, FieldsPrecision precision, const char options[])
+PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, FieldsPrecision precision,
+                                const char options[])
 {
   const hid_t type = precision == FIELDS_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
   char        name[64];
@@ -174,7 +179,8 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Petsc
     PetscCall(CreateGroup(file, field->name, path));
     for (PetscInt k = 0; k < n_frames; k++) {
       PetscCall(FieldsFileGetDataset(i, k, sizeof(name), name));
-      PetscCall(CreateDataset(file, name, type, (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, field->units, path, NULL));
+      PetscCall(CreateDataset(file, name, type, (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, field->units, path,
+                              NULL));
     }
   }
   PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
@@ -200,10 +206,12 @@ PetscErrorCode FieldsFileOpen(MPI_Comm comm, const char path[], hid_t *file)
 
   PetscFunctionBegin;
   access = H5Pcreate(H5P_FILE_ACCESS);
-  opened = H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL) >= 0 && H5Pset_all_coll_metadata_ops(access, 1) >= 0 && (*file = H5Fopen(path, H5F_ACC_RDWR, access)) >= 0;
+  opened = H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL) >= 0 && H5Pset_all_coll_metadata_ops(access, 1) >= 0 &&
+           (*file = H5Fopen(path, H5F_ACC_RDWR, access)) >= 0;
   if (access >= 0) H5Pclose(access);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &opened, 1, MPI_INT, MPI_MIN, comm));
-  PetscCheck(opened, comm, PETSC_ERR_FILE_OPEN, "HDF5 cannot open %s for all ranks; -output_fields needs a file system that all of them see, and MPI-IO on it", path);
+  PetscCheck(opened, comm, PETSC_ERR_FILE_OPEN,
+             "HDF5 cannot open %s for all ranks; -output_fields needs a file system that all of them see, and MPI-IO on it", path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -223,8 +231,9 @@ static herr_t SelectRows(hid_t space, const FieldsRows *rows, PetscInt component
 static herr_t WriteRows(hid_t file, const char name[], const FieldsRows *rows, PetscInt components, hid_t type, const void *values)
 {
   const hsize_t length  = rows->local * (hsize_t)components;
-  const hid_t   dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset), memory = H5Screate_simple(1, &length, NULL), transfer = H5Pcreate(H5P_DATASET_XFER);
-  herr_t        result = -1;
+  const hid_t   dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset), memory = H5Screate_simple(1, &length, NULL),
+                transfer = H5Pcreate(H5P_DATASET_XFER);
+  herr_t        result   = -1;
 
   if (dataset >= 0 && space >= 0 && memory >= 0 && transfer >= 0) result = SelectRows(space, rows, components);
   if (result >= 0 && !length) result = H5Sselect_none(memory);
@@ -251,13 +260,15 @@ static herr_t WriteRows(hid_t file, const char name[], const FieldsRows *rows, P
 . type       - of the numbers in memory; as in the file, or HDF5 would convert them and write rank by rank
 - values     - the rows of this rank, one after the other
 */
-PetscErrorCode FieldsFileWrite(MPI_Comm comm, hid_t file, const char name[], const FieldsRows *rows, PetscInt components, hid_t type, const void *values)
+PetscErrorCode FieldsFileWrite(MPI_Comm comm, hid_t file, const char name[], const FieldsRows *rows, PetscInt components, hid_t type,
+                               const void *values)
 {
   int result;
 
   PetscFunctionBegin;
   result = WriteRows(file, name, rows, components, type, values) < 0 ? -1 : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_INT, MPI_MIN, comm));
-  PetscCheck(!result, comm, PETSC_ERR_FILE_WRITE, "The dataset %s of -output_fields cannot be written; is the disk full? The frames before this one are whole", name);
+  PetscCheck(!result, comm, PETSC_ERR_FILE_WRITE,
+             "The dataset %s of -output_fields cannot be written; is the disk full? The frames before this one are whole", name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,10 +29,7 @@ typedef struct {
 
 PETSC_INTERN const FieldsField fields_of_a_frame[FIELDS_PER_FRAME];
 
-typedef enum {
-  FIELDS_SINGLE,
-  FIELDS_DOUBLE
-} FieldsPrecision;
+typedef enum { FIELDS_SINGLE, FIELDS_DOUBLE } FieldsPrecision;
 PETSC_INTERN const char *const FieldsPrecisions[];
 
 PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, PetscInt, FieldsPrecision);

@@ -30,7 +30,8 @@ static PetscErrorCode FindShape(Body body, DMPolytopeType shape, const Shape **f
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(shapes); i++)
     if (shapes[i].shape == shape) *found = &shapes[i];
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
-  PetscCheck(*found, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "-output_fields: cells of shape '%s', as body '%s' has them, cannot be written", DMPolytopeTypes[shape], name);
+  PetscCheck(*found, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+             "-output_fields: cells of shape '%s', as body '%s' has them, cannot be written", DMPolytopeTypes[shape], name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,7 +102,8 @@ static PetscErrorCode CountTopology(FieldsMesh *mesh)
     PetscCall(BodyGetCells(mesh->bodies[b], &type, &n_cells, &cell_nodes, &cells));
     PetscCall(PetscFree(cells));
     PetscCall(FindShape(mesh->bodies[b], type, &shape));
-    PetscCall(RowsAdd(PetscObjectComm((PetscObject)mesh->bodies[b]), b, mesh->mixed ? (PetscInt64)n_cells * (1 + shape->counted + cell_nodes) : n_cells, &mesh->topology));
+    PetscCall(RowsAdd(PetscObjectComm((PetscObject)mesh->bodies[b]), b,
+                      mesh->mixed ? (PetscInt64)n_cells * (1 + shape->counted + cell_nodes) : n_cells, &mesh->topology));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -129,7 +131,9 @@ PetscErrorCode FieldsMeshCreate(PetscInt n, const Body bodies[], FieldsMesh *mes
   PetscCall(RowsCreate(n, &mesh->topology));
   PetscCall(CountRows(mesh));
   PetscCall(CountTopology(mesh));
-  PetscCheck(mesh->nodes.total <= (hsize_t)INT_MAX, PetscObjectComm((PetscObject)bodies[0]), PETSC_ERR_SUP, "-output_fields numbers nodes with 32 bits, and the bodies have more of them together: %llu", (unsigned long long)mesh->nodes.total);
+  PetscCheck(mesh->nodes.total <= (hsize_t)INT_MAX, PetscObjectComm((PetscObject)bodies[0]), PETSC_ERR_SUP,
+             "-output_fields numbers nodes with 32 bits, and the bodies have more of them together: %llu",
+             (unsigned long long)mesh->nodes.total);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -17,7 +17,8 @@
 PetscErrorCode HDF5Check(hid_t result, const char what[], const char path[])
 {
   PetscFunctionBegin;
-  PetscCheck(result >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "HDF5 cannot %s in %s; is the disk full, or the file damaged?", what, path);
+  PetscCheck(result >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "HDF5 cannot %s in %s; is the disk full, or the file damaged?", what,
+             path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

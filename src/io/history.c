@@ -29,7 +29,8 @@ struct _n_History {
 };
 
 /* Adds a series behind the others in the record; its name is "<group><of>/<what>" */
-static PetscErrorCode AddSeries(History history, const char group[], const char of[], const char what[], const char units[], PetscInt components, PetscBool integer)
+static PetscErrorCode AddSeries(History history, const char group[], const char of[], const char what[], const char units[],
+                                PetscInt components, PetscBool integer)
 {
   Series *series = &history->series[history->n_series++];
 
@@ -128,7 +129,8 @@ static PetscErrorCode WritePart(History history)
   PetscFunctionBegin;
   if (history->written) PetscCall(OutputFileCopy(history->path, history->part, COPY_BYTES, history->copy));
   else PetscCall(SeriesFileCreate(history->part, history->n_series, history->series, history->options));
-  PetscCall(SeriesFileAppend(history->part, history->n_series, history->series, history->written, history->n_records, history->width, history->records));
+  PetscCall(SeriesFileAppend(history->part, history->n_series, history->series, history->written, history->n_records, history->width,
+                             history->records));
   PetscCall(OutputFileReplace(history->part, history->path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -225,7 +227,8 @@ PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *fram
   FillRecord(frame, history->dims, history->records + history->n_records * history->width);
   history->n_records++;
   PetscCall(PetscTime(&now));
-  if (!history->written || now - history->flushed > PetscMax(FLUSH_INTERVAL, FLUSH_SHARE * history->flush_seconds)) PetscCall(HistoryFlush(history));
+  if (!history->written || now - history->flushed > PetscMax(FLUSH_INTERVAL, FLUSH_SHARE * history->flush_seconds))
+    PetscCall(HistoryFlush(history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

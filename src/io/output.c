@@ -66,8 +66,10 @@ static PetscErrorCode CreateFields(Output output, const char path[])
 
   PetscFunctionBegin;
   PetscOptionsBegin(comm, NULL, "Output", "Output");
-  PetscCall(PetscOptionsInt("-output_fields_interval", "A frame every n controller steps; 0: at most 100 frames", "OutputSetFromOptions", interval, &interval, NULL));
-  PetscCall(PetscOptionsEnum("-output_fields_precision", "Of the numbers in the frames", "OutputSetFromOptions", FieldsPrecisions, (PetscEnum)precision, (PetscEnum *)&precision, NULL));
+  PetscCall(PetscOptionsInt("-output_fields_interval", "A frame every n controller steps; 0: at most 100 frames", "OutputSetFromOptions",
+                            interval, &interval, NULL));
+  PetscCall(PetscOptionsEnum("-output_fields_precision", "Of the numbers in the frames", "OutputSetFromOptions", FieldsPrecisions,
+                             (PetscEnum)precision, (PetscEnum *)&precision, NULL));
   PetscOptionsEnd();
   PetscCall(FieldsCreate(output->controller, path, interval, precision, &output->fields));
   PetscCall(ControllerMonitorSet(output->controller, FieldsMonitor, output->fields, NULL));
@@ -118,13 +120,19 @@ PetscErrorCode OutputSetFromOptions(Output output)
 
   PetscFunctionBegin;
   PetscOptionsBegin(comm, NULL, "Output", "Output");
-  PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact|characteristics)", "ExactCreate", exact, exact, sizeof(exact), NULL));
-  PetscCall(PetscOptionsString("-output_history", "HDF5 file with every controller step", "OutputSetFromOptions", history, history, sizeof(history), &has_history));
-  PetscCall(PetscOptionsString("-output_summary", "JSON file with the figures of the run", "OutputSetFromOptions", output->summary, output->summary, sizeof(output->summary), &has_summary));
-  PetscCall(PetscOptionsString("-output_fields", "HDF5 file with fields of all bodies over time, an XDMF file beside it", "OutputSetFromOptions", fields, fields, sizeof(fields), &has_fields));
+  PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact|characteristics)", "ExactCreate", exact, exact,
+                               sizeof(exact), NULL));
+  PetscCall(PetscOptionsString("-output_history", "HDF5 file with every controller step", "OutputSetFromOptions", history, history,
+                               sizeof(history), &has_history));
+  PetscCall(PetscOptionsString("-output_summary", "JSON file with the figures of the run", "OutputSetFromOptions", output->summary,
+                               output->summary, sizeof(output->summary), &has_summary));
+  PetscCall(PetscOptionsString("-output_fields", "HDF5 file with fields of all bodies over time, an XDMF file beside it",
+                               "OutputSetFromOptions", fields, fields, sizeof(fields), &has_fields));
   PetscOptionsEnd();
   if (fields[0]) PetscCall(XdmfGetPath(fields, sizeof(xdmf), xdmf));
-  PetscCall(CheckDistinct(comm, 4, (const char *const[]){"-output_history", "-output_summary", "-output_fields", "the XDMF file of -output_fields"}, (const char *const[]){history, output->summary, fields, xdmf}));
+  PetscCall(CheckDistinct(comm, 4,
+                          (const char *const[]){"-output_history", "-output_summary", "-output_fields", "the XDMF file of -output_fields"},
+                          (const char *const[]){history, output->summary, fields, xdmf}));
   PetscCall(CreateExact(output, exact));
   PetscCall(DeviationCreate(output->controller, &output->deviation));
   if (has_summary) PetscCall(OutputFileCheck(comm, "-output_summary", output->summary));

@@ -59,7 +59,8 @@ PetscErrorCode OutputFileGetPart(const char path[], size_t size, char part[])
 
   PetscFunctionBegin;
   PetscCall(PetscStrlen(path, &length));
-  PetscCheck(length + sizeof(".part") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The output path '%s' is too long: %zu characters at most", path, size - sizeof(".part"));
+  PetscCheck(length + sizeof(".part") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "The output path '%s' is too long: %zu characters at most", path, size - sizeof(".part"));
   PetscCall(PetscSNPrintf(part, size, "%s.part", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -86,7 +87,8 @@ PetscErrorCode OutputFileCheck(MPI_Comm comm, const char option[], const char pa
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (!rank) error = TryToWrite(path, part);
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
-  PetscCheck(!error, comm, PETSC_ERR_FILE_WRITE, "%s %s cannot be written: %s; give the path of a file in a directory that you may write to", option, path, strerror(error));
+  PetscCheck(!error, comm, PETSC_ERR_FILE_WRITE,
+             "%s %s cannot be written: %s; give the path of a file in a directory that you may write to", option, path, strerror(error));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

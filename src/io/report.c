@@ -79,14 +79,18 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
     const BodyStatistics *body = &results->bodies[i];
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g J kinetic, %.6g J potential at the end\n", name, (double)body->kinetic, (double)body->potential));
-    if (!PetscIsNanReal(body->displacement_error)) PetscCall(PrintPercent(viewer, "    error of the displacement", body->displacement_error));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g J kinetic, %.6g J potential at the end\n", name, (double)body->kinetic,
+                                     (double)body->potential));
+    if (!PetscIsNanReal(body->displacement_error))
+      PetscCall(PrintPercent(viewer, "    error of the displacement", body->displacement_error));
     if (body->external_work != 0) PetscCall(PrintValue(viewer, "    work of its loads", body->external_work, "J", NAN));
   }
   PetscCall(PrintPercent(viewer, "system energy error, worst", worst));
   PetscCall(PrintPercent(viewer, "system energy error, final", results->energy_error_final));
-  if (!PetscIsInfOrNanReal(results->momentum_error_max)) PetscCall(PrintPercent(viewer, "momentum error, worst", results->momentum_error_max));
-  if (results->penalty_energy_max > 0) PetscCall(PrintValue(viewer, "energy in penalty springs, most", results->penalty_energy_max, "J", NAN));
+  if (!PetscIsInfOrNanReal(results->momentum_error_max))
+    PetscCall(PrintPercent(viewer, "momentum error, worst", results->momentum_error_max));
+  if (results->penalty_energy_max > 0)
+    PetscCall(PrintValue(viewer, "energy in penalty springs, most", results->penalty_energy_max, "J", NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -60,7 +60,8 @@ PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Seri
 }
 
 /* Up to BLOCK records of one series, gathered from the records of all: HDF5 is quick where both sides have the same shape */
-static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt64 length, PetscInt n, PetscInt width, const PetscReal records[], const char path[])
+static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt64 length, PetscInt n, PetscInt width,
+                                   const PetscReal records[], const char path[])
 {
   const PetscInt components = series->components;
   const hsize_t  start[2] = {(hsize_t)length, 0}, count[2] = {(hsize_t)n, (hsize_t)components};
@@ -69,7 +70,8 @@ static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++)
-    for (PetscInt c = 0; c < components; c++) values[i * components + c] = records[(size_t)i * (size_t)width + (size_t)(series->column + c)];
+    for (PetscInt c = 0; c < components; c++)
+      values[i * components + c] = records[(size_t)i * (size_t)width + (size_t)(series->column + c)];
   to = H5Dget_space(dataset);
   PetscCall(HDF5Check(H5Sselect_hyperslab(to, H5S_SELECT_SET, start, NULL, count, NULL), "select records", path));
   from = H5Screate_simple(components > 1 ? 2 : 1, count, NULL);
@@ -80,7 +82,8 @@ static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AppendToDataset(hid_t file, const Series *series, PetscInt64 length, PetscInt n, PetscInt width, const PetscReal records[], const char path[])
+static PetscErrorCode AppendToDataset(hid_t file, const Series *series, PetscInt64 length, PetscInt n, PetscInt width,
+                                      const PetscReal records[], const char path[])
 {
   const hsize_t size[2] = {(hsize_t)length + (hsize_t)n, (hsize_t)series->components};
   hid_t         dataset;
@@ -89,7 +92,8 @@ static PetscErrorCode AppendToDataset(hid_t file, const Series *series, PetscInt
   dataset = H5Dopen2(file, series->name, H5P_DEFAULT);
   PetscCall(HDF5Check(dataset, "open a dataset", path));
   PetscCall(HDF5Check(H5Dset_extent(dataset, size), "extend a dataset", path));
-  for (PetscInt i = 0; i < n; i += BLOCK) PetscCall(WriteRecords(dataset, series, length + i, PetscMin(BLOCK, n - i), width, records + (size_t)i * (size_t)width, path));
+  for (PetscInt i = 0; i < n; i += BLOCK)
+    PetscCall(WriteRecords(dataset, series, length + i, PetscMin(BLOCK, n - i), width, records + (size_t)i * (size_t)width, path));
   PetscCall(HDF5Check(H5Dclose(dataset), "write records", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -108,7 +112,8 @@ static PetscErrorCode AppendToDataset(hid_t file, const Series *series, PetscInt
 . width    - length of a record
 - records  - n records
 */
-PetscErrorCode SeriesFileAppend(const char path[], PetscInt n_series, const Series series[], PetscInt64 length, PetscInt n, PetscInt width, const PetscReal records[])
+PetscErrorCode SeriesFileAppend(const char path[], PetscInt n_series, const Series series[], PetscInt64 length, PetscInt n, PetscInt width,
+                                const PetscReal records[])
 {
   hid_t file;
 

@@ -123,7 +123,8 @@ static PetscReal Relative(PetscReal value, PetscReal scale)
   return scale != 0 ? value / PetscAbsReal(scale) : value;
 }
 
-/* What an energy or angular momentum that was `start` at first is compared with: that, or, where it began with nothing but round-off, `other` */
+/* What an energy or angular momentum that was `start` at first is compared with: that, or, where it began with nothing but round-off,
+   `other` */
 static PetscReal Scale(PetscReal start, PetscReal other)
 {
   return start > 1e-9 * other ? start : other;
@@ -142,7 +143,8 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   PetscReal          angular[3]    = {-s->angular[0], -s->angular[1], -s->angular[2]};
   PetscReal          system_energy = 0, size = 0, scale;
 
-  for (PetscInt i = 0; i < frame->n_bodies; i++) size += frame->bodies[i].kinetic + frame->bodies[i].potential + PetscAbsReal(frame->bodies[i].external_work);
+  for (PetscInt i = 0; i < frame->n_bodies; i++)
+    size += frame->bodies[i].kinetic + frame->bodies[i].potential + PetscAbsReal(frame->bodies[i].external_work);
   s->largest_energy = PetscMax(s->largest_energy, size);
   scale             = Scale(s->system_energy, s->largest_energy);
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
@@ -169,12 +171,15 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->energy_error_max   = Relative(s->system_change[1], scale);
   /* loads change momenta, and there is nothing to compare them with */
   r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(momentum), s->momentum_scale));
-  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(angular), Scale(s->angular_scale, s->arm * s->momentum_scale)));
+  r->angular_momentum_error_max = s->loaded ? NAN
+                                            : PetscMax(r->angular_momentum_error_max,
+                                                       Relative(Norm(angular), Scale(s->angular_scale, s->arm * s->momentum_scale)));
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
 /* One step of one pair, or of all together */
-static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time, PetscReal time_step)
+static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
+                       PetscReal time_step)
 {
   const PetscBool touches = state->active > 0 ? PETSC_TRUE : PETSC_FALSE;
 

@@ -12,16 +12,17 @@ typedef struct {
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
   PetscReal max_penetration;                  /* 0 or positive [m] */
-  PetscReal impulse_vector[3];                /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
-  PetscReal area_max;                         /* in contact at the same time [m^2] */
-  PetscInt  active_max;                       /* nodes in contact at the same time */
+  PetscReal impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
+  PetscReal area_max;          /* in contact at the same time [m^2] */
+  PetscInt  active_max;        /* nodes in contact at the same time */
 } ContactStatistics;
 
 typedef struct {
   PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
   PetscReal displacement_error;                 /* at the end, relative L2, against an exact displacement; not-a-number without one */
   PetscReal external_work;                      /* at the end, by loads [J] */
-  PetscReal energy_error_min, energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
+  PetscReal energy_error_min,
+      energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;
 
 typedef struct {
@@ -34,9 +35,10 @@ typedef struct {
   PetscReal          mean_sweeps;                                            /* over all steps */
   PetscReal          mean_sweeps_contact;                                    /* over steps that end in contact */
   PetscReal          energy_error_min, energy_error_max, energy_error_final; /* of the system, relative to its start */
-  PetscReal          momentum_error_max;                                     /* relative to the sum of the bodies' initial momenta; absolute if that is 0 [kg m/s]; not-a-number with loads */
-  PetscReal          angular_momentum_error_max;                             /* about the origin, likewise [kg m^2/s] */
-  PetscReal          penalty_energy_max;                                     /* [J] */
+  PetscReal
+      momentum_error_max; /* relative to the sum of the bodies' initial momenta; absolute if that is 0 [kg m/s]; not-a-number with loads */
+  PetscReal angular_momentum_error_max; /* about the origin, likewise [kg m^2/s] */
+  PetscReal penalty_energy_max;         /* [J] */
 } StatisticsResults;
 
 typedef struct _n_Statistics *Statistics;

@@ -7,7 +7,8 @@
 static PetscErrorCode SetMember(json_t *object, const char name[], json_t *value)
 {
   PetscFunctionBegin;
-  PetscCheck(!json_object_set_new(object, name, value), PETSC_COMM_SELF, PETSC_ERR_LIB, "Jansson cannot store '%s' in the summary: out of memory, or not UTF-8", name);
+  PetscCheck(!json_object_set_new(object, name, value), PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "Jansson cannot store '%s' in the summary: out of memory, or not UTF-8", name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -30,7 +31,9 @@ static PetscErrorCode SetVector(json_t *object, const char name[], const PetscRe
   json_t *array = json_array();
 
   PetscFunctionBegin;
-  for (PetscInt d = 0; d < 3; d++) PetscCheck(!json_array_append_new(array, PetscIsInfOrNanReal(values[d]) ? json_null() : json_real((double)values[d])), PETSC_COMM_SELF, PETSC_ERR_LIB, "Jansson cannot store '%s' in the summary: out of memory", name);
+  for (PetscInt d = 0; d < 3; d++)
+    PetscCheck(!json_array_append_new(array, PetscIsInfOrNanReal(values[d]) ? json_null() : json_real((double)values[d])), PETSC_COMM_SELF,
+               PETSC_ERR_LIB, "Jansson cannot store '%s' in the summary: out of memory", name);
   PetscCall(SetMember(object, name, array));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

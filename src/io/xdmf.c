@@ -1,7 +1,7 @@
 /*
   XDMF: what lies where in an HDF5 file, for ParaView and its like (www.xdmf.org, XDMF Model and Format, version 3). Only what
-  all of vtk's two readers and meshio understand: a temporal collection of uniform grids, whole datasets, nothing referred to from elsewhere in
-  the XML.
+  all of vtk's two readers and meshio understand: a temporal collection of uniform grids, whole datasets, nothing referred to from elsewhere
+  in the XML.
 */
 #include "xdmf.h"
 #include "outputfile.h"
@@ -42,7 +42,8 @@ PetscErrorCode XdmfGetPath(const char fields[], size_t size, char path[])
   PetscFunctionBegin;
   if (EndsWith(fields, ".h5")) length -= 3;
   else if (EndsWith(fields, ".hdf5")) length -= 5;
-  PetscCheck(length + sizeof(".xdmf") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The output path '%s' is too long: %zu characters at most", fields, size - sizeof(".xdmf"));
+  PetscCheck(length + sizeof(".xdmf") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "The output path '%s' is too long: %zu characters at most", fields, size - sizeof(".xdmf"));
   PetscCall(PetscSNPrintf(path, size, "%.*s.xdmf", (int)length, fields));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -51,23 +52,28 @@ PetscErrorCode XdmfGetPath(const char fields[], size_t size, char path[])
 PetscErrorCode XdmfCheckPath(MPI_Comm comm, const char path[])
 {
   PetscFunctionBegin;
-  PetscCheck(!EndsWith(path, ".xdmf") && !EndsWith(path, ".xmf"), comm, PETSC_ERR_USER_INPUT, "-output_fields %s: give the path of the HDF5 file, as in fields.h5; the XDMF file is written beside it", path);
-  PetscCheck(!strpbrk(FileName(path), ":&<>\"'"), comm, PETSC_ERR_USER_INPUT, "-output_fields %s: the XDMF file beside it cannot name a file with any of : & < > \" ' in its name; choose another", path);
+  PetscCheck(!EndsWith(path, ".xdmf") && !EndsWith(path, ".xmf"), comm, PETSC_ERR_USER_INPUT,
+             "-output_fields %s: give the path of the HDF5 file, as in fields.h5; the XDMF file is written beside it", path);
+  PetscCheck(!strpbrk(FileName(path), ":&<>\"'"), comm, PETSC_ERR_USER_INPUT,
+             "-output_fields %s: the XDMF file beside it cannot name a file with any of : & < > \" ' in its name; choose another", path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void WriteItem(FILE *out, const char type[], size_t bytes, hsize_t rows, PetscInt components, const char file[], const char dataset[])
+static void WriteItem(FILE *out, const char type[], size_t bytes, hsize_t rows, PetscInt components, const char file[],
+                      const char dataset[])
 {
   char dimensions[64];
 
   if (components > 1) snprintf(dimensions, sizeof(dimensions), "%llu %d", (unsigned long long)rows, (int)components);
   else snprintf(dimensions, sizeof(dimensions), "%llu", (unsigned long long)rows);
-  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"%zu\" Dimensions=\"%s\">%s:%s</DataItem>", type, bytes, dimensions, file, dataset);
+  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"%zu\" Dimensions=\"%s\">%s:%s</DataItem>", type, bytes, dimensions,
+          file, dataset);
 }
 
 static void WriteMesh(FILE *out, const FieldsMesh *mesh, const char file[])
 {
-  fprintf(out, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%llu\"", mesh->topology_type, (unsigned long long)mesh->cells.total);
+  fprintf(out, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%llu\"", mesh->topology_type,
+          (unsigned long long)mesh->cells.total);
   if (!mesh->mixed) fprintf(out, " NodesPerElement=\"%d\"", (int)mesh->cell_nodes);
   fprintf(out, ">");
   WriteItem(out, "Int", sizeof(int), mesh->topology.total, mesh->cell_nodes, file, "/mesh/cells");
@@ -81,7 +87,8 @@ static void BeginAttribute(FILE *out, const char name[], const char type[], Pets
   fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", name, type, on_cells ? "Cell" : "Node");
 }
 
-static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt frame, PetscReal time, const char file[])
+static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt frame,
+                                 PetscReal time, const char file[])
 {
   static const char *const fixed[] = {"body", "rank"};
   char                     dataset[64];
@@ -94,7 +101,8 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
 
     PetscCall(FieldsFileGetDataset(i, frame, sizeof(dataset), dataset));
     BeginAttribute(out, field->name, field->attribute_type, field->on_cells);
-    WriteItem(out, "Float", precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float), (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, file, dataset);
+    WriteItem(out, "Float", precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float),
+              (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, file, dataset);
     fprintf(out, "</Attribute>\n");
   }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(fixed); i++) {
@@ -120,7 +128,8 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
 . n_frames  - how many frames to tell of
 - times     - their times [s]
 */
-PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt n_frames, const PetscReal times[])
+PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt n_frames,
+                         const PetscReal times[])
 {
   char  path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
   FILE *out;
@@ -131,7 +140,8 @@ PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n
   PetscCall(OutputFileGetPart(path, sizeof(part), part));
   out = fopen(part, "w");
   PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
-  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" "
+               "CollectionType=\"Temporal\">\n");
   for (PetscInt k = 0; k < n_frames; k++) PetscCall(WriteFrame(out, mesh, n_fields, precision, k, times[k], FileName(fields)));
   fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
   failed = ferror(out);

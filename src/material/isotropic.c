@@ -18,7 +18,8 @@ static PetscErrorCode MaterialSetFromOptions_Isotropic(Material material)
   nu = constants->poissons_ratio;
   PetscCheck(set, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus in Pa", prefix);
   PetscCheck(E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is %g Pa; it must be positive", prefix, (double)E);
-  PetscCheck(nu > -1 && nu < 0.5, comm, PETSC_ERR_USER_INPUT, "-%spoissons_ratio is %g; it must lie between -1 and 0.5", prefix, (double)nu);
+  PetscCheck(nu > -1 && nu < 0.5, comm, PETSC_ERR_USER_INPUT, "-%spoissons_ratio is %g; it must lie between -1 and 0.5", prefix,
+             (double)nu);
   constants->lambda       = E * nu / ((1 + nu) * (1 - 2 * nu));
   constants->mu           = E / (2 * (1 + nu));
   constants->plane_lambda = E * nu / ((1 + nu) * (1 - nu));
@@ -30,7 +31,8 @@ static PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer view
   const Isotropic *constants = (const Isotropic *)material->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g Pa, Poisson's ratio %g\n", (double)constants->youngs_modulus, (double)constants->poissons_ratio));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g Pa, Poisson's ratio %g\n", (double)constants->youngs_modulus,
+                                   (double)constants->poissons_ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

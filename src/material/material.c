@@ -77,7 +77,8 @@ PetscErrorCode MaterialFinalizePackage(void)
 PetscErrorCode MaterialCreate(MPI_Comm comm, Material *material)
 {
   PetscFunctionBegin;
-  PetscCall(PetscHeaderCreate(*material, MATERIAL_CLASSID, "Material", "Constitutive model", "Material", comm, MaterialDestroy, MaterialView));
+  PetscCall(
+      PetscHeaderCreate(*material, MATERIAL_CLASSID, "Material", "Constitutive model", "Material", comm, MaterialDestroy, MaterialView));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -154,7 +155,8 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
     char known[1024];
 
     PetscCall(GetKnownTypes(sizeof(known), known));
-    SETERRQ(PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%smaterial_type '%s'; known: %s", ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", type, known);
+    SETERRQ(PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%smaterial_type '%s'; known: %s",
+            ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", type, known);
   }
   PetscTryTypeMethod(material, destroy);
   PetscCall(PetscMemzero(material->ops, sizeof(*material->ops)));
@@ -196,8 +198,10 @@ PetscErrorCode MaterialSetFromOptions(Material material)
   PetscCall(PetscOptionsReal("-density", "Mass density [kg/m^3]", "MaterialGetDensity", material->density, &material->density, &set));
   PetscOptionsEnd();
   PetscCall(MaterialSetType(material, type));
-  PetscCheck(set, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT, "-%sdensity is missing; give the mass density in kg/m^3", prefix);
-  PetscCheck(material->density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT, "-%sdensity is %g kg/m^3; a density must be positive", prefix, (double)material->density);
+  PetscCheck(set, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT, "-%sdensity is missing; give the mass density in kg/m^3",
+             prefix);
+  PetscCheck(material->density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
+             "-%sdensity is %g kg/m^3; a density must be positive", prefix, (double)material->density);
   PetscTryTypeMethod(material, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,7 +224,8 @@ PetscErrorCode MaterialView(Material material, PetscViewer viewer)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)material, viewer));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  density %g kg/m^3%s\n", (double)material->density, material->plane_stress ? ", plane stress" : ""));
+  PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  density %g kg/m^3%s\n", (double)material->density, material->plane_stress ? ", plane stress" : ""));
   PetscTryTypeMethod(material, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

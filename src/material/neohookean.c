@@ -18,8 +18,9 @@ SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscR
     const PetscReal inverse = TensorDefined(J) / J, pressure = half_lambda * j * (J + 1);
     const PetscReal a = inverse * (mu - pressure), d = inverse * (mu * q + pressure * (1 + trace));
 
-    TensorStore((Tensor){mu * h.xx + a * (h.xx - c.xx) + d, mu * h.xy + a * (h.yx - c.xy), mu * h.xz + a * (h.zx - c.xz), mu * h.yx + a * (h.xy - c.yx), mu * h.yy + a * (h.yy - c.yy) + d, mu * h.yz + a * (h.zy - c.yz), mu * h.zx + a * (h.xz - c.zx), mu * h.zy + a * (h.yz - c.zy),
-                         mu * h.zz + a * (h.zz - c.zz) + d},
+    TensorStore((Tensor){mu * h.xx + a * (h.xx - c.xx) + d, mu * h.xy + a * (h.yx - c.xy), mu * h.xz + a * (h.zx - c.xz),
+                         mu * h.yx + a * (h.xy - c.yx), mu * h.yy + a * (h.yy - c.yy) + d, mu * h.yz + a * (h.zy - c.yz),
+                         mu * h.zx + a * (h.xz - c.zx), mu * h.zy + a * (h.yz - c.zy), mu * h.zz + a * (h.zz - c.zz) + d},
                 P, p);
   }
 }
@@ -46,7 +47,8 @@ SIMD_CLONES static void Energy(const void *data, const PetscReal H[9][8], PetscR
   for (int p = 0; p < SIMD_WIDTH; p++) {
     const Tensor    h = TensorLoad(H, p);
     const PetscReal q = TensorVolumeRemainder(h, TensorCofactor(h)), j = TensorTrace(h) + q;
-    const PetscReal squares = h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy + h.yz * h.yz + h.zx * h.zx + h.zy * h.zy + h.zz * h.zz;
+    const PetscReal squares = h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy + h.yz * h.yz + h.zx * h.zx +
+                              h.zy * h.zy + h.zz * h.zz;
 
     change[p]    = j;
     defined[p]   = TensorDefined(1 + j);
@@ -66,15 +68,15 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
   const Tensor    f = {1 + H[0], H[1], H[2], H[3], 1 + H[4], H[5], H[6], H[7], 1 + H[8]}, c = TensorCofactor(f);
   const PetscReal J = f.xx * c.xx + f.xy * c.xy + f.xz * c.xz, inverse = TensorDefined(J) / J;
   const PetscReal a = mu - 0.5 * lambda * (J * J - 1), b = lambda * J * J;
-  const PetscReal G[3][3] = {
-      {inverse * c.xx, inverse * c.xy, inverse * c.xz},
-      {inverse * c.yx, inverse * c.yy, inverse * c.yz},
-      {inverse * c.zx, inverse * c.zy, inverse * c.zz}};
+  const PetscReal G[3][3] = {{inverse * c.xx, inverse * c.xy, inverse * c.xz},
+                             {inverse * c.yx, inverse * c.yy, inverse * c.yz},
+                             {inverse * c.zx, inverse * c.zy, inverse * c.zz}};
 
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++) tangent[9 * (3 * i + j) + 3 * k + l] = (i == k && j == l ? mu : 0) + a * G[i][l] * G[k][j] + b * G[i][j] * G[k][l];
+        for (int l = 0; l < 3; l++)
+          tangent[9 * (3 * i + j) + 3 * k + l] = (i == k && j == l ? mu : 0) + a * G[i][l] * G[k][j] + b * G[i][j] * G[k][l];
 }
 
 /* Plane stress: P_zz = 0 gives the squared stretch across the plane, (2 mu + lambda) / (2 mu + lambda J_xy^2) with the ratio of areas

@@ -85,7 +85,8 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
 }
 
 /* Makes the kernels of a solid those of plane stress; thickness, unless NULL, gives H_zz for displacement gradients in the plane */
-PetscErrorCode MaterialCondenseKernels(Material material, void (*thickness)(const void *, const PetscReal[9][8], PetscReal[8]), MaterialKernels *kernels)
+PetscErrorCode MaterialCondenseKernels(Material         material, void (*thickness)(const void *, const PetscReal[9][8], PetscReal[8]),
+                                       MaterialKernels *kernels)
 {
   PetscFunctionBegin;
   material->plane = (PlaneStressData){*kernels, thickness};

@@ -10,7 +10,9 @@ SIMD_INLINE Tensor GreenLagrange(Tensor h)
   const PetscReal xz = 0.5 * (h.xz + h.zx + h.xx * h.xz + h.yx * h.yz + h.zx * h.zz);
   const PetscReal yz = 0.5 * (h.yz + h.zy + h.xy * h.xz + h.yy * h.yz + h.zy * h.zz);
 
-  return (Tensor){h.xx + 0.5 * (h.xx * h.xx + h.yx * h.yx + h.zx * h.zx), xy, xz, xy, h.yy + 0.5 * (h.xy * h.xy + h.yy * h.yy + h.zy * h.zy), yz, xz, yz, h.zz + 0.5 * (h.xz * h.xz + h.yz * h.yz + h.zz * h.zz)};
+  return (Tensor){h.xx + 0.5 * (h.xx * h.xx + h.yx * h.yx + h.zx * h.zx), xy, xz, xy,
+                  h.yy + 0.5 * (h.xy * h.xy + h.yy * h.yy + h.zy * h.zy), yz, xz, yz,
+                  h.zz + 0.5 * (h.xz * h.xz + h.yz * h.yz + h.zz * h.zz)};
 }
 
 SIMD_INLINE PetscReal Defined(Tensor h)
@@ -37,9 +39,11 @@ SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscR
     const PetscReal d = Defined(h);
     const Tensor    s = SecondStress(h, d * lambda, d * mu);
 
-    TensorStore((Tensor){s.xx + h.xx * s.xx + h.xy * s.yx + h.xz * s.zx, s.xy + h.xx * s.xy + h.xy * s.yy + h.xz * s.zy, s.xz + h.xx * s.xz + h.xy * s.yz + h.xz * s.zz,
-                         s.yx + h.yx * s.xx + h.yy * s.yx + h.yz * s.zx, s.yy + h.yx * s.xy + h.yy * s.yy + h.yz * s.zy, s.yz + h.yx * s.xz + h.yy * s.yz + h.yz * s.zz,
-                         s.zx + h.zx * s.xx + h.zy * s.yx + h.zz * s.zx, s.zy + h.zx * s.xy + h.zy * s.yy + h.zz * s.zy, s.zz + h.zx * s.xz + h.zy * s.yz + h.zz * s.zz},
+    TensorStore((Tensor){s.xx + h.xx * s.xx + h.xy * s.yx + h.xz * s.zx, s.xy + h.xx * s.xy + h.xy * s.yy + h.xz * s.zy,
+                         s.xz + h.xx * s.xz + h.xy * s.yz + h.xz * s.zz, s.yx + h.yx * s.xx + h.yy * s.yx + h.yz * s.zx,
+                         s.yy + h.yx * s.xy + h.yy * s.yy + h.yz * s.zy, s.yz + h.yx * s.xz + h.yy * s.yz + h.yz * s.zz,
+                         s.zx + h.zx * s.xx + h.zy * s.yx + h.zz * s.zx, s.zy + h.zx * s.xy + h.zy * s.yy + h.zz * s.zy,
+                         s.zz + h.zx * s.xz + h.zy * s.yz + h.zz * s.zz},
                 P, p);
   }
 }
@@ -53,7 +57,8 @@ SIMD_CLONES static void Energy(const void *data, const PetscReal H[9][8], PetscR
     const Tensor    h = TensorLoad(H, p), e = GreenLagrange(h);
     const PetscReal trace = TensorTrace(e);
 
-    W[p] = Defined(h) * (0.5 * lambda * trace * trace + mu * (e.xx * e.xx + e.yy * e.yy + e.zz * e.zz + 2 * (e.xy * e.xy + e.xz * e.xz + e.yz * e.yz)));
+    W[p] = Defined(h) *
+           (0.5 * lambda * trace * trace + mu * (e.xx * e.xx + e.yy * e.yy + e.zz * e.zz + 2 * (e.xy * e.xy + e.xz * e.xz + e.yz * e.yz)));
   }
 }
 
@@ -64,21 +69,17 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
   const Tensor    h       = {H[0], H[1], H[2], H[3], H[4], H[5], H[6], H[7], H[8]};
   const PetscReal d       = Defined(h);
   const Tensor    s       = SecondStress(h, lambda, mu);
-  const PetscReal F[3][3] = {
-      {1 + h.xx, h.xy, h.xz},
-      {h.yx, 1 + h.yy, h.yz},
-      {h.zx, h.zy, 1 + h.zz}};
-  const PetscReal S[3][3] = {
-      {s.xx, s.xy, s.xz},
-      {s.yx, s.yy, s.yz},
-      {s.zx, s.zy, s.zz}};
+  const PetscReal F[3][3] = {{1 + h.xx, h.xy, h.xz}, {h.yx, 1 + h.yy, h.yz}, {h.zx, h.zy, 1 + h.zz}};
+  const PetscReal S[3][3] = {{s.xx, s.xy, s.xz}, {s.yx, s.yy, s.yz}, {s.zx, s.zy, s.zz}};
 
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) {
       const PetscReal left = F[i][0] * F[k][0] + F[i][1] * F[k][1] + F[i][2] * F[k][2];
 
       for (int j = 0; j < 3; j++)
-        for (int l = 0; l < 3; l++) tangent[9 * (3 * i + j) + 3 * k + l] = d * ((i == k ? S[j][l] : 0) + lambda * F[i][j] * F[k][l] + mu * (F[i][l] * F[k][j] + (j == l ? left : 0)));
+        for (int l = 0; l < 3; l++)
+          tangent[9 * (3 * i + j) + 3 * k + l] = d * ((i == k ? S[j][l] : 0) + lambda * F[i][j] * F[k][l] +
+                                                      mu * (F[i][l] * F[k][j] + (j == l ? left : 0)));
     }
 }
 
@@ -147,14 +148,16 @@ static PetscErrorCode MaterialUniaxial_SaintVenantKirchhoff(Material material, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialUniaxialTangent_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[], PetscReal tangent[])
+static PetscErrorCode MaterialUniaxialTangent_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[],
+                                                                   PetscReal tangent[])
 {
   PetscFunctionBegin;
   UniaxialTangent((const Isotropic *)material->data, n, strain, tangent);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialUniaxialEnergy_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
+static PetscErrorCode MaterialUniaxialEnergy_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[],
+                                                                  PetscReal energy[])
 {
   PetscFunctionBegin;
   UniaxialEnergy((const Isotropic *)material->data, n, strain, energy);

@@ -46,9 +46,13 @@ static PetscErrorCode ReadPart(MPI_Comm comm, const char prefix[], Ball *ball)
     PetscCall(PetscStrcasecmp(part, parts[p], &same));
     if (same) ball->n_cuts = p;
   }
-  PetscCheck(same, comm, PETSC_ERR_USER_INPUT, "-%sball_part %s: expected full, half (x >= centre) or quarter (also y >= centre)", prefix, part);
-  PetscCheck(ball->n_cuts < ball->dim, comm, PETSC_ERR_USER_INPUT, "-%sball_part %s: a disc can be full or half; quarters are for -%sdm_plex_dim 3", prefix, part, prefix);
-  PetscCheck(!ball->n_cuts || ball->divisions % 2 == 0, comm, PETSC_ERR_USER_INPUT, "-%sball_divisions %" PetscInt_FMT ": must be even for -%sball_part %s, which cuts the central block in its middle", prefix, ball->divisions, prefix, part);
+  PetscCheck(same, comm, PETSC_ERR_USER_INPUT, "-%sball_part %s: expected full, half (x >= centre) or quarter (also y >= centre)", prefix,
+             part);
+  PetscCheck(ball->n_cuts < ball->dim, comm, PETSC_ERR_USER_INPUT,
+             "-%sball_part %s: a disc can be full or half; quarters are for -%sdm_plex_dim 3", prefix, part, prefix);
+  PetscCheck(!ball->n_cuts || ball->divisions % 2 == 0, comm, PETSC_ERR_USER_INPUT,
+             "-%sball_divisions %" PetscInt_FMT ": must be even for -%sball_part %s, which cuts the central block in its middle", prefix,
+             ball->divisions, prefix, part);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -68,7 +72,10 @@ static PetscErrorCode ReadPole(MPI_Comm comm, const char prefix[], Ball *ball)
   length = 0;
   for (PetscInt d = 0; d < dim; d++) length += PetscSqr(ball->pole[d]);
   for (PetscInt d = 0; d < dim; d++) ball->pole[d] /= PetscSqrtReal(length);
-  for (PetscInt d = 0; d < ball->n_cuts; d++) PetscCheck(ball->pole[d] == 0, comm, PETSC_ERR_USER_INPUT, "-%sball_pole: its component along %c is %g; for -%sball_part %s it must be 0, so that the pole is in the cut plane", prefix, (char)('x' + d), (double)pole[d], prefix, ball->n_cuts == 1 ? "half" : "quarter");
+  for (PetscInt d = 0; d < ball->n_cuts; d++)
+    PetscCheck(ball->pole[d] == 0, comm, PETSC_ERR_USER_INPUT,
+               "-%sball_pole: its component along %c is %g; for -%sball_part %s it must be 0, so that the pole is in the cut plane", prefix,
+               (char)('x' + d), (double)pole[d], prefix, ball->n_cuts == 1 ? "half" : "quarter");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,18 +98,24 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscFunctionBegin;
   *ball = (Ball){.dim = 2, .divisions = 4, .radius = 1, .grading = 1};
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &ball->dim, NULL));
-  PetscCheck(ball->dim == 2 || ball->dim == 3, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_dim %" PetscInt_FMT ": -%sdm_plex_shape ball makes a disc (2) or a ball (3)", prefix, ball->dim, prefix);
+  PetscCheck(ball->dim == 2 || ball->dim == 3, comm, PETSC_ERR_USER_INPUT,
+             "-%sdm_plex_dim %" PetscInt_FMT ": -%sdm_plex_shape ball makes a disc (2) or a ball (3)", prefix, ball->dim, prefix);
   PetscCall(ReadNumber(comm, prefix, "-ball_radius", "a radius [m]", &ball->radius));
   PetscCheck(ball->radius > 0, comm, PETSC_ERR_USER_INPUT, "-%sball_radius %g: must be positive", prefix, (double)ball->radius);
   PetscCall(MeshReadNumbers(comm, prefix, "-ball_centre", ball->dim, "a point [m]", centre, &set));
   for (PetscInt d = 0; d < ball->dim && set; d++) ball->centre[d] = centre[d];
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-ball_divisions", &ball->divisions, NULL));
-  PetscCheck(ball->divisions >= 1, comm, PETSC_ERR_USER_INPUT, "-%sball_divisions %" PetscInt_FMT ": the central block has at least 1 element along an edge", prefix, ball->divisions);
+  PetscCheck(ball->divisions >= 1, comm, PETSC_ERR_USER_INPUT,
+             "-%sball_divisions %" PetscInt_FMT ": the central block has at least 1 element along an edge", prefix, ball->divisions);
   ball->layers = (ball->divisions + 1) / 2; /* the central block is as wide as the radius, the layers fill half of it */
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-ball_layers", &ball->layers, NULL));
-  PetscCheck(ball->layers >= 1, comm, PETSC_ERR_USER_INPUT, "-%sball_layers %" PetscInt_FMT ": there is at least 1 around the central block", prefix, ball->layers);
+  PetscCheck(ball->layers >= 1, comm, PETSC_ERR_USER_INPUT,
+             "-%sball_layers %" PetscInt_FMT ": there is at least 1 around the central block", prefix, ball->layers);
   PetscCall(ReadNumber(comm, prefix, "-ball_grading", "a ratio of element sizes", &ball->grading));
-  PetscCheck(ball->grading >= 1, comm, PETSC_ERR_USER_INPUT, "-%sball_grading %g: the ratio of the largest to the smallest element size is 1 or more; -%sball_pole says where they are small", prefix, (double)ball->grading, prefix);
+  PetscCheck(
+      ball->grading >= 1, comm, PETSC_ERR_USER_INPUT,
+      "-%sball_grading %g: the ratio of the largest to the smallest element size is 1 or more; -%sball_pole says where they are small",
+      prefix, (double)ball->grading, prefix);
   PetscCall(ReadPart(comm, prefix, ball));
   PetscCall(ReadPole(comm, prefix, ball));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &ball->simplex, NULL));
@@ -186,7 +199,8 @@ static PetscErrorCode SetNodes(Grid *grid)
     grid->stride[d] = grid->n_core;
     size *= ball->divisions + 1.0;
     /* corners of all cells of all blocks, simplices being most, in PetscInt */
-    PetscCheck(size * (1 + 2.0 * ball->dim * ball->layers / ball->divisions) * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%" PetscInt_FMT " divisions and %" PetscInt_FMT " layers are too many: take fewer", ball->divisions, ball->layers);
+    PetscCheck(size * (1 + 2.0 * ball->dim * ball->layers / ball->divisions) * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%" PetscInt_FMT " divisions and %" PetscInt_FMT " layers are too many: take fewer", ball->divisions, ball->layers);
     grid->n_core *= grid->n[d] + 1;
   }
   PetscCall(PetscMalloc1(grid->n_core, &grid->rim));
@@ -204,8 +218,7 @@ static PetscInt GetNode(const Grid *grid, const Block *block, const PetscInt pla
 
   for (PetscInt d = 0; d < grid->ball->dim; d++) {
     if (d == block->axis) layer = place[d];
-    core += grid->stride[d] * (d != block->axis ? place[d] : block->side ? grid->n[d]
-                                                                         : 0);
+    core += grid->stride[d] * (d != block->axis ? place[d] : block->side ? grid->n[d] : 0);
   }
   return layer ? grid->n_core + (layer - 1) * grid->n_rim + grid->rim[core] : core;
 }
@@ -249,15 +262,22 @@ static PetscErrorCode CheckCell(const Grid *grid, const PetscInt corner[8], Pets
     PetscReal        J[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}, jacobian;
 
     for (PetscInt i = 0; i < ball->dim; i++)
-      for (PetscInt j = 0; j < ball->dim; j++) J[i][j] = (k >> i & 1 ? -1 : 1) * (grid->file->coordinates[3 * corner[k ^ 1 << i] + j] - x[j]);
-    jacobian = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) + J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
-    PetscCheck(mirrored ? jacobian < 0 : jacobian > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "with %" PetscInt_FMT " divisions, %" PetscInt_FMT " layers and a grading of %g, the element with a corner at (%g, %g, %g) is not convex: take more divisions, or a weaker grading", ball->divisions, ball->layers, (double)ball->grading, (double)x[0], (double)x[1], (double)x[2]);
+      for (PetscInt j = 0; j < ball->dim; j++)
+        J[i][j] = (k >> i & 1 ? -1 : 1) * (grid->file->coordinates[3 * corner[k ^ 1 << i] + j] - x[j]);
+    jacobian = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
+               J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
+    PetscCheck(
+        mirrored ? jacobian < 0 : jacobian > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+        "with %" PetscInt_FMT " divisions, %" PetscInt_FMT
+        " layers and a grading of %g, the element with a corner at (%g, %g, %g) is not convex: take more divisions, or a weaker grading",
+        ball->divisions, ball->layers, (double)ball->grading, (double)x[0], (double)x[1], (double)x[2]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Cells of a block from begin to end (without) along each axis, or faces of them that lie along the axes named */
-static PetscErrorCode AddRange(const Grid *grid, const Block *block, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3], const PetscInt end[3])
+static PetscErrorCode AddRange(const Grid *grid, const Block *block, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3],
+                               const PetscInt end[3])
 {
   const Ball     *ball     = grid->ball;
   const PetscBool mirrored = (PetscBool)(block->axis >= 0 && !block->side); /* layers go outward */
@@ -288,8 +308,10 @@ static PetscErrorCode AddSurface(MeshFile *file, const Ball *ball, PetscInt numb
   PetscFunctionBegin;
   PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, ball->dim - 1, number, &group));
   PetscCall(PetscStrncpy(file->groups[group].name, name, sizeof(file->groups[group].name)));
-  PetscCall(MeshFileAddRun(file, ball->dim == 2 ? DM_POLYTOPE_SEGMENT : ball->simplex ? DM_POLYTOPE_TRIANGLE
-                                                                                      : DM_POLYTOPE_QUADRILATERAL,
+  PetscCall(MeshFileAddRun(file,
+                           ball->dim == 2  ? DM_POLYTOPE_SEGMENT
+                           : ball->simplex ? DM_POLYTOPE_TRIANGLE
+                                           : DM_POLYTOPE_QUADRILATERAL,
                            1, &group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -342,7 +364,8 @@ static PetscErrorCode FillBall(void *ctx)
   Grid                    *grid        = (Grid *)ctx;
   const Ball              *ball        = grid->ball;
   const PetscInt           all[3] = {0, 1, 2}, begin[3] = {0};
-  const DMPolytopeType     shapes[2][2] = {{DM_POLYTOPE_QUADRILATERAL, DM_POLYTOPE_TRIANGLE}, {DM_POLYTOPE_HEXAHEDRON, DM_POLYTOPE_TETRAHEDRON}};
+  const DMPolytopeType     shapes[2][2] = {{DM_POLYTOPE_QUADRILATERAL, DM_POLYTOPE_TRIANGLE},
+                                           {DM_POLYTOPE_HEXAHEDRON, DM_POLYTOPE_TETRAHEDRON}};
   Block                    blocks[7]    = {{-1, 0}};
   PetscInt                 n_blocks     = 1, sphere;
 

@@ -24,21 +24,28 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], Box *box)
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", shape, sizeof(shape), &set));
   if (set) PetscCall(PetscStrcasecmp(shape, "box", &box->is_box));
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &box->dim, NULL));
-  PetscCheck(box->dim >= 1 && box->dim <= 3, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_dim %" PetscInt_FMT ": a body has 1, 2 or 3 dimensions", prefix, box->dim);
+  PetscCheck(box->dim >= 1 && box->dim <= 3, comm, PETSC_ERR_USER_INPUT,
+             "-%sdm_plex_dim %" PetscInt_FMT ": a body has 1, 2 or 3 dimensions", prefix, box->dim);
   if (!box->is_box) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt d = 0; d < box->dim; d++) box->faces[d] = box->dim == 1 ? 1 : 4 - box->dim;
   n = 3;
   PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-dm_plex_box_faces", box->faces, &n, &set));
-  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_faces has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
+  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT,
+             "-%sdm_plex_box_faces has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
   n = 3;
   PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_lower", box->lower, &n, &set));
-  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_lower has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
+  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT,
+             "-%sdm_plex_box_lower has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
   n = 3;
   PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_upper", box->upper, &n, &set));
-  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_upper has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
+  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT,
+             "-%sdm_plex_box_upper has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
   for (PetscInt d = 0; d < box->dim; d++) {
-    PetscCheck(box->faces[d] > 0, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_faces: %" PetscInt_FMT " along axis %" PetscInt_FMT " must be positive", prefix, box->faces[d], d + 1);
-    PetscCheck(box->upper[d] > box->lower[d], comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_box_lower, -%sdm_plex_box_upper: along axis %" PetscInt_FMT " the box ends at %g, not beyond its start at %g", prefix, prefix, d + 1, (double)box->upper[d], (double)box->lower[d]);
+    PetscCheck(box->faces[d] > 0, comm, PETSC_ERR_USER_INPUT,
+               "-%sdm_plex_box_faces: %" PetscInt_FMT " along axis %" PetscInt_FMT " must be positive", prefix, box->faces[d], d + 1);
+    PetscCheck(box->upper[d] > box->lower[d], comm, PETSC_ERR_USER_INPUT,
+               "-%sdm_plex_box_lower, -%sdm_plex_box_upper: along axis %" PetscInt_FMT " the box ends at %g, not beyond its start at %g",
+               prefix, prefix, d + 1, (double)box->upper[d], (double)box->lower[d]);
   }
   if (box->dim > 1) PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &box->simplex, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,12 +85,14 @@ static PetscErrorCode DivideCell(MeshFile *file, PetscInt n_axes, const PetscInt
 }
 
 /* Cells of a grid from begin to end (without) along each axis, cut along the axes named */
-static PetscErrorCode DivideRange(MeshFile *file, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3], const PetscInt end[3], const PetscInt stride[3])
+static PetscErrorCode DivideRange(MeshFile *file, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3], const PetscInt end[3],
+                                  const PetscInt stride[3])
 {
   PetscFunctionBegin;
   for (PetscInt k = begin[2]; k < end[2]; k++)
     for (PetscInt j = begin[1]; j < end[1]; j++)
-      for (PetscInt i = begin[0]; i < end[0]; i++) PetscCall(DivideCell(file, n_axes, axes, i * stride[0] + j * stride[1] + k * stride[2], stride));
+      for (PetscInt i = begin[0]; i < end[0]; i++)
+        PetscCall(DivideCell(file, n_axes, axes, i * stride[0] + j * stride[1] + k * stride[2], stride));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,7 +111,8 @@ static PetscErrorCode DivideBox(void *ctx)
     end[d]   = box->faces[d];
     nodes[d] = end[d] + 1;
   }
-  PetscCheck((double)nodes[0] * nodes[1] * nodes[2] * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "a box of simplices of this size is too large");
+  PetscCheck((double)nodes[0] * nodes[1] * nodes[2] * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "a box of simplices of this size is too large");
   stride[0]     = 1;
   stride[1]     = nodes[0];
   stride[2]     = nodes[0] * nodes[1];

@@ -6,7 +6,8 @@ typedef struct {
   DM        dm;
 } Labelling;
 
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *ctx)
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
+                                  const char *message, void *ctx)
 {
   (void)comm;
   (void)line;
@@ -66,8 +67,10 @@ PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *
   sizes[0] = file->dim;
   sizes[1] = file->corners;
   PetscCallMPI(MPI_Bcast(sizes, 2, MPIU_INT, 0, comm));
-  for (PetscInt c = 0; c < file->n_cells; c++) PetscCall(DMPlexInvertCell(file->shape, file->cells + c * file->corners)); /* DMPLEX looks at bases from outside */
-  PetscCall(DMPlexCreateFromCellListPetsc(comm, sizes[0], file->n_cells, file->n_vertices, sizes[1], PETSC_TRUE, file->cells, sizes[0], file->vertices, dm));
+  for (PetscInt c = 0; c < file->n_cells; c++)
+    PetscCall(DMPlexInvertCell(file->shape, file->cells + c * file->corners)); /* DMPLEX looks at bases from outside */
+  PetscCall(DMPlexCreateFromCellListPetsc(comm, sizes[0], file->n_cells, file->n_vertices, sizes[1], PETSC_TRUE, file->cells, sizes[0],
+                                          file->vertices, dm));
   PetscCall(PetscFree(file->cells));
   PetscCall(PetscFree(file->vertices));
   PetscCall(PetscFree(file->coordinates));
@@ -88,7 +91,8 @@ static PetscErrorCode NameLabel(DM dm, const MeshGroup *group, DMLabel *label)
   if (!group->name[0]) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < 5; i++) {
     PetscCall(PetscStrcasecmp(group->name, reserved[i], &same));
-    PetscCheck(!same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "group %" PetscInt_FMT " is named '%s', a word that PETSc uses itself: rename it", group->number, group->name);
+    PetscCheck(!same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "group %" PetscInt_FMT " is named '%s', a word that PETSc uses itself: rename it", group->number, group->name);
   }
   PetscCall(DMCreateLabel(dm, group->name));
   PetscCall(DMGetLabel(dm, group->name, label));
@@ -123,7 +127,8 @@ static PetscErrorCode FindFace(const MeshFile *file, DM dm, PetscInt vstart, Pet
 }
 
 /* Marks the elements of a run that is in a group; `first_cell` is the run's first cell, where it has cells */
-static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, const MeshGroup *group, PetscInt first_cell, DMLabel numbers, DMLabel name)
+static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, const MeshGroup *group, PetscInt first_cell,
+                               DMLabel numbers, DMLabel name)
 {
   PetscInt vstart;
 
@@ -140,7 +145,10 @@ static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, 
       break;
     case MESH_SIDE_SET:
       PetscCall(FindFace(file, dm, vstart, run->corners, nodes, &point));
-      PetscCheck(point >= 0 || file->n_wanted, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt_FMT " (%s) of surface '%s' (%" PetscInt_FMT ") is not a face of an element of dimension %" PetscInt_FMT, file->numbers[run->first + e], DMPolytopeTypes[run->shape], group->name, group->number, file->dim);
+      PetscCheck(point >= 0 || file->n_wanted, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+                 "element %" PetscInt_FMT " (%s) of surface '%s' (%" PetscInt_FMT
+                 ") is not a face of an element of dimension %" PetscInt_FMT,
+                 file->numbers[run->first + e], DMPolytopeTypes[run->shape], group->name, group->number, file->dim);
       if (point < 0) continue;
       break;
     default:

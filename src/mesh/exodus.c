@@ -3,14 +3,14 @@
 #include "meshimpl.h"
 #include <netcdf.h>
 
-#define NetCDFCall(call, ...)                                                                \
-  do {                                                                                       \
-    const int status_ = (call);                                                              \
-    char      what_[256];                                                                    \
-    if (PetscUnlikely(status_)) {                                                            \
-      PetscCall(PetscSNPrintf(what_, sizeof(what_), __VA_ARGS__));                           \
-      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s", what_, nc_strerror(status_)); \
-    }                                                                                        \
+#define NetCDFCall(call, ...)                                                                                                              \
+  do {                                                                                                                                     \
+    const int status_ = (call);                                                                                                            \
+    char      what_[256];                                                                                                                  \
+    if (PetscUnlikely(status_)) {                                                                                                          \
+      PetscCall(PetscSNPrintf(what_, sizeof(what_), __VA_ARGS__));                                                                         \
+      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s", what_, nc_strerror(status_));                                               \
+    }                                                                                                                                      \
   } while (0)
 
 /* A block with the place of its elements in the file */
@@ -74,7 +74,8 @@ static PetscErrorCode FindVariable(const Exodus *exodus, const char name[], Pets
     NetCDFCall(nc_inq_dimlen(exodus->id, dimensions[d], &length), "variable '%s'", name);
     total *= (double)length;
   }
-  PetscCheck(total == (double)n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "variable '%s' has %.0f values, where %" PetscInt_FMT " are expected", name, total, n);
+  PetscCheck(total == (double)n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "variable '%s' has %.0f values, where %" PetscInt_FMT " are expected", name, total, n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,18 +170,12 @@ static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscIn
     DMPolytopeType shape;
     PetscBool      shell;
   } types[] = {
-      {"BAR", DM_POLYTOPE_SEGMENT, PETSC_FALSE},
-      {"BEAM", DM_POLYTOPE_SEGMENT, PETSC_FALSE},
-      {"EDGE", DM_POLYTOPE_SEGMENT, PETSC_FALSE},
-      {"TRUSS", DM_POLYTOPE_SEGMENT, PETSC_FALSE},
-      {"TRI", DM_POLYTOPE_TRIANGLE, PETSC_FALSE},
-      {"TRIANGLE", DM_POLYTOPE_TRIANGLE, PETSC_FALSE},
-      {"TRISHELL", DM_POLYTOPE_TRIANGLE, PETSC_TRUE},
-      {"QUAD", DM_POLYTOPE_QUADRILATERAL, PETSC_FALSE},
-      {"SHELL", DM_POLYTOPE_QUADRILATERAL, PETSC_TRUE},
-      {"TET", DM_POLYTOPE_TETRAHEDRON, PETSC_FALSE},
-      {"TETRA", DM_POLYTOPE_TETRAHEDRON, PETSC_FALSE},
-      {"HEX", DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE},
+      {"BAR", DM_POLYTOPE_SEGMENT, PETSC_FALSE},           {"BEAM", DM_POLYTOPE_SEGMENT, PETSC_FALSE},
+      {"EDGE", DM_POLYTOPE_SEGMENT, PETSC_FALSE},          {"TRUSS", DM_POLYTOPE_SEGMENT, PETSC_FALSE},
+      {"TRI", DM_POLYTOPE_TRIANGLE, PETSC_FALSE},          {"TRIANGLE", DM_POLYTOPE_TRIANGLE, PETSC_FALSE},
+      {"TRISHELL", DM_POLYTOPE_TRIANGLE, PETSC_TRUE},      {"QUAD", DM_POLYTOPE_QUADRILATERAL, PETSC_FALSE},
+      {"SHELL", DM_POLYTOPE_QUADRILATERAL, PETSC_TRUE},    {"TET", DM_POLYTOPE_TETRAHEDRON, PETSC_FALSE},
+      {"TETRA", DM_POLYTOPE_TETRAHEDRON, PETSC_FALSE},     {"HEX", DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE},
       {"HEXAHEDRON", DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE},
   };
   char   stem[64];
@@ -202,7 +197,11 @@ static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscIn
     block->shell = types[i].shell;
   }
   if (block->shape == DM_POLYTOPE_QUADRILATERAL && block->shell && nodes == 3) block->shape = DM_POLYTOPE_TRIANGLE;
-  PetscCheck(block->shape != DM_POLYTOPE_UNKNOWN && DMPolytopeTypeGetNumVertices(block->shape) == nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "block %" PetscInt_FMT " has elements of type '%s' with %" PetscInt_FMT " nodes, which are not supported; supported are first-order elements: BAR2, TRI3, QUAD4, TETRA4, HEX8", block->number, type, nodes);
+  PetscCheck(block->shape != DM_POLYTOPE_UNKNOWN && DMPolytopeTypeGetNumVertices(block->shape) == nodes, PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT,
+             "block %" PetscInt_FMT " has elements of type '%s' with %" PetscInt_FMT
+             " nodes, which are not supported; supported are first-order elements: BAR2, TRI3, QUAD4, TETRA4, HEX8",
+             block->number, type, nodes);
   if (DMPolytopeTypeGetDim(block->shape) == 2 && exodus->dim == 3) block->shell = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -217,7 +216,8 @@ static PetscErrorCode ReadType(const Exodus *exodus, PetscInt i, char type[64])
   PetscCall(PetscMemzero(type, 64));
   PetscCall(PetscSNPrintf(full, sizeof(full), "connect%" PetscInt_FMT, i + 1));
   PetscCheck(!nc_inq_varid(exodus->id, full, &variable), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it has no variable '%s'", full);
-  PetscCheck(!nc_inq_attlen(exodus->id, variable, "elem_type", &length) && length < 64, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "variable '%s' has no proper attribute elem_type", full);
+  PetscCheck(!nc_inq_attlen(exodus->id, variable, "elem_type", &length) && length < 64, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "variable '%s' has no proper attribute elem_type", full);
   NetCDFCall(nc_get_att_text(exodus->id, variable, "elem_type", type), "attribute elem_type of '%s'", full);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -254,7 +254,9 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
     for (PetscInt k = 0; k < corners; k++) {
       const int node = exodus->values[0][e * corners + k];
 
-      PetscCheck(node >= 1 && node <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt_FMT " (block %" PetscInt_FMT ") names node %d; the file has nodes 1 to %" PetscInt_FMT, block->first + e + 1, block->number, node, file->n_nodes);
+      PetscCheck(node >= 1 && node <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+                 "element %" PetscInt_FMT " (block %" PetscInt_FMT ") names node %d; the file has nodes 1 to %" PetscInt_FMT,
+                 block->first + e + 1, block->number, node, file->n_nodes);
       nodes[k] = node - 1;
     }
   }
@@ -290,7 +292,8 @@ static PetscInt SideCorners(DMPolytopeType shape, PetscInt side, const int **cor
 
 static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
 {
-  static const DMPolytopeType shapes[] = {DM_POLYTOPE_UNKNOWN, DM_POLYTOPE_POINT, DM_POLYTOPE_SEGMENT, DM_POLYTOPE_TRIANGLE, DM_POLYTOPE_QUADRILATERAL};
+  static const DMPolytopeType shapes[] = {DM_POLYTOPE_UNKNOWN, DM_POLYTOPE_POINT, DM_POLYTOPE_SEGMENT, DM_POLYTOPE_TRIANGLE,
+                                          DM_POLYTOPE_QUADRILATERAL};
   MeshFile                   *file     = exodus->file;
   PetscInt                    n, number, group, b = 0;
   char                        name[MESH_NAME_LENGTH];
@@ -310,15 +313,20 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
     const PetscInt *cell;
     PetscInt       *nodes, n_corners;
 
-    PetscCheck(element >= 1 && element <= exodus->n_elements, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "side set %" PetscInt_FMT " names element %d; the file has elements 1 to %" PetscInt_FMT, number, element, exodus->n_elements);
+    PetscCheck(element >= 1 && element <= exodus->n_elements, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "side set %" PetscInt_FMT " names element %d; the file has elements 1 to %" PetscInt_FMT, number, element,
+               exodus->n_elements);
     if (element - 1 < exodus->blocks[b].first || element - 1 >= exodus->blocks[b].first + exodus->blocks[b].n)
       for (b = 0; element - 1 >= exodus->blocks[b].first + exodus->blocks[b].n;) b++;
     if (exodus->blocks[b].first_node < 0) continue; /* another body's */
     n_corners = SideCorners(exodus->blocks[b].shape, side - (exodus->blocks[b].shell ? 3 : 1), &corners);
-    PetscCheck(corners, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "side set %" PetscInt_FMT " names side %d of element %d (%s), which has no such %s", number, side, element, DMPolytopeTypes[exodus->blocks[b].shape], exodus->blocks[b].shell ? "edge" : "side");
+    PetscCheck(corners, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "side set %" PetscInt_FMT " names side %d of element %d (%s), which has no such %s", number, side, element,
+               DMPolytopeTypes[exodus->blocks[b].shape], exodus->blocks[b].shell ? "edge" : "side");
     PetscCall(MeshFileAddRun(file, shapes[n_corners], 1, &group));
     PetscCall(MeshFileAddElement(file, element, &nodes));
-    cell = file->element_nodes + exodus->blocks[b].first_node + (element - 1 - exodus->blocks[b].first) * DMPolytopeTypeGetNumVertices(exodus->blocks[b].shape);
+    cell = file->element_nodes + exodus->blocks[b].first_node +
+           (element - 1 - exodus->blocks[b].first) * DMPolytopeTypeGetNumVertices(exodus->blocks[b].shape);
     for (PetscInt k = 0; k < n_corners; k++) nodes[k] = cell[corners[k] - 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -342,7 +350,9 @@ static PetscErrorCode ReadNodeSet(Exodus *exodus, PetscInt i)
   for (PetscInt k = 0; k < n; k++) {
     PetscInt *node;
 
-    PetscCheck(exodus->values[0][k] >= 1 && exodus->values[0][k] <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "node set %" PetscInt_FMT " names node %d; the file has nodes 1 to %" PetscInt_FMT, number, exodus->values[0][k], file->n_nodes);
+    PetscCheck(exodus->values[0][k] >= 1 && exodus->values[0][k] <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "node set %" PetscInt_FMT " names node %d; the file has nodes 1 to %" PetscInt_FMT, number, exodus->values[0][k],
+               file->n_nodes);
     PetscCall(MeshFileAddElement(file, k + 1, &node));
     *node = exodus->values[0][k] - 1;
   }
@@ -357,12 +367,15 @@ static PetscErrorCode ReadAll(Exodus *exodus)
   PetscCall(GetDimension(exodus, "num_dim", &exodus->dim));
   PetscCall(GetDimension(exodus, "num_nodes", &exodus->file->n_nodes));
   PetscCall(GetDimension(exodus, "num_el_blk", &exodus->n_blocks));
-  PetscCheck(exodus->dim >= 1 && exodus->dim <= 3 && exodus->file->n_nodes && exodus->n_blocks, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it is no Exodus II file with a mesh: num_dim is %" PetscInt_FMT ", num_nodes %" PetscInt_FMT ", num_el_blk %" PetscInt_FMT, exodus->dim, exodus->file->n_nodes, exodus->n_blocks);
+  PetscCheck(exodus->dim >= 1 && exodus->dim <= 3 && exodus->file->n_nodes && exodus->n_blocks, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "it is no Exodus II file with a mesh: num_dim is %" PetscInt_FMT ", num_nodes %" PetscInt_FMT ", num_el_blk %" PetscInt_FMT,
+             exodus->dim, exodus->file->n_nodes, exodus->n_blocks);
   PetscCall(ReadNodes(exodus));
   PetscCall(PetscCalloc1(exodus->n_blocks, &exodus->blocks));
   for (PetscInt i = 0; i < exodus->n_blocks; i++) PetscCall(ReadBlock(exodus, i));
   PetscCall(GetDimension(exodus, "num_elem", &n));
-  PetscCheck(n == exodus->n_elements, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "num_elem is %" PetscInt_FMT ", but its blocks have %" PetscInt_FMT " elements", n, exodus->n_elements);
+  PetscCheck(n == exodus->n_elements, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "num_elem is %" PetscInt_FMT ", but its blocks have %" PetscInt_FMT " elements", n, exodus->n_elements);
   PetscCall(GetDimension(exodus, "num_side_sets", &n));
   for (PetscInt i = 0; i < n; i++) PetscCall(ReadSideSet(exodus, i));
   PetscCall(GetDimension(exodus, "num_node_sets", &n));
@@ -378,7 +391,8 @@ PetscErrorCode MeshReadExodus(MeshFile *file)
 
   PetscFunctionBegin;
   PetscCall(MeshCheckNetCDFSize(file->path));
-  NetCDFCall(nc_open(file->path, NC_NOWRITE, &exodus.id), "it cannot be read as the NetCDF file that an Exodus II file is, or is cut short");
+  NetCDFCall(nc_open(file->path, NC_NOWRITE, &exodus.id),
+             "it cannot be read as the NetCDF file that an Exodus II file is, or is cut short");
   error = ReadAll(&exodus);
   (void)nc_close(exodus.id);
   PetscCall(PetscFree(exodus.blocks));

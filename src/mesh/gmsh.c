@@ -16,7 +16,8 @@ static PetscErrorCode ReadFormat(Gmsh *gmsh)
   PetscCall(GmshReadText(gmsh, 1, &type));
   PetscCall(GmshReadText(gmsh, 1, &size));
   gmsh->version = (int)(10 * version + 0.5);
-  PetscCheck(gmsh->version == 22 || gmsh->version == 41, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "version %g of Gmsh's format is not supported: save it as 2.2 or 4.1 (gmsh -format msh41)", version);
+  PetscCheck(gmsh->version == 22 || gmsh->version == 41, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "version %g of Gmsh's format is not supported: save it as 2.2 or 4.1 (gmsh -format msh41)", version);
   GmshCheck(gmsh, type == 0 || type == 1, "file type %" PetscInt64_FMT " is neither 0 (ASCII) nor 1 (binary)", type);
   GmshCheck(gmsh, size == 4 || size == 8, "data size %" PetscInt64_FMT " is neither 4 nor 8", size);
   GmshCheck(gmsh, gmsh->version != 22 || size == 8, "data size %" PetscInt64_FMT " is not 8", size);
@@ -136,7 +137,8 @@ static PetscErrorCode EndSection(Gmsh *gmsh, const char name[], PetscBool known)
   if (known) GmshSkipSpace(gmsh);
   else
     while ((size_t)(gmsh->end - gmsh->at) >= length && (*gmsh->at != '$' || strncmp(gmsh->at, mark, length))) gmsh->at++;
-  GmshCheck(gmsh, (size_t)(gmsh->end - gmsh->at) >= length && !strncmp(gmsh->at, mark, length), "section $%s does not end with %s here: its count is wrong, or the file is cut short", name, mark);
+  GmshCheck(gmsh, (size_t)(gmsh->end - gmsh->at) >= length && !strncmp(gmsh->at, mark, length),
+            "section $%s does not end with %s here: its count is wrong, or the file is cut short", name, mark);
   gmsh->at += length;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -153,7 +155,8 @@ static PetscErrorCode ReadSection(Gmsh *gmsh, const char name[], PetscBool *know
     if (same) break;
   }
   *known = (PetscBool)(section < 5);
-  GmshCheck(gmsh, !*known || !section == !gmsh->version, section ? "the file does not begin with $MeshFormat" : "$MeshFormat is there twice");
+  GmshCheck(gmsh, !*known || !section == !gmsh->version,
+            section ? "the file does not begin with $MeshFormat" : "$MeshFormat is there twice");
   switch (section) {
   case 0:
     PetscCall(ReadFormat(gmsh));

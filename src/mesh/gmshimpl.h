@@ -16,13 +16,13 @@ typedef struct {
 } Gmsh;
 
 /* An error with the place in the file */
-#define GmshCheck(gmsh, condition, ...)                                                             \
-  do {                                                                                              \
-    if (PetscUnlikely(!(condition))) {                                                              \
-      char message_[512], where_[64];                                                               \
-      PetscCall(PetscSNPrintf(message_, sizeof(message_), __VA_ARGS__));                            \
-      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s (%s)", message_, GmshWhere(gmsh, where_)); \
-    }                                                                                               \
+#define GmshCheck(gmsh, condition, ...)                                                                                                    \
+  do {                                                                                                                                     \
+    if (PetscUnlikely(!(condition))) {                                                                                                     \
+      char message_[512], where_[64];                                                                                                      \
+      PetscCall(PetscSNPrintf(message_, sizeof(message_), __VA_ARGS__));                                                                   \
+      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s (%s)", message_, GmshWhere(gmsh, where_));                                        \
+    }                                                                                                                                      \
   } while (0)
 
 PETSC_INTERN const char    *GmshWhere(const Gmsh *, char[64]);

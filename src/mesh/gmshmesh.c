@@ -45,7 +45,9 @@ PetscErrorCode GmshReadNodes41(Gmsh *gmsh)
     PetscCall(GmshReadInts(gmsh, 3, entity));
     PetscCall(GmshReadWords(gmsh, 1, &count));
     GmshCheck(gmsh, entity[0] >= 0 && entity[0] <= 3, "nodes of an entity of dimension %" PetscInt64_FMT, entity[0]);
-    GmshCheck(gmsh, count >= 0 && count <= n - done, "a block has %" PetscInt64_FMT " nodes, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced", count, n - done, n);
+    GmshCheck(gmsh, count >= 0 && count <= n - done,
+              "a block has %" PetscInt64_FMT " nodes, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced", count,
+              n - done, n);
     in_block = (PetscInt)count;
     for (PetscInt i = 0; i < in_block; i++) {
       PetscInt64 number;
@@ -89,10 +91,18 @@ static PetscErrorCode FindShape(Gmsh *gmsh, PetscInt64 type, PetscInt64 element,
     break;
   case 6:
   case 7:
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt64_FMT " is a %s (Gmsh's type %" PetscInt64_FMT "), which is not supported; supported: lines, triangles, quadrilaterals, tetrahedra, hexahedra, one shape in a body", element, type == 6 ? "prism" : "pyramid", type);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+            "element %" PetscInt64_FMT " is a %s (Gmsh's type %" PetscInt64_FMT
+            "), which is not supported; supported: lines, triangles, quadrilaterals, tetrahedra, hexahedra, one shape in a body",
+            element, type == 6 ? "prism" : "pyramid", type);
   default:
-    GmshCheck(gmsh, type > 0 && type <= 140, "element %" PetscInt64_FMT " has type %" PetscInt64_FMT ", which Gmsh does not have", element, type);
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt64_FMT " has Gmsh's type %" PetscInt64_FMT ", which is not supported; supported are first-order elements: lines, triangles, quadrilaterals, tetrahedra, hexahedra (gmsh -order 1)", element, type);
+    GmshCheck(gmsh, type > 0 && type <= 140, "element %" PetscInt64_FMT " has type %" PetscInt64_FMT ", which Gmsh does not have", element,
+              type);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+            "element %" PetscInt64_FMT " has Gmsh's type %" PetscInt64_FMT
+            ", which is not supported; supported are first-order elements: lines, triangles, quadrilaterals, tetrahedra, hexahedra (gmsh "
+            "-order 1)",
+            element, type);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -108,7 +118,8 @@ static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt corners
   for (PetscInt k = 0; k < corners; k++) {
     nodes[k] = -1;
     if (numbers[k] >= 0 && numbers[k] < PETSC_INT_MAX) PetscCall(MeshFileFindNode(gmsh->file, (PetscInt)numbers[k], &nodes[k]));
-    GmshCheck(gmsh, nodes[k] >= 0, "element %" PetscInt_FMT " names node %" PetscInt64_FMT ", which is not in the file", element, numbers[k]);
+    GmshCheck(gmsh, nodes[k] >= 0, "element %" PetscInt_FMT " names node %" PetscInt64_FMT ", which is not in the file", element,
+              numbers[k]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -134,7 +145,9 @@ PetscErrorCode GmshReadElements22(Gmsh *gmsh)
       PetscCall(GmshReadInts(gmsh, 1, header + 2));
     }
     PetscCall(FindShape(gmsh, header[0], gmsh->binary ? done + 1 : number, &shape));
-    GmshCheck(gmsh, count > 0 && count <= n - done, "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced", count, n - done, n);
+    GmshCheck(gmsh, count > 0 && count <= n - done,
+              "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced",
+              count, n - done, n);
     GmshCheck(gmsh, header[2] >= 0 && header[2] < 1000, "an element has %" PetscInt64_FMT " tags", header[2]);
     for (PetscInt i = 0; i < count; i++) {
       const PetscInt corners = DMPolytopeTypeGetNumVertices(shape);
@@ -176,12 +189,17 @@ PetscErrorCode GmshReadElements41(Gmsh *gmsh)
 
     PetscCall(GmshReadInts(gmsh, 3, entity));
     PetscCall(GmshReadWords(gmsh, 1, &count));
-    GmshCheck(gmsh, count >= 0 && count <= n - done, "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced", count, n - done, n);
+    GmshCheck(gmsh, count >= 0 && count <= n - done,
+              "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced",
+              count, n - done, n);
     PetscCall(FindShape(gmsh, entity[2], done + 1, &shape));
     corners = DMPolytopeTypeGetNumVertices(shape);
-    GmshCheck(gmsh, entity[0] == DMPolytopeTypeGetDim(shape), "elements of type %" PetscInt64_FMT " on an entity of dimension %" PetscInt64_FMT, entity[2], entity[0]);
+    GmshCheck(gmsh, entity[0] == DMPolytopeTypeGetDim(shape),
+              "elements of type %" PetscInt64_FMT " on an entity of dimension %" PetscInt64_FMT, entity[2], entity[0]);
     while (e < gmsh->n_entities && (gmsh->entities[e][0] != entity[0] || gmsh->entities[e][1] != entity[1])) e++;
-    GmshCheck(gmsh, e < gmsh->n_entities || !gmsh->entities, "elements of an entity %" PetscInt64_FMT " of dimension %" PetscInt64_FMT ", which is not in $Entities", entity[1], entity[0]);
+    GmshCheck(gmsh, e < gmsh->n_entities || !gmsh->entities,
+              "elements of an entity %" PetscInt64_FMT " of dimension %" PetscInt64_FMT ", which is not in $Entities", entity[1],
+              entity[0]);
     if (gmsh->entities) PetscCall(MeshFileAddRun(gmsh->file, shape, gmsh->entities[e][3], gmsh->groups + gmsh->entities[e][2]));
     else PetscCall(MeshFileAddRun(gmsh->file, shape, 0, NULL));
     for (PetscInt i = 0; i < count; i++) {

@@ -26,7 +26,8 @@ PetscErrorCode GmshReadText(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
 
     GmshSkipSpace(gmsh); /* to the place that messages tell */
     values[i] = strtoll(gmsh->at, &after, 10);
-    GmshCheck(gmsh, after != gmsh->at, gmsh->at == gmsh->end ? "the file ends within its data: it is cut short" : "a whole number is expected");
+    GmshCheck(gmsh, after != gmsh->at,
+              gmsh->at == gmsh->end ? "the file ends within its data: it is cut short" : "a whole number is expected");
     gmsh->at = after;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -94,7 +95,9 @@ PetscErrorCode GmshReadReals(Gmsh *gmsh, PetscInt n, double values[])
 PetscErrorCode GmshCheckCount(Gmsh *gmsh, const char what[], PetscInt64 count, PetscInt64 bytes, PetscInt *n)
 {
   PetscFunctionBegin;
-  GmshCheck(gmsh, count >= 0 && count <= (gmsh->end - gmsh->at) / bytes, "%" PetscInt64_FMT " %s cannot be in the rest of the file, which has %ld bytes: a wrong number, or the file is cut short", count, what, (long)(gmsh->end - gmsh->at));
+  GmshCheck(gmsh, count >= 0 && count <= (gmsh->end - gmsh->at) / bytes,
+            "%" PetscInt64_FMT " %s cannot be in the rest of the file, which has %ld bytes: a wrong number, or the file is cut short",
+            count, what, (long)(gmsh->end - gmsh->at));
   GmshCheck(gmsh, count < PETSC_INT_MAX / 8, "%" PetscInt64_FMT " %s are too many", count, what);
   *n = (PetscInt)count;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -83,11 +83,14 @@ static PetscErrorCode RefuseSurface(DM dm, const char name[], const char what[])
     PetscCall(PetscStrlcat(box, sides[i], sizeof(box)));
   }
   PetscCall(PetscObjectGetName((PetscObject)dm, &body));
-  SETERRQ(PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT, "Body '%s' has no surface '%s'%s; its mesh has these, by name or number: %s; sides of its bounding box: %s", body, name ? name : "", what, list[0] ? list : "none", box);
+  SETERRQ(PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,
+          "Body '%s' has no surface '%s'%s; its mesh has these, by name or number: %s; sides of its bounding box: %s", body,
+          name ? name : "", what, list[0] ? list : "none", box);
 }
 
 /* Where a face is a point, its closure is itself */
-static PetscErrorCode OnSide(DM dm, const Selection *selection, PetscInt face, PetscInt vstart, PetscInt vend, PetscSection section, const PetscScalar x[], PetscBool *on)
+static PetscErrorCode OnSide(DM dm, const Selection *selection, PetscInt face, PetscInt vstart, PetscInt vend, PetscSection section,
+                             const PetscScalar x[], PetscBool *on)
 {
   PetscInt *closure = NULL, n;
 
@@ -241,7 +244,8 @@ static PetscErrorCode ShareMarks(DM dm, PetscInt marks[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MarkVerticesOfFaces(DM dm, PetscInt n, const PetscInt faces[], PetscInt start, PetscInt vstart, PetscInt vend, PetscInt marks[])
+static PetscErrorCode MarkVerticesOfFaces(DM dm, PetscInt n, const PetscInt faces[], PetscInt start, PetscInt vstart, PetscInt vend,
+                                          PetscInt marks[])
 {
   PetscFunctionBegin;
   for (PetscInt f = 0; f < n; f++) {

@@ -35,8 +35,10 @@ static PetscErrorCode ReadFile(void *ctx)
 
   PetscFunctionBegin;
   PetscCheck(!stat(reading->file->path, &about), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "there is no such file");
-  PetscCheck(S_ISREG(about.st_mode), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "it is no file%s", S_ISDIR(about.st_mode) ? ", but a directory" : "");
-  PetscCheck(reading->read, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "its format is not known from its name; known: .msh (Gmsh), .g, .e, .exo, .ex2 (Exodus II)");
+  PetscCheck(S_ISREG(about.st_mode), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "it is no file%s",
+             S_ISDIR(about.st_mode) ? ", but a directory" : "");
+  PetscCheck(reading->read, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "its format is not known from its name; known: .msh (Gmsh), .g, .e, .exo, .ex2 (Exodus II)");
   PetscCall((*reading->read)(reading->file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,7 +72,8 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);
   PetscCall(DMGetDimension(*dm, &dim));
-  PetscCheck(!set || dim == asked, comm, PETSC_ERR_USER_INPUT, "%s: its elements have dimension %" PetscInt_FMT "; -%sdm_plex_dim asks for %" PetscInt_FMT, where, dim, prefix, asked);
+  PetscCheck(!set || dim == asked, comm, PETSC_ERR_USER_INPUT,
+             "%s: its elements have dimension %" PetscInt_FMT "; -%sdm_plex_dim asks for %" PetscInt_FMT, where, dim, prefix, asked);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,7 +90,9 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
   PetscCall(DMPlexGetHeightStratum(dm, 0, &cstart, &cend));
   n = cend - cstart;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT64, MPI_SUM, comm));
-  PetscCheck(n >= size, comm, PETSC_ERR_USER_INPUT, "Body '%s' has %" PetscInt64_FMT " element%s for %d ranks: run it on fewer, or with a finer mesh", name, n, n == 1 ? "" : "s", size);
+  PetscCheck(n >= size, comm, PETSC_ERR_USER_INPUT,
+             "Body '%s' has %" PetscInt64_FMT " element%s for %d ranks: run it on fewer, or with a finer mesh", name, n, n == 1 ? "" : "s",
+             size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,12 +117,12 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
 . -<body>_dm_plex_simplex (true|false)                          - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
 . -<body>_dm_plex_shape ball                                    - a disc or a ball instead, in blocks around a central one
 . -<body>_ball_radius r, _ball_centre x,y,z                     - where it is [m], default 1 and the origin
-. -<body>_ball_divisions n, _ball_layers m                      - elements along an edge of the central block, default 4, and around it, default n/2
-. -<body>_ball_grading g, _ball_pole x,y,z                      - largest by smallest size of elements, default 1, and the direction where they are small, default down the last axis
-. -<body>_ball_part (full|half|quarter)                         - all, x >= centre, or also y >= centre (in 3-D)
-. -<body>_scale s                                               - factor for all coordinates, 0.001 for a file in millimetres
-. -<body>_rotate ax,ay,az,degrees, in two dimensions degrees    - turns it about an axis through the origin
-. -<body>_rotate_centre x,y,z                                   - through another point [m], after scaling
+. -<body>_ball_divisions n, _ball_layers m                      - elements along an edge of the central block, default 4, and around it,
+default n/2 . -<body>_ball_grading g, _ball_pole x,y,z                      - largest by smallest size of elements, default 1, and the
+direction where they are small, default down the last axis . -<body>_ball_part (full|half|quarter)                         - all, x >=
+centre, or also y >= centre (in 3-D) . -<body>_scale s                                               - factor for all coordinates, 0.001 for
+a file in millimetres . -<body>_rotate ax,ay,az,degrees, in two dimensions degrees    - turns it about an axis through the origin .
+-<body>_rotate_centre x,y,z                                   - through another point [m], after scaling
 - -<body>_translate x,y,z                                       - shifts it [m], last
 
   Level: developer
@@ -145,7 +150,8 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   *dm = NULL;
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_filename", path, sizeof(path), &from_file));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_blocks", &blocks));
-  PetscCheck(from_file || !blocks, comm, PETSC_ERR_USER_INPUT, "-%smesh_blocks needs a mesh file: give -%sdm_plex_filename", prefix, prefix);
+  PetscCheck(from_file || !blocks, comm, PETSC_ERR_USER_INPUT, "-%smesh_blocks needs a mesh file: give -%sdm_plex_filename", prefix,
+             prefix);
   if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
   if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm));
   else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm));

@@ -37,7 +37,8 @@ static PetscErrorCode Reserve(void *array, size_t size, PetscInt n, PetscInt *ma
 {
   PetscFunctionBegin;
   if (n <= *max) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(n < PETSC_INT_MAX / 2, PETSC_COMM_SELF, PETSC_ERR_SUP, "More than %" PetscInt_FMT " entries of one kind are not supported", PETSC_INT_MAX / 2);
+  PetscCheck(n < PETSC_INT_MAX / 2, PETSC_COMM_SELF, PETSC_ERR_SUP, "More than %" PetscInt_FMT " entries of one kind are not supported",
+             PETSC_INT_MAX / 2);
   *max = PetscMax(16, n + n / 2);
   PetscCall(PetscRealloc((size_t)*max * size, (void **)array));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,7 +118,9 @@ PetscErrorCode MeshFileNumberNodes(MeshFile *file)
   PetscCall(PetscArraycpy(file->sorted_numbers, file->node_numbers, file->n_nodes));
   for (PetscInt i = 0; i < file->n_nodes; i++) file->sorted_nodes[i] = i;
   PetscCall(PetscSortIntWithArray(file->n_nodes, file->sorted_numbers, file->sorted_nodes));
-  for (PetscInt i = 1; i < file->n_nodes; i++) PetscCheck(file->sorted_numbers[i] != file->sorted_numbers[i - 1], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "node %" PetscInt_FMT " is there twice", file->sorted_numbers[i]);
+  for (PetscInt i = 1; i < file->n_nodes; i++)
+    PetscCheck(file->sorted_numbers[i] != file->sorted_numbers[i - 1], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "node %" PetscInt_FMT " is there twice", file->sorted_numbers[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

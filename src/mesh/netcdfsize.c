@@ -123,7 +123,8 @@ PetscErrorCode MeshCheckNetCDFSize(const char path[])
   header.size   = (long)about.st_size;
   header.stream = fopen(path, "rb");
   PetscCheck(header.stream, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "it cannot be opened");
-  if (fread(magic, 1, 4, header.stream) == 4 && magic[0] == 'C' && magic[1] == 'D' && magic[2] == 'F') classic = (PetscBool)(magic[3] == 1 || magic[3] == 2 || magic[3] == 5);
+  if (fread(magic, 1, 4, header.stream) == 4 && magic[0] == 'C' && magic[1] == 'D' && magic[2] == 'F')
+    classic = (PetscBool)(magic[3] == 1 || magic[3] == 2 || magic[3] == 5);
   if (classic) {
     PetscInt64 records;
 
@@ -136,6 +137,7 @@ PetscErrorCode MeshCheckNetCDFSize(const char path[])
   (void)fclose(header.stream);
   PetscCall(error);
   PetscCheck(!header.cut, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "its header is damaged or cut short");
-  PetscCheck(end <= (double)header.size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it is cut short: it has %ld bytes, and its data end at byte %.0f", header.size, end);
+  PetscCheck(end <= (double)header.size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "it is cut short: it has %ld bytes, and its data end at byte %.0f", header.size, end);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,14 +6,18 @@ typedef struct {
 } Motion;
 
 /* As many numbers as expected, up to four; `values` has room for four */
-PetscErrorCode MeshReadNumbers(MPI_Comm comm, const char prefix[], const char option[], PetscInt expected, const char meaning[], PetscReal values[], PetscBool *set)
+PetscErrorCode MeshReadNumbers(MPI_Comm comm, const char prefix[], const char option[], PetscInt expected, const char meaning[],
+                               PetscReal values[], PetscBool *set)
 {
   PetscInt n = 4;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetRealArray(NULL, prefix, option, values, &n, set));
-  PetscCheck(!*set || n == expected, comm, PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " numbers, where %" PetscInt_FMT " are expected: %s", prefix, option + 1, n, expected, meaning);
-  for (PetscInt i = 0; *set && i < n; i++) PetscCheck(!PetscIsInfOrNanReal(values[i]), comm, PETSC_ERR_USER_INPUT, "-%s%s: %g is no finite number", prefix, option + 1, (double)values[i]);
+  PetscCheck(!*set || n == expected, comm, PETSC_ERR_USER_INPUT,
+             "-%s%s has %" PetscInt_FMT " numbers, where %" PetscInt_FMT " are expected: %s", prefix, option + 1, n, expected, meaning);
+  for (PetscInt i = 0; *set && i < n; i++)
+    PetscCheck(!PetscIsInfOrNanReal(values[i]), comm, PETSC_ERR_USER_INPUT, "-%s%s: %g is no finite number", prefix, option + 1,
+               (double)values[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,7 +47,8 @@ static PetscErrorCode ReadMotion(MPI_Comm comm, const char prefix[], const char 
   if (rotate) {
     if (dim == 3)
       for (PetscInt d = 0; d < 3; d++) axis[d] = values[d];
-    PetscCheck(axis[0] != 0 || axis[1] != 0 || axis[2] != 0, comm, PETSC_ERR_USER_INPUT, "-%srotate: the axis is (0, 0, 0), which has no direction", prefix);
+    PetscCheck(axis[0] != 0 || axis[1] != 0 || axis[2] != 0, comm, PETSC_ERR_USER_INPUT,
+               "-%srotate: the axis is (0, 0, 0), which has no direction", prefix);
     Rotation(axis, values[dim == 3 ? 3 : 0], motion->rotation);
   }
   PetscCall(MeshReadNumbers(comm, prefix, "-rotate_centre", dim, "a point [m]", motion->centre, &centre));

@@ -12,8 +12,7 @@ static PetscErrorCode DecideGroups(MeshFile *file)
     MeshGroup *group = &file->groups[g];
 
     if (group->kind != MESH_UNDECIDED) continue;
-    group->kind = group->dim == file->dim ? MESH_BLOCK : group->dim == file->dim - 1 ? MESH_SIDE_SET
-                                                                                     : MESH_NODE_SET;
+    group->kind = group->dim == file->dim ? MESH_BLOCK : group->dim == file->dim - 1 ? MESH_SIDE_SET : MESH_NODE_SET;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,7 +28,8 @@ static PetscErrorCode CheckWanted(const MeshFile *file)
     char             text[MESH_NAME_LENGTH + 32];
 
     if (group->kind != MESH_BLOCK) continue;
-    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%s%s%" PetscInt_FMT "%s", list[0] ? ", " : "", group->name, group->name[0] ? " (" : "", group->number, group->name[0] ? ")" : ""));
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%s%s%" PetscInt_FMT "%s", list[0] ? ", " : "", group->name, group->name[0] ? " (" : "",
+                            group->number, group->name[0] ? ")" : ""));
     PetscCall(PetscStrlcat(list, text, sizeof(list)));
   }
   for (PetscInt i = 0; i < file->n_wanted; i++) {
@@ -43,7 +43,8 @@ static PetscErrorCode CheckWanted(const MeshFile *file)
       PetscCall(PetscSNPrintf(number, sizeof(number), "%" PetscInt_FMT, file->groups[g].number));
       if (!found) PetscCall(PetscStrcmp(file->wanted[i], number, &found));
     }
-    PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it has no block '%s', which -mesh_blocks names; it has: %s", file->wanted[i], list[0] ? list : "none");
+    PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it has no block '%s', which -mesh_blocks names; it has: %s", file->wanted[i],
+               list[0] ? list : "none");
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -66,7 +67,10 @@ static PetscErrorCode CollectCells(MeshFile *file)
     }
     if (!run->chosen) continue;
     if (!first) first = run;
-    PetscCheck(run->shape == first->shape, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it mixes shapes: element %" PetscInt_FMT " is a %s, element %" PetscInt_FMT " a %s; a body must have elements of one shape (-mesh_blocks chooses blocks of a file)", file->numbers[first->first], DMPolytopeTypes[first->shape], file->numbers[run->first], DMPolytopeTypes[run->shape]);
+    PetscCheck(run->shape == first->shape, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "it mixes shapes: element %" PetscInt_FMT " is a %s, element %" PetscInt_FMT
+               " a %s; a body must have elements of one shape (-mesh_blocks chooses blocks of a file)",
+               file->numbers[first->first], DMPolytopeTypes[first->shape], file->numbers[run->first], DMPolytopeTypes[run->shape]);
     file->n_cells += run->n;
   }
   PetscCheck(first, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "the blocks that -mesh_blocks names have no elements");
@@ -101,7 +105,9 @@ static PetscErrorCode CollectVertices(MeshFile *file)
     const PetscReal *x = file->coordinates + 3 * node;
 
     if (file->vertex_of_node[node] < 0) continue;
-    for (PetscInt d = 0; d < 3; d++) PetscCheck(!PetscIsInfOrNanReal(x[d]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "node %" PetscInt_FMT " has a coordinate that is no number", file->node_numbers ? file->node_numbers[node] : node + 1);
+    for (PetscInt d = 0; d < 3; d++)
+      PetscCheck(!PetscIsInfOrNanReal(x[d]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+                 "node %" PetscInt_FMT " has a coordinate that is no number", file->node_numbers ? file->node_numbers[node] : node + 1);
     for (PetscInt d = 0; d < dim; d++) {
       file->vertices[file->vertex_of_node[node] * dim + d] = x[d];
       size                                                 = PetscMax(size, PetscAbsReal(x[d]));
@@ -111,7 +117,11 @@ static PetscErrorCode CollectVertices(MeshFile *file)
     for (PetscInt d = dim; d < 3; d++) {
       if (file->vertex_of_node[node] < 0) continue;
       /* files may carry the round-off of the program that drew the plane */
-      PetscCheck(PetscAbsReal(file->coordinates[3 * node + d]) <= 1e-12 * size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "its elements have dimension %" PetscInt_FMT " (%s), but node %" PetscInt_FMT " has %c = %g: a body of dimension %" PetscInt_FMT " must lie in %s", dim, DMPolytopeTypes[file->shape], file->node_numbers ? file->node_numbers[node] : node + 1, (char)('x' + d), (double)file->coordinates[3 * node + d], dim, dim == 1 ? "y = z = 0" : "z = 0");
+      PetscCheck(PetscAbsReal(file->coordinates[3 * node + d]) <= 1e-12 * size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+                 "its elements have dimension %" PetscInt_FMT " (%s), but node %" PetscInt_FMT
+                 " has %c = %g: a body of dimension %" PetscInt_FMT " must lie in %s",
+                 dim, DMPolytopeTypes[file->shape], file->node_numbers ? file->node_numbers[node] : node + 1, (char)('x' + d),
+                 (double)file->coordinates[3 * node + d], dim, dim == 1 ? "y = z = 0" : "z = 0");
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,7 +130,8 @@ static PetscReal Determinant(PetscInt dim, PetscReal J[3][3])
 {
   if (dim == 1) return J[0][0];
   if (dim == 2) return J[0][0] * J[1][1] - J[0][1] * J[1][0];
-  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) + J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
+  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
+         J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
 }
 
 /* Jacobian of a simplex: its edges from the first corner */
@@ -182,7 +193,11 @@ static PetscErrorCode CheckCells(const MeshFile *file)
     PetscReal        smallest, volume;
 
     for (PetscInt k = 0; k < file->corners; k++) {
-      for (PetscInt l = 0; l < k; l++) PetscCheck(cell[k] != cell[l], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "element %" PetscInt_FMT " (%s) has the same node at its corners %" PetscInt_FMT " and %" PetscInt_FMT ": collapsed elements are not supported", file->cell_numbers[c], DMPolytopeTypes[file->shape], l + 1, k + 1);
+      for (PetscInt l = 0; l < k; l++)
+        PetscCheck(cell[k] != cell[l], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+                   "element %" PetscInt_FMT " (%s) has the same node at its corners %" PetscInt_FMT " and %" PetscInt_FMT
+                   ": collapsed elements are not supported",
+                   file->cell_numbers[c], DMPolytopeTypes[file->shape], l + 1, k + 1);
       x[k] = file->vertices + cell[k] * dim;
     }
     smallest = simplex ? SimplexJacobian(dim, x) : TensorJacobian(dim, x, &volume);
@@ -196,12 +211,22 @@ static PetscErrorCode CheckCells(const MeshFile *file)
     }
   }
   if (!inverted) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(where, sizeof(where), dim == 1 ? "(%g)" : dim == 2 ? "(%g, %g)"
-                                                                             : "(%g, %g, %g)",
+  PetscCall(PetscSNPrintf(where, sizeof(where),
+                          dim == 1   ? "(%g)"
+                          : dim == 2 ? "(%g, %g)"
+                                     : "(%g, %g, %g)",
                           (double)center[0], (double)center[1], (double)center[2]));
   if (inverted == file->n_cells && volume_of_first < 0)
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "all %" PetscInt_FMT " elements are inverted (left-handed), as in a mirror image: turn the order of their nodes; the first is element %" PetscInt_FMT " at %s with %s %g", inverted, file->cell_numbers[first], where, measures[dim - 1], (double)volume_of_first);
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%" PetscInt_FMT " of %" PetscInt_FMT " elements %s inverted or have a Jacobian that is not positive; the first is element %" PetscInt_FMT " at %s with %s %g", inverted, file->n_cells, inverted == 1 ? "is" : "are", file->cell_numbers[first], where, measures[dim - 1], (double)volume_of_first);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+            "all %" PetscInt_FMT
+            " elements are inverted (left-handed), as in a mirror image: turn the order of their nodes; the first is element %" PetscInt_FMT
+            " at %s with %s %g",
+            inverted, file->cell_numbers[first], where, measures[dim - 1], (double)volume_of_first);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+          "%" PetscInt_FMT " of %" PetscInt_FMT
+          " elements %s inverted or have a Jacobian that is not positive; the first is element %" PetscInt_FMT " at %s with %s %g",
+          inverted, file->n_cells, inverted == 1 ? "is" : "are", file->cell_numbers[first], where, measures[dim - 1],
+          (double)volume_of_first);
 }
 
 /* From what the reader put into a file to the body's cells and vertices */

@@ -5,27 +5,28 @@
      z = A^{-1} b,   W_mm s = B_m z,   x = z - A^{-1} B_m^T s.
 
    A row on a spring, rather than held, gives (A + B_m^T k B_m) x = b: the same with the flexibility 1 / k added to its entry on the
-   diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C = A^{-1} B^T are made once each, when
-   their row is constrained for the first time; with more constrained rows than would fit, the constraint forces are found by conjugate
-   gradients, which need W only as a product.
+   diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C = A^{-1} B^T are
+   made once each, when their row is constrained for the first time; with more constrained rows than would fit, the constraint forces are
+   found by conjugate gradients, which need W only as a product.
 */
 #include "constrainedsolver.h"
 #include <petscblaslapack.h>
 #include <sys/petsccompat.h>
 
 struct _n_ConstrainedSolver {
-  KSP           ksp;
-  PC            direct; /* the preconditioner where it is the whole solver, else NULL */
-  Mat           B;
-  PetscInt      local, global, begin; /* rows of B */
-  PetscMPIInt   size, *counts, *offsets;
-  PetscReal    *mine, *constrained; /* flexibility of a row, 0 where it is held, less than 0 where it is free: this rank's rows, and all rows */
-  PetscInt      n, n_most;          /* how many of them; for how many there is room */
-  PetscInt     *rows;               /* which */
-  PetscBool    *stale;              /* per row: its column was made with an earlier A or B */
-  Vec          *columns;            /* per row: A^{-1} B^T e, or NULL until needed */
-  PetscScalar **compliance;         /* per row: B times its column, this rank's rows */
-  PetscScalar  *factor;             /* n x n, LU of the constrained part */
+  KSP         ksp;
+  PC          direct; /* the preconditioner where it is the whole solver, else NULL */
+  Mat         B;
+  PetscInt    local, global, begin; /* rows of B */
+  PetscMPIInt size, *counts, *offsets;
+  PetscReal  *mine,
+      *constrained;         /* flexibility of a row, 0 where it is held, less than 0 where it is free: this rank's rows, and all rows */
+  PetscInt      n, n_most;  /* how many of them; for how many there is room */
+  PetscInt     *rows;       /* which */
+  PetscBool    *stale;      /* per row: its column was made with an earlier A or B */
+  Vec          *columns;    /* per row: A^{-1} B^T e, or NULL until needed */
+  PetscScalar **compliance; /* per row: B times its column, this rank's rows */
+  PetscScalar  *factor;     /* n x n, LU of the constrained part */
   PetscBLASInt *pivots;
   PetscScalar  *gathered, *force;
   Vec          *active_columns; /* those of the constrained rows */
@@ -38,7 +39,8 @@ struct _n_ConstrainedSolver {
 
 /* Bodies up to this size are factored whole on every rank; larger ones by MUMPS */
 #define MAX_REDUNDANT_SIZE 5000
-/* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension. In more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
+/* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension. In
+   more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
 static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
 /* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
 #define MAX_DIRECT_SIZE_3D 150000
@@ -127,7 +129,8 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
     PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
     for (PetscMPIInt r = 0; r < size; total += s->counts[r++]) s->offsets[r] = total;
   }
-  PetscCall(PetscCalloc6(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->stale, s->global, &s->compliance));
+  PetscCall(PetscCalloc6(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->stale,
+                         s->global, &s->compliance));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
   *solver = s;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -193,7 +196,8 @@ PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscB
   s->B = B;
   PetscCall(PetscMalloc2(s->global, &all, s->local, &mine));
   for (PetscInt i = 0; i < s->local; i++) mine[i] = !changed || changed[i];
-  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)s->local, MPI_INT, all, s->counts, s->offsets, MPI_INT, PetscObjectComm((PetscObject)s->ksp)));
+  PetscCallMPI(
+      MPI_Allgatherv(mine, (PetscMPIInt)s->local, MPI_INT, all, s->counts, s->offsets, MPI_INT, PetscObjectComm((PetscObject)s->ksp)));
   for (PetscInt j = 0; j < s->global; j++) {
     if (all[j]) s->stale[j] = PETSC_TRUE;
     else if (s->columns[j] && !s->stale[j]) {
@@ -300,7 +304,8 @@ static PetscErrorCode MakeRoom(ConstrainedSolver s, PetscInt n)
   if (n <= s->n_most) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree5(s->factor, s->pivots, s->gathered, s->force, s->active_columns));
   s->n_most = PetscMin(s->global, PetscMax(n, 2 * s->n_most));
-  PetscCall(PetscMalloc5(s->n_most * s->n_most, &s->factor, s->n_most, &s->pivots, s->n_most, &s->gathered, s->n_most, &s->force, s->n_most, &s->active_columns));
+  PetscCall(PetscMalloc5(s->n_most * s->n_most, &s->factor, s->n_most, &s->pivots, s->n_most, &s->gathered, s->n_most, &s->force, s->n_most,
+                         &s->active_columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -335,12 +340,17 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
     for (PetscInt l = 0; l < s->n; l++) {
       const PetscInt local = s->rows[l] - s->begin;
 
-      if (local >= 0 && local < s->local) s->factor[k * s->n + l] = s->compliance[s->rows[k]][local] + (k == l ? s->constrained[s->rows[k]] : 0);
+      if (local >= 0 && local < s->local)
+        s->factor[k * s->n + l] = s->compliance[s->rows[k]][local] + (k == l ? s->constrained[s->rows[k]] : 0);
     }
-  if (s->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->factor, (PetscMPIInt)(s->n * s->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
+  if (s->size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, s->factor, (PetscMPIInt)(s->n * s->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
   PetscCall(PetscBLASIntCast(s->n, &n));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, s->factor, &n, s->pivots, &info));
-  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "The prescribed contact rows of a body are not independent (LAPACK getrf info %d); is a node in two contact pairs?", (int)info);
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
+             "The prescribed contact rows of a body are not independent (LAPACK getrf info %d); is a node in two contact pairs?",
+             (int)info);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -349,7 +359,8 @@ PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscB
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
-  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL, PetscObjectComm((PetscObject)s->ksp)));
+  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL,
+                              PetscObjectComm((PetscObject)s->ksp)));
   PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -396,7 +407,8 @@ static PetscErrorCode GatherRows(ConstrainedSolver s, Vec x)
     s->gathered[k] = local >= 0 && local < s->local ? row[local] : 0;
   }
   PetscCall(VecRestoreArrayRead(s->row, &row));
-  if (s->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->gathered, (PetscMPIInt)s->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
+  if (s->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->gathered, (PetscMPIInt)s->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,17 +9,21 @@ typedef struct {
 
 static const KnownOption global_options[] = {
     {"bodies", "a,b", "names of the bodies; options of body a begin with -a_"},
-    {"contact_pairs", "a:b,b:c|auto|none", "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; auto: all with all"},
+    {"contact_pairs", "a:b,b:c|auto|none",
+     "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; "
+     "auto: all with all"},
     {"obstacles", "o,p", "names of rigid obstacles; options of obstacle o begin with -o_"},
     {"contact_law", "frictionless|tied", "what surfaces do to each other, default frictionless"},
-    {"contact_facing", "true|false", "pairs of whole bodies keep only the faces that see each other at the start, default true; false where bodies roll or turn"},
+    {"contact_facing", "true|false",
+     "pairs of whole bodies keep only the faces that see each other at the start, default true; false where bodies roll or turn"},
     {"contact_slip_bound", "s", "slip after which contact rows are built again, in parts of a face, default 0.2"},
     {"contact_angle_bound", "a", "turn of a normal after which they are [rad], default 0.1"},
     {"contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method"},
     {"contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},
     {"contact_stabilization", "none|naive|contact_stabilized", "against chatter of contact nodes with mass, default none"},
     {"contact_penalty", "tau", "penalty parameter [N/m^3; N/m in 1-D], default from material and element size"},
-    {"contact_penalty_scale", "s", "of that default, relative to an element of each side in series; default 10 with massless contact nodes, else 1"},
+    {"contact_penalty_scale", "s",
+     "of that default, relative to an element of each side in series; default 10 with massless contact nodes, else 1"},
     {"contact_penalty_damping", "c", "damping of the gap rate with penalty [N s/m^3; N s/m in 1-D]"},
     {"contact_augmentation_tolerance", "g", "gap that the augmented Lagrangian leaves [m], default 1e-10"},
     {"contact_augmentation_max_it", "n", "limit of its rounds in a step, default 200"},
@@ -40,7 +44,8 @@ static const KnownOption global_options[] = {
     {"schwarz_robin_parameter", "alpha", "stiffness of Robin conditions [N/m in 1-D], default E A / h of the Neumann side"},
     {"schwarz_predictor", "last|trial|extrapolate|inelastic", "where the first sweep of a step starts from, default inelastic"},
     {"schwarz_convergence", "auto|position|contact_position|mismatch", "what change of position is tested, default auto"},
-    {"schwarz_condense", "0|1|auto", "whether sweeps run on the interface compliance of linear bodies, default auto: in two and three dimensions"},
+    {"schwarz_condense", "0|1|auto",
+     "whether sweeps run on the interface compliance of linear bodies, default auto: in two and three dimensions"},
     {"schwarz_dense_limit", "n", "interface unknowns up to which its matrices are dense, conjugate gradients beyond, default 2000"},
     {"schwarz_recheck", "true|false", "let tensile nodes leave contact within the step, default true"},
     {"schwarz_unconverged", "error|accept", "what to do with a step that does not converge, default error"},
@@ -119,7 +124,34 @@ static const KnownOption body_options[] = {
 };
 
 /* These are read by PETSc when it solves or finalises, so they are unread before the run */
-static const char *const late_options[] = {"schwarz_snes_view", "schwarz_snes_view_pre", "schwarz_snes_view_solution", "penalty_snes_view", "penalty_snes_view_pre", "penalty_snes_view_solution", "lagrange_snes_view", "lagrange_snes_view_pre", "lagrange_snes_view_solution", "options_left", "options_view", "malloc_dump", "malloc_view", "malloc_debug", "objects_dump", "memory_view", "log_view", "log_trace", "log_view_memory", "log_view_gpu_time", "log_nested", "get_total_flops", "mpidump", "citations", "petsc_mpi", "x_virtual", "on_error_abort", "on_error_mpiabort"};
+static const char *const late_options[] = {"schwarz_snes_view",
+                                           "schwarz_snes_view_pre",
+                                           "schwarz_snes_view_solution",
+                                           "penalty_snes_view",
+                                           "penalty_snes_view_pre",
+                                           "penalty_snes_view_solution",
+                                           "lagrange_snes_view",
+                                           "lagrange_snes_view_pre",
+                                           "lagrange_snes_view_solution",
+                                           "options_left",
+                                           "options_view",
+                                           "malloc_dump",
+                                           "malloc_view",
+                                           "malloc_debug",
+                                           "objects_dump",
+                                           "memory_view",
+                                           "log_view",
+                                           "log_trace",
+                                           "log_view_memory",
+                                           "log_view_gpu_time",
+                                           "log_nested",
+                                           "get_total_flops",
+                                           "mpidump",
+                                           "citations",
+                                           "petsc_mpi",
+                                           "x_virtual",
+                                           "on_error_abort",
+                                           "on_error_mpiabort"};
 
 /* Levenshtein's distance between two short words */
 static PetscInt EditDistance(const char a[], const char b[])
@@ -144,7 +176,8 @@ static PetscInt EditDistance(const char a[], const char b[])
 }
 
 /* The options of one table, each behind a prefix, if one is nearer than what there is */
-static PetscErrorCode FindNearestOf(const char name[], const char prefix[], size_t n, const KnownOption options[], PetscInt *best, char nearest[], size_t size)
+static PetscErrorCode FindNearestOf(const char name[], const char prefix[], size_t n, const KnownOption options[], PetscInt *best,
+                                    char nearest[], size_t size)
 {
   PetscFunctionBegin;
   for (size_t i = 0; i < n; i++) {
@@ -168,7 +201,8 @@ static PetscErrorCode FindNearest(const char name[], PetscInt n_bodies, const ch
   PetscFunctionBegin;
   nearest[0] = 0;
   PetscCall(FindNearestOf(name, "", PETSC_STATIC_ARRAY_LENGTH(global_options), global_options, &best, nearest, size));
-  for (PetscInt b = 0; b < n_bodies; b++) PetscCall(FindNearestOf(name, bodies[b], PETSC_STATIC_ARRAY_LENGTH(body_options), body_options, &best, nearest, size));
+  for (PetscInt b = 0; b < n_bodies; b++)
+    PetscCall(FindNearestOf(name, bodies[b], PETSC_STATIC_ARRAY_LENGTH(body_options), body_options, &best, nearest, size));
   PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-obstacles", obstacles, &n, NULL));
   for (PetscInt o = 0; o < n; o++) {
     PetscCall(FindNearestOf(name, obstacles[o], PETSC_STATIC_ARRAY_LENGTH(obstacle_options), obstacle_options, &best, nearest, size));
@@ -205,25 +239,29 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
     PetscBool late = PETSC_FALSE, known;
     char      nearest[128], reason[256], line[512];
 
-    for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++) PetscCall(PetscStrcmp(names[i], late_options[k], &late));
+    for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++)
+      PetscCall(PetscStrcmp(names[i], late_options[k], &late));
     if (late) continue;
     PetscCall(FindNearest(names[i], n, bodies, nearest, sizeof(nearest)));
     PetscCall(PetscStrcmp(names[i], nearest, &known));
     if (known) PetscCall(PetscSNPrintf(reason, sizeof(reason), "it goes with another method or type than the one chosen"));
     else PetscCall(PetscSNPrintf(reason, sizeof(reason), "the nearest known one is -%s", nearest));
-    PetscCall(PetscSNPrintf(line, sizeof(line), "%s-%s%s%s (%s)", unread ? ", " : "", names[i], values[i] ? " " : "", values[i] ? values[i] : "", reason));
+    PetscCall(PetscSNPrintf(line, sizeof(line), "%s-%s%s%s (%s)", unread ? ", " : "", names[i], values[i] ? " " : "",
+                            values[i] ? values[i] : "", reason));
     PetscCall(PetscStrlcat(message, line, sizeof(message)));
     unread++;
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n_left, &names, &values));
-  PetscCheck(!unread, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "Unknown option%s, or without effect here: %s. `impakt -help_options` lists the options", unread == 1 ? "" : "s", message);
+  PetscCheck(!unread, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
+             "Unknown option%s, or without effect here: %s. `impakt -help_options` lists the options", unread == 1 ? "" : "s", message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode PrintTable(const char prefix[], size_t n, const KnownOption options[])
 {
   PetscFunctionBegin;
-  for (size_t i = 0; i < n; i++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s%s %s\n      %s\n", prefix, options[i].name, options[i].value, options[i].text));
+  for (size_t i = 0; i < n; i++)
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s%s %s\n      %s\n", prefix, options[i].name, options[i].value, options[i].text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -43,7 +43,8 @@ static PetscBool IsUsersBusiness(PetscErrorCode code)
 }
 
 /* One line to the user in place of PETSc's stack trace; for what is not the user's fault, with the place in the source too */
-static PetscErrorCode ReportError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *ctx)
+static PetscErrorCode ReportError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
+                                  const char *message, void *ctx)
 {
   PetscMPIInt rank = 0, size = 1, initialized = 0;
 

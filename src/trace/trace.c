@@ -115,7 +115,8 @@ PetscErrorCode TraceZero(Trace trace)
 PetscErrorCode TraceGetLevel(Trace trace, PetscInt level, PetscScalar **values)
 {
   PetscFunctionBegin;
-  PetscAssert(level >= 0 && level <= trace->levels, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "Level %" PetscInt_FMT " of a trace with %" PetscInt_FMT " intervals", level, trace->levels);
+  PetscAssert(level >= 0 && level <= trace->levels, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+              "Level %" PetscInt_FMT " of a trace with %" PetscInt_FMT " intervals", level, trace->levels);
   *values = trace->values + level * trace->size;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -170,7 +171,8 @@ PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, Pet
 PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
 {
   PetscFunctionBegin;
-  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows", from->size, to->size);
+  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows",
+             from->size, to->size);
   for (PetscInt level = 0; level <= to->levels; level++) {
     PetscScalar *values = to->values + level * to->size;
 
@@ -205,7 +207,8 @@ PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScal
 PetscErrorCode TraceResampleHeld(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
 {
   PetscFunctionBegin;
-  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows", from->size, to->size);
+  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows",
+             from->size, to->size);
   for (PetscInt level = 0; level <= to->levels; level++) {
     /* the end of the interval of `from` in which this level lies; a level of both is its own */
     const PetscScalar *source = from->values + ((level * from->levels + to->levels - 1) / to->levels) * from->size;

@@ -61,7 +61,8 @@ static PetscErrorCode TSSetUp_CentralDifference(TS ts)
 
   PetscFunctionBegin;
   PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TS2SetSolution() first");
-  PetscCheck(cd->acceleration, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAcceleration() first");
+  PetscCheck(cd->acceleration, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE,
+             "Call TSCentralDifferenceSetAcceleration() first");
   PetscCheck(cd->A, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAccelerationVec() first");
   PetscCall(TSGetAdapt(ts, &ts->adapt));
   PetscCall(TSAdaptCandidatesClear(ts->adapt));
@@ -177,8 +178,10 @@ static PetscErrorCode TSCreate_CentralDifference(TS ts)
   ts->ops->reset         = TSReset_CentralDifference;
   ts->ops->destroy       = TSDestroy_CentralDifference;
   ts->default_adapt_type = TSADAPTNONE;
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C", TSCentralDifferenceSetAcceleration_CentralDifference));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C", TSCentralDifferenceSetAccelerationVec_CentralDifference));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C",
+                                       TSCentralDifferenceSetAcceleration_CentralDifference));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C",
+                                       TSCentralDifferenceSetAccelerationVec_CentralDifference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -341,10 +341,12 @@ int main(int argc, char **argv)
   for (int n = from; n <= to; n++) mean += force[n] / (to - from + 1);
   for (int n = from; n <= to; n++) variance += (force[n] - mean) * (force[n] - mean) / (to - from + 1);
 
-  printf("{\"mode\": \"%s\", \"recheck\": %d, \"traction\": \"%s\", \"redistribute\": %d, \"cpu\": %.6f, \"steps\": %d, \"substeps\": %ld, ", mode, recheck, constant ? "constant" : "linear", redistribute,
-         (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec), STEPS, substeps);
-  printf("\"sweeps\": %ld, \"max_sweeps\": %d, \"unconverged_steps\": %d, \"mean_all_steps\": %.4f, \"mean_contact_steps\": %.4f, ", sweeps, max_sweeps, unconverged,
-         (double)sweeps / STEPS, contact_steps ? (double)sweeps / contact_steps : 0);
+  printf(
+      "{\"mode\": \"%s\", \"recheck\": %d, \"traction\": \"%s\", \"redistribute\": %d, \"cpu\": %.6f, \"steps\": %d, \"substeps\": %ld, ",
+      mode, recheck, constant ? "constant" : "linear", redistribute,
+      (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec), STEPS, substeps);
+  printf("\"sweeps\": %ld, \"max_sweeps\": %d, \"unconverged_steps\": %d, \"mean_all_steps\": %.4f, \"mean_contact_steps\": %.4f, ", sweeps,
+         max_sweeps, unconverged, (double)sweeps / STEPS, contact_steps ? (double)sweeps / contact_steps : 0);
   printf("\"contact_steps\": %d, \"onsets\": %d, \"release_time\": %.7e, ", contact_steps, onsets, time_start + last * time_step);
   printf("\"energy_error_min\": %.3e, \"energy_error_max\": %.3e, \"energy_error_final\": %.3e, ", energy_min, energy_max, energy_final);
   printf("\"force_mean\": %.6e, \"force_scatter\": %.3e, \"kinetic_error\": %.3e}\n", mean, sqrt(variance) / mean, sqrt(error2 / exact2));

@@ -60,7 +60,8 @@ static void SetConstants(Constants *c)
 }
 
 /* Adds to f the force of the elements of a batch at one Gauss point, whose weight is 1; returns the stored energy there */
-INLINE double AddPoint(const Constants *c, bool neo_hookean, bool with_energy, int g, const double x[24][BATCH], const double u[24][BATCH], double f[24][BATCH], int p)
+INLINE double AddPoint(const Constants *c, bool neo_hookean, bool with_energy, int g, const double x[24][BATCH], const double u[24][BATCH],
+                       double f[24][BATCH], int p)
 {
   const double (*gradient)[3] = c->gradient[g];
   const double lambda = c->lambda, mu = c->mu;
@@ -97,9 +98,12 @@ INLINE double AddPoint(const Constants *c, bool neo_hookean, bool with_energy, i
   const double c10 = x21 * x02 - x22 * x01, c11 = x22 * x00 - x20 * x02, c12 = x20 * x01 - x21 * x00;
   const double c20 = x01 * x12 - x02 * x11, c21 = x02 * x10 - x00 * x12, c22 = x00 * x11 - x01 * x10;
   const double volume = x00 * c00 + x01 * c01 + x02 * c02, r = 1 / volume;
-  const double h00 = r * (u00 * c00 + u01 * c01 + u02 * c02), h01 = r * (u00 * c10 + u01 * c11 + u02 * c12), h02 = r * (u00 * c20 + u01 * c21 + u02 * c22);
-  const double h10 = r * (u10 * c00 + u11 * c01 + u12 * c02), h11 = r * (u10 * c10 + u11 * c11 + u12 * c12), h12 = r * (u10 * c20 + u11 * c21 + u12 * c22);
-  const double h20 = r * (u20 * c00 + u21 * c01 + u22 * c02), h21 = r * (u20 * c10 + u21 * c11 + u22 * c12), h22 = r * (u20 * c20 + u21 * c21 + u22 * c22);
+  const double h00 = r * (u00 * c00 + u01 * c01 + u02 * c02), h01 = r * (u00 * c10 + u01 * c11 + u02 * c12),
+               h02 = r * (u00 * c20 + u01 * c21 + u02 * c22);
+  const double h10 = r * (u10 * c00 + u11 * c01 + u12 * c02), h11 = r * (u10 * c10 + u11 * c11 + u12 * c12),
+               h12 = r * (u10 * c20 + u11 * c21 + u12 * c22);
+  const double h20 = r * (u20 * c00 + u21 * c01 + u22 * c02), h21 = r * (u20 * c10 + u21 * c11 + u22 * c12),
+               h22 = r * (u20 * c20 + u21 * c21 + u22 * c22);
   double       p00, p01, p02, p10, p11, p12, p20, p21, p22;
 
   if (neo_hookean) {
@@ -118,7 +122,9 @@ INLINE double AddPoint(const Constants *c, bool neo_hookean, bool with_energy, i
     p20 = mu * h20 + s * a20;
     p21 = mu * h21 + s * a21;
     p22 = mu * f22 + s * a22;
-    if (with_energy) energy = 0.5 * mu * (f00 * f00 + f11 * f11 + f22 * f22 + h01 * h01 + h02 * h02 + h10 * h10 + h12 * h12 + h20 * h20 + h21 * h21 - 3) + 0.25 * lambda * (J * J - 1) - (mu + 0.5 * lambda) * log(J);
+    if (with_energy)
+      energy = 0.5 * mu * (f00 * f00 + f11 * f11 + f22 * f22 + h01 * h01 + h02 * h02 + h10 * h10 + h12 * h12 + h20 * h20 + h21 * h21 - 3) +
+               0.25 * lambda * (J * J - 1) - (mu + 0.5 * lambda) * log(J);
   } else {
     const double pressure = lambda * (h00 + h11 + h22);
 
@@ -149,7 +155,7 @@ INLINE void AddForces(const Constants *c, const Box *box, bool neo_hookean)
   for (int first = 0; first < box->n_elements; first += BATCH) {
     const int *nodes = box->nodes + 8 * first;
     const int  n     = box->n_elements - first < BATCH ? box->n_elements - first : BATCH;
-    double     x[24][BATCH] __attribute__((aligned(64))), u[24][BATCH] __attribute__((aligned(64))), f[24][BATCH] __attribute__((aligned(64)));
+    double x[24][BATCH] __attribute__((aligned(64))), u[24][BATCH] __attribute__((aligned(64))), f[24][BATCH] __attribute__((aligned(64)));
 
     for (int e = 0; e < BATCH; e++)
       for (int a = 0; a < 8; a++)
@@ -254,7 +260,8 @@ static void SetUpBox(Box *box, int n)
         }
       }
   for (int e = 0; e < box->n_elements + BATCH; e++) {
-    const int element = e < box->n_elements ? e : box->n_elements - 1, i = element % n, j = element / n % n, k = element / n / n, node = (k * m + j) * m + i;
+    const int element = e < box->n_elements ? e : box->n_elements - 1, i = element % n, j = element / n % n, k = element / n / n,
+              node       = (k * m + j) * m + i;
     const int offsets[8] = {0, 1, m + 1, m, m * m, m * m + 1, m * m + m + 1, m * m + m};
 
     for (int a = 0; a < 8; a++) box->nodes[8 * e + a] = node + offsets[a];
@@ -281,7 +288,8 @@ int main(int argc, char **argv)
     if (!strcmp(argv[i], "--scalar")) scalar = true;
     else if (i + 1 < argc && !strcmp(argv[i], "--elements")) n_elements = atoi(argv[++i]);
     else if (i + 1 < argc && !strcmp(argv[i], "--steps")) steps = atoi(argv[++i]);
-    else if (i + 1 < argc && !strcmp(argv[i], "--material") && (!strcmp(argv[i + 1], "linear") || !strcmp(argv[i + 1], "neo_hookean"))) neo_hookean = !strcmp(argv[++i], "neo_hookean");
+    else if (i + 1 < argc && !strcmp(argv[i], "--material") && (!strcmp(argv[i + 1], "linear") || !strcmp(argv[i + 1], "neo_hookean")))
+      neo_hookean = !strcmp(argv[++i], "neo_hookean");
     else return fprintf(stderr, "usage: %s [--elements n] [--steps m] [--material linear|neo_hookean] [--scalar]\n", argv[0]), 1;
   }
   if (n_elements < 1 || steps < 1) return fprintf(stderr, "--elements and --steps must be positive\n"), 1;
@@ -289,7 +297,8 @@ int main(int argc, char **argv)
   SetConstants(&c);
   SetUpBox(&box, n);
   {
-    void (*const add_forces)(const Constants *, const Box *) = scalar ? (neo_hookean ? AddForcesNeoHookeanScalar : AddForcesLinearScalar) : (neo_hookean ? AddForcesNeoHookean : AddForcesLinear);
+    void (*const add_forces)(const Constants *, const Box *) = scalar ? (neo_hookean ? AddForcesNeoHookeanScalar : AddForcesLinearScalar)
+                                                                      : (neo_hookean ? AddForcesNeoHookean : AddForcesLinear);
     /* the fastest wave crosses a fifth of an element in a step; u at t, v half a step later */
     const double dt      = 0.2 / n / sqrt((c.lambda + 2 * c.mu) / density);
     const double initial = KineticEnergy(&box, 0);
@@ -312,7 +321,10 @@ int main(int argc, char **argv)
     memset(box.f, 0, 3 * (size_t)box.n_nodes * sizeof(double));
     add_forces(&c, &box);
     energy = KineticEnergy(&box, dt / 2) + StoredEnergy(&c, &box, neo_hookean);
-    printf("{\"elements\": %d, \"steps\": %d, \"material\": \"%s\", \"scalar\": %s, \"us_per_element_step\": %.5f, \"cpu_us_per_element_step\": %.5f, \"energy_error\": %.3e}\n", box.n_elements, steps, neo_hookean ? "neo_hookean" : "linear", scalar ? "true" : "false", 1e6 * wall / steps / box.n_elements, 1e6 * cpu / steps / box.n_elements, energy / initial - 1);
+    printf("{\"elements\": %d, \"steps\": %d, \"material\": \"%s\", \"scalar\": %s, \"us_per_element_step\": %.5f, "
+           "\"cpu_us_per_element_step\": %.5f, \"energy_error\": %.3e}\n",
+           box.n_elements, steps, neo_hookean ? "neo_hookean" : "linear", scalar ? "true" : "false", 1e6 * wall / steps / box.n_elements,
+           1e6 * cpu / steps / box.n_elements, energy / initial - 1);
   }
   free(box.nodes);
   free(box.x);

@@ -28,7 +28,8 @@ static void model_create(PetscInt n, Model *m)
   m->contact->n_rows = local;
   m->contact->data   = &m->schwarz;
   m->schwarz.recheck = PETSC_TRUE;
-  ok(PetscCalloc5(local, &m->contact->active, local, &m->contact->tied, local, &m->contact->force, local, &m->contact->gap, local, &m->schwarz.rounds.kept));
+  ok(PetscCalloc5(local, &m->contact->active, local, &m->contact->tied, local, &m->contact->force, local, &m->contact->gap, local,
+                  &m->schwarz.rounds.kept));
   ok(PetscMalloc1((SCHWARZ_MAX_ROUNDS + 1) * local, &m->schwarz.rounds.tried));
 }
 
@@ -92,9 +93,10 @@ static void check(const Model *m, PetscInt n, const PetscReal force[])
   }
 }
 
-/* Symmetric and positive definite: the one solution is held by row 0, 4 / 2 = 0.5, gaps -1 + 5 / 2 and 3 - 5 / 2. From no contact all changes at once go
-   {} -> {0, 1} -> {0, 2} -> {}: Curtis, Han, Robinson, "A globally convergent primal-dual active-set framework for large-scale convex quadratic
-   optimization", Comput. Optim. Appl. 60, 2015, section 2, with the signs of contact. */
+/* Symmetric and positive definite: the one solution is held by row 0, 4 / 2 = 0.5, gaps -1 + 5 / 2 and 3 - 5 / 2. From no contact all
+   changes at once go
+   {} -> {0, 1} -> {0, 2} -> {}: Curtis, Han, Robinson, "A globally convergent primal-dual active-set framework for large-scale convex
+   quadratic optimization", Comput. Optim. Appl. 60, 2015, section 2, with the signs of contact. */
 static const PetscReal circle_S[] = {4, 5, -5, 5, 9, -5, -5, -5, 7}, circle_q[] = {-2, -1, 3}, circle_force[] = {0.5, 0, 0};
 
 static void a_circle_of_three_sets(void **state)
@@ -110,15 +112,16 @@ static void a_circle_of_three_sets(void **state)
     const PetscInt before = model.contact->counts_made.set_cycles;
 
     for (PetscInt i = 0; i < 3; i++) problem.start[i] = (PetscBool)((start >> i) & 1);
-    assert_int_equal(step(&problem, &model) - before, start == 1 || start == 6 ? 0 : 1); /* {0}, and {1, 2} which goes there next, are not on the circle */
+    assert_int_equal(step(&problem, &model) - before,
+                     start == 1 || start == 6 ? 0 : 1); /* {0}, and {1, 2} which goes there next, are not on the circle */
     check(&model, 3, circle_force);
     between(model.rounds, 1, 12);
   }
   model_destroy(&model);
 }
 
-/* What force waveforms over substeps can do: row 0 is pulled when held, -1, and penetrates when not. Only while rows 0 and 1 are held together
-   does row 2 penetrate, 1 - 3, which the round after must still see. */
+/* What force waveforms over substeps can do: row 0 is pulled when held, -1, and penetrates when not. Only while rows 0 and 1 are held
+   together does row 2 penetrate, 1 - 3, which the round after must still see. */
 static void a_row_that_flips(void **state)
 {
   const PetscReal S[] = {-1, 0, 0, 3, 2, 0, 0, -3, 2}, force[] = {-1, 1, 1}, none[] = {0, 0, 0};
@@ -139,23 +142,26 @@ static void a_row_that_flips(void **state)
   model_destroy(&model);
 }
 
-/* The circle, whose solution closes n more rows on which changes of the first row alone take 2^n rounds (Murty, "Computational complexity of
-   complementary pivot methods", 1978: ones on the diagonal, twos above) */
+/* The circle, whose solution closes n more rows on which changes of the first row alone take 2^n rounds (Murty, "Computational complexity
+   of complementary pivot methods", 1978: ones on the diagonal, twos above) */
 static void long_way(PetscInt n, Problem *problem)
 {
   problem->n = 3 + n;
   for (PetscInt i = 0; i < problem->n; i++) {
     problem->q[i] = i < 3 ? circle_q[i] : 1; /* 1 - 4 / 2 = -1 with the solution, and open on the way round */
-    for (PetscInt j = 0; j < problem->n; j++) problem->S[problem->n * i + j] = i < 3 ? (j < 3 ? circle_S[3 * i + j] : 0) : j == 0 ? -4
-                                                                                                                       : j == 1   ? -10
-                                                                                                                       : j < 3    ? 0
-                                                                                                                       : j == i   ? 1
-                                                                                                                       : j > i    ? 2
-                                                                                                                                  : 0;
+    for (PetscInt j = 0; j < problem->n; j++)
+      problem->S[problem->n * i + j] = i < 3    ? (j < 3 ? circle_S[3 * i + j] : 0)
+                                       : j == 0 ? -4
+                                       : j == 1 ? -10
+                                       : j < 3  ? 0
+                                       : j == i ? 1
+                                       : j > i  ? 2
+                                                : 0;
   }
 }
 
-/* All at once again, where that is allowed, makes 42 rounds of 64 and more: only the last of the 6 rows is held, 1 - 2 + 1 = 0 and 1 - 2 + 2 = 1 */
+/* All at once again, where that is allowed, makes 42 rounds of 64 and more: only the last of the 6 rows is held, 1 - 2 + 1 = 0 and 1 - 2 +
+   2 = 1 */
 static void fewer_wrong_rows(void **state)
 {
   const PetscReal force[] = {0.5, 0, 0, 0, 0, 0, 0, 0, 1};

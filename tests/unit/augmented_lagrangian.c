@@ -67,7 +67,8 @@ static void energy_in_springs_is_none(void **state)
 
 static void wrong_options_are_refused(void **state)
 {
-  static const char *const wrong[]    = {"-contact_augmentation_tolerance 0", "-contact_augmentation_max_it 0", "-contact_constraint gap_rate", "-contact_penalty -3"};
+  static const char *const wrong[] = {"-contact_augmentation_tolerance 0", "-contact_augmentation_max_it 0", "-contact_constraint gap_rate",
+                                      "-contact_penalty -3"};
   Simulation              *simulation = (Simulation *)*state;
 
   AddAugmented("-contact_augmentation_max_it 50 -contact_constraint gap");
@@ -77,8 +78,10 @@ static void wrong_options_are_refused(void **state)
     refused(PETSC_ERR_USER_INPUT, wrong[k], SimulationCreate(simulation));
     ok(ControllerDestroy(&simulation->controller));
   }
-  AddOptions("-contact_penalty 1e3 -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
-  refused(PETSC_ERR_USER_INPUT, "-contact_type augmented_lagrangian|'left'|'right'|-left_mass_redistribute true", SimulationCreate(simulation));
+  AddOptions("-contact_penalty 1e3 -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 "
+             "-right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
+  refused(PETSC_ERR_USER_INPUT, "-contact_type augmented_lagrangian|'left'|'right'|-left_mass_redistribute true",
+          SimulationCreate(simulation));
 }
 
 static void unconverged_steps_are_refused(void **state)
@@ -87,16 +90,15 @@ static void unconverged_steps_are_refused(void **state)
 
   AddAugmented("-contact_penalty 1 -contact_augmentation_max_it 3 -time_start 1 -time_end 1.2");
   ok(SimulationCreate(simulation));
-  refused(PETSC_ERR_NOT_CONVERGED, "time 1.02 s|after 3 augmentations|-contact_penalty|-contact_augmentation_max_it", ContactStep(simulation->contact));
+  refused(PETSC_ERR_NOT_CONVERGED, "time 1.02 s|after 3 augmentations|-contact_penalty|-contact_augmentation_max_it",
+          ContactStep(simulation->contact));
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(agrees_with_lagrange),
-      simulation_test(rounds),
-      simulation_test(energy_in_springs_is_none),
-      simulation_test(wrong_options_are_refused),
+      simulation_test(agrees_with_lagrange),          simulation_test(rounds),
+      simulation_test(energy_in_springs_is_none),     simulation_test(wrong_options_are_refused),
       simulation_test(unconverged_steps_are_refused),
   };
 

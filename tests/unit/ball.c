@@ -25,7 +25,8 @@ static void closure_of(DM dm, PetscInt cell, PetscInt n, PetscReal x[][3])
 /* Of quadrilaterals, or of hexahedra with the corners in DMPLEX's order, which looks at the lower four from outside */
 static Quality quality_of(DM dm)
 {
-  static const int next[2][8][3] = {{{1, 3}, {2, 0}, {3, 1}, {0, 2}}, {{3, 1, 4}, {0, 2, 7}, {1, 3, 6}, {2, 0, 5}, {7, 5, 0}, {4, 6, 3}, {5, 7, 2}, {6, 4, 1}}};
+  static const int next[2][8][3] = {{{1, 3}, {2, 0}, {3, 1}, {0, 2}},
+                                    {{3, 1, 4}, {0, 2, 7}, {1, 3, 6}, {2, 0, 5}, {7, 5, 0}, {4, 6, 3}, {5, 7, 2}, {6, 4, 1}}};
   Quality          quality       = {1, PETSC_MAX_REAL, 0};
   PetscInt         start, end, dim;
   PetscReal        reduced[3];
@@ -51,7 +52,10 @@ static Quality quality_of(DM dm)
         quality.largest  = PetscMax(quality.largest, length);
         product *= length;
       }
-      quality.least = PetscMin(quality.least, (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) + e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / product);
+      quality.least = PetscMin(quality.least,
+                               (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+                                e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
+                                   product);
     }
   }
   reduced[0] = quality.least;
@@ -116,7 +120,9 @@ static void nodes_on_sphere(void **state)
   (void)state;
   for (PetscInt dim = 2; dim <= 3; dim++)
     for (PetscInt simplex = 0; simplex < 2; simplex++) {
-      DM       dm    = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_radius 0.7 -ball_centre 0.3,-0.2%s -ball_divisions 5 -ball_layers 2 -ball_grading 7 -ball_pole 1,1%s", (int)dim, (int)simplex, dim == 3 ? ",0.1" : "", dim == 3 ? ",-3" : "");
+      DM       dm    = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_radius 0.7 -ball_centre 0.3,-0.2%s "
+                                   "-ball_divisions 5 -ball_layers 2 -ball_grading 7 -ball_pole 1,1%s",
+                                   (int)dim, (int)simplex, dim == 3 ? ",0.1" : "", dim == 3 ? ",-3" : "");
       PetscInt cells = dim == 2 ? 25 + 20 * 2 : 125 + 150 * 2, faces = dim == 2 ? 4 * 5 : 6 * 25;
 
       if (simplex) cells *= dim == 2 ? 2 : 6;
@@ -198,7 +204,8 @@ static void sizes_at_poles(void **state)
   (void)state;
   between(opposite / near_pole, 28, 30);
   for (PetscInt i = 0; i < 4; i++) {
-    DM        dm         = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -ball_divisions 16 -ball_layers 4 -ball_grading 30 -ball_pole %s", i < 2 ? 2 : 3, poles[i]);
+    DM        dm = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -ball_divisions 16 -ball_layers 4 -ball_grading 30 -ball_pole %s",
+                               i < 2 ? 2 : 3, poles[i]);
     PetscReal antipode[] = {-places[i][0], -places[i][1], -places[i][2]};
 
     check_edges_at(dm, places[i], near_pole);
@@ -275,7 +282,8 @@ static void back_of_ball(void **state)
   (void)state;
   for (PetscInt dim = 2; dim <= 3; dim++)
     for (PetscInt grading = 1; grading <= 9; grading += 8) {
-      DM                 dm     = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_divisions 8 -ball_grading %d -ball_pole 0,-2%s", (int)dim, (int)(grading > 1), (int)grading, dim == 3 ? ",0" : "");
+      DM dm = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_divisions 8 -ball_grading %d -ball_pole 0,-2%s",
+                          (int)dim, (int)(grading > 1), (int)grading, dim == 3 ? ",0" : "");
       const SurfaceFacts sphere = surface_facts(dm, "surface"), back = surface_facts(dm, "back");
       PetscInt           n, *vertices;
 
@@ -333,15 +341,9 @@ static void refused_options(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(volume_converges),
-      cmocka_unit_test(nodes_on_sphere),
-      cmocka_unit_test(elements_well_shaped),
-      cmocka_unit_test(sizes_match),
-      cmocka_unit_test(sizes_at_poles),
-      cmocka_unit_test(symmetric_parts),
-      cmocka_unit_test(back_of_ball),
-      cmocka_unit_test(placed),
-      cmocka_unit_test(refused_options),
+      cmocka_unit_test(volume_converges), cmocka_unit_test(nodes_on_sphere), cmocka_unit_test(elements_well_shaped),
+      cmocka_unit_test(sizes_match),      cmocka_unit_test(sizes_at_poles),  cmocka_unit_test(symmetric_parts),
+      cmocka_unit_test(back_of_ball),     cmocka_unit_test(placed),          cmocka_unit_test(refused_options),
   };
 
   return impakt_main(argc, argv, tests);

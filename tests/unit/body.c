@@ -9,13 +9,15 @@
 static void is_made_from_options_alone(void **state)
 {
   Body         body;
-  PetscOptions options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type centraldifference -ts_time_step 0.05 -initial_velocity 3 -initial_displacement -0.25");
-  PetscReal    mass, density;
-  PetscInt     substeps, dofs, dim;
-  PetscBool    is_explicit;
-  Material     material;
-  Vec          u, v, a, positions;
-  DM           dm;
+  PetscOptions options = bar_create(
+      &body,
+      MESH MATERIAL "-mass_type lumped -ts_type centraldifference -ts_time_step 0.05 -initial_velocity 3 -initial_displacement -0.25");
+  PetscReal mass, density;
+  PetscInt  substeps, dofs, dim;
+  PetscBool is_explicit;
+  Material  material;
+  Vec       u, v, a, positions;
+  DM        dm;
 
   (void)state;
   ok(BodySetControllerStep(body, 0.5, 0.15));
@@ -116,10 +118,13 @@ static void refuses_bad_input(void **state)
       {MESH MATERIAL "-ts_time_step 0.07", "-bar_ts_time_step|0.07|does not divide|0.3|auto", PETSC_ERR_USER_INPUT, PETSC_TRUE},
       {MESH MATERIAL "-ts_time_step 0.6", "-bar_ts_time_step|0.6|does not divide|0.3", PETSC_ERR_USER_INPUT, PETSC_TRUE}, /* twice it */
       {MESH MATERIAL "-ts_time_step 1e-12", "-bar_ts_time_step|1e-12|too small", PETSC_ERR_USER_INPUT, PETSC_TRUE},
-      {MESH MATERIAL "-ts_type centraldifference -mass_type lumped", "-bar_ts_time_step|0.3 s|'bar'|stable step, 0.1 s|auto", PETSC_ERR_USER_INPUT, PETSC_TRUE},
-      {MESH MATERIAL "-ts_type centraldifference -mass_type consistent -ts_time_step 0.06", "-bar_ts_time_step 0.06|0.057735", PETSC_ERR_USER_INPUT, PETSC_TRUE}, /* 0.1 / sqrt(3) */
+      {MESH MATERIAL "-ts_type centraldifference -mass_type lumped", "-bar_ts_time_step|0.3 s|'bar'|stable step, 0.1 s|auto",
+       PETSC_ERR_USER_INPUT, PETSC_TRUE},
+      {MESH MATERIAL "-ts_type centraldifference -mass_type consistent -ts_time_step 0.06", "-bar_ts_time_step 0.06|0.057735",
+       PETSC_ERR_USER_INPUT, PETSC_TRUE}, /* 0.1 / sqrt(3) */
       {MESH MATERIAL "-ts_adapt_type basic", "-bar_ts_adapt_type|not supported|none", PETSC_ERR_USER_INPUT, PETSC_TRUE},
-      {MESH MATERIAL "-ts_type centraldifference -ts_time_step auto -ts_adapt_type basic", "-bar_ts_adapt_type|none", PETSC_ERR_USER_INPUT, PETSC_TRUE},
+      {MESH MATERIAL "-ts_type centraldifference -ts_time_step auto -ts_adapt_type basic", "-bar_ts_adapt_type|none", PETSC_ERR_USER_INPUT,
+       PETSC_TRUE},
   };
 
   (void)state;
@@ -204,7 +209,8 @@ static void tells_where_a_number_is_lost(void **state)
   for (PetscInt moved = 0; moved < 2; moved++)
     for (PetscInt i = 0; i < 2; i++) {
       Body         body;
-      PetscOptions options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type %s -ts_time_step 0.05 -mass_redistribute %d", integrators[i], (int)moved);
+      PetscOptions options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type %s -ts_time_step 0.05 -mass_redistribute %d",
+                                        integrators[i], (int)moved);
       BodyTraces   traces;
       Rows         rows;
 
@@ -233,12 +239,9 @@ static void tells_where_a_number_is_lost(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(is_made_from_options_alone),
-      cmocka_unit_test(has_defaults),
-      cmocka_unit_test(chooses_its_own_step),
-      cmocka_unit_test(refuses_bad_input),
-      cmocka_unit_test(is_set_up_in_order),
-      cmocka_unit_test(needs_a_controller_step),
+      cmocka_unit_test(is_made_from_options_alone),   cmocka_unit_test(has_defaults),
+      cmocka_unit_test(chooses_its_own_step),         cmocka_unit_test(refuses_bad_input),
+      cmocka_unit_test(is_set_up_in_order),           cmocka_unit_test(needs_a_controller_step),
       cmocka_unit_test(tells_where_a_number_is_lost),
   };
 

@@ -26,7 +26,8 @@ static void flies_freely(void **state)
     for (PetscInt type = 0; type < 3; type++)
       for (PetscInt i = 0; i < 2; i++) {
         Body         body;
-        PetscOptions options = bar_create(&body, BAR "-initial_velocity 3 -mass_type %s -ts_type %s -mass_redistribute %d", types[type], integrators[i], (int)moved);
+        PetscOptions options = bar_create(&body, BAR "-initial_velocity 3 -mass_type %s -ts_type %s -mass_redistribute %d", types[type],
+                                          integrators[i], (int)moved);
         BodyMeasures measures;
         Rows         rows;
         Vec          u;
@@ -131,7 +132,8 @@ static void repeats_a_window_bit_for_bit(void **state)
     for (PetscInt i = 0; i < 2; i++)
       for (PetscInt substeps = 1; substeps <= 7; substeps += 6) {
         Body         body;
-        PetscOptions options = bar_create(&body, BAR "-ts_type %s -ts_time_step %.17g -mass_redistribute %d", integrators[i], 0.05, (int)moved);
+        PetscOptions options = bar_create(&body, BAR "-ts_type %s -ts_time_step %.17g -mass_redistribute %d", integrators[i], 0.05,
+                                          (int)moved);
         Result       first, again, other;
         BodyTraces   traces;
         Rows         rows;
@@ -194,7 +196,8 @@ static void follows_the_prescribed_trace(void **state)
     for (PetscInt type = 0; type < 3; type++)
       for (PetscInt i = 0; i < 2; i++) {
         Body         body;
-        PetscOptions options = bar_create(&body, BAR "-mass_type %s -ts_type %s -ts_time_step 0.05 -mass_redistribute %d", types[type], integrators[i], (int)moved);
+        PetscOptions options = bar_create(&body, BAR "-mass_type %s -ts_type %s -ts_time_step 0.05 -mass_redistribute %d", types[type],
+                                          integrators[i], (int)moved);
         BodyTraces   traces;
         Rows         rows;
 

@@ -111,7 +111,10 @@ static void is_of_second_order(void **state)
     step(&s, steps);
     get(s.u, u);
     get(s.v, v);
-    errors[k] = PetscSqrtReal(PetscSqr(u[0] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) + PetscCosReal(PetscSqrtReal(6) * end))) + PetscSqr(u[1] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) - PetscCosReal(PetscSqrtReal(6) * end))) + PetscSqr(v[0] + 0.5 * (PetscSqrtReal(2) * PetscSinReal(PetscSqrtReal(2) * end) + PetscSqrtReal(6) * PetscSinReal(PetscSqrtReal(6) * end))));
+    errors[k] = PetscSqrtReal(PetscSqr(u[0] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) + PetscCosReal(PetscSqrtReal(6) * end))) +
+                              PetscSqr(u[1] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) - PetscCosReal(PetscSqrtReal(6) * end))) +
+                              PetscSqr(v[0] + 0.5 * (PetscSqrtReal(2) * PetscSinReal(PetscSqrtReal(2) * end) +
+                                                     PetscSqrtReal(6) * PetscSinReal(PetscSqrtReal(6) * end))));
     assert_int_equal(s.evaluations, steps); /* one a step */
     destroy_springs(&s);
   }

@@ -19,7 +19,8 @@ static Answer answer_to_forces(RowBody *b)
 static void load_rows(RowBody *b, PetscInt at, PetscInt row, PetscReal size)
 {
   for (PetscInt level = 0; level <= b->substeps; level++)
-    for (PetscInt i = 0; i < b->n; i++) set_row(&b->rows, b->traces.force_in, level, i, 0.01 * PetscSinReal(1 + i + 2. * level) + (i == row && level == at ? size : 0));
+    for (PetscInt i = 0; i < b->n; i++)
+      set_row(&b->rows, b->traces.force_in, level, i, 0.01 * PetscSinReal(1 + i + 2. * level) + (i == row && level == at ? size : 0));
 }
 
 /* The difference that a hat makes to a linear body under way, whenever it comes */
@@ -69,7 +70,9 @@ static void is_what_a_hat_brings(void **state)
 /* Of which a row of the bar, and a part of one of the others, is held */
 static void is_what_a_hat_brings_to_a_body_held_and_loaded(void **state)
 {
-  static const char *const loads[SHAPES_OF_BODIES] = {"-gravity 0.3", "-gravity 0.1,-0.3 -boundary_traction xmax -boundary_traction_xmax 0.02*(1+t),0.01", "-gravity 0,0,-0.3 -boundary_traction xmax -boundary_traction_xmax 0.02*(1+t),0.01,0"};
+  static const char *const loads[SHAPES_OF_BODIES] = {
+      "-gravity 0.3", "-gravity 0.1,-0.3 -boundary_traction xmax -boundary_traction_xmax 0.02*(1+t),0.01",
+      "-gravity 0,0,-0.3 -boundary_traction xmax -boundary_traction_xmax 0.02*(1+t),0.01,0"};
 
   (void)state;
   for (PetscInt shape = 0; shape < SHAPES_OF_BODIES; shape++)
@@ -85,7 +88,8 @@ static void is_what_a_hat_brings_to_a_body_held_and_loaded(void **state)
       }
 }
 
-/* Rows one after the other, from the last, and some twice, against all at once: the same body, solved for the same right-hand sides. Symmetric by
+/* Rows one after the other, from the last, and some twice, against all at once: the same body, solved for the same right-hand sides.
+   Symmetric by
    Maxwell and Betti. */
 static void may_be_asked_for_in_any_order(void **state)
 {
@@ -172,7 +176,8 @@ static Mat turn_rows(RowBody *b, const PetscReal directions[])
   return B;
 }
 
-/* Two of the rows turn, and the body goes on as one whose rows have been so from the beginning: compliance, traces, and integration with rows held */
+/* Two of the rows turn, and the body goes on as one whose rows have been so from the beginning: compliance, traces, and integration with
+   rows held */
 static void follows_rows_that_turn(void **state)
 {
   static const BodyCondition conditions[MOST_ROWS] = {BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_FORCED, BODY_PRESCRIBED};
@@ -203,10 +208,12 @@ static void follows_rows_that_turn(void **state)
           ok(BodyIntegrate(turned.body));
           ok(BodyRestore(turned.body));
           B = turn_rows(&turned, directions);
-          for (PetscInt i = 0; i < turned.rows.local; i++) changed[i] = (PetscBool)(turned.rows.which[i] == 0 || turned.rows.which[i] == MOST_ROWS - 1);
+          for (PetscInt i = 0; i < turned.rows.local; i++)
+            changed[i] = (PetscBool)(turned.rows.which[i] == 0 || turned.rows.which[i] == MOST_ROWS - 1);
           ok(BodyUpdateInterface(turned.body, B, changed));
           ok(MatDestroy(&B));
-          for (PetscInt i = 0; i < turned.n; i++) near(get_row(&turned.rows, turned.traces.displacement, 0, i), get_row(&fresh.rows, fresh.traces.displacement, 0, i), 1e-15);
+          for (PetscInt i = 0; i < turned.n; i++)
+            near(get_row(&turned.rows, turned.traces.displacement, 0, i), get_row(&fresh.rows, fresh.traces.displacement, 0, i), 1e-15);
           know_all_rows(&turned);
           know_all_rows(&fresh);
           for (PetscInt k = 0; k < substeps; k++)
@@ -218,12 +225,14 @@ static void follows_rows_that_turn(void **state)
 
             load_rows(b, 0, -1, 0);
             for (PetscInt level = 0; level <= substeps; level++)
-              for (PetscInt i = 0; i < b->n; i++) set_row(&b->rows, b->traces.displacement_in, level, i, 0.01 * PetscSinReal(2 + 3 * i + level));
+              for (PetscInt i = 0; i < b->n; i++)
+                set_row(&b->rows, b->traces.displacement_in, level, i, 0.01 * PetscSinReal(2 + 3 * i + level));
             ok(BodyIntegrate(b->body));
           }
           for (PetscInt level = 1; level <= substeps; level++)
             for (PetscInt i = 0; i < turned.n; i++) {
-              near(get_row(&turned.rows, turned.traces.displacement, level, i), get_row(&fresh.rows, fresh.traces.displacement, level, i), 1e-13);
+              near(get_row(&turned.rows, turned.traces.displacement, level, i), get_row(&fresh.rows, fresh.traces.displacement, level, i),
+                   1e-13);
               /* forces of some tenths of N */
               near(get_row(&turned.rows, turned.traces.reaction, level, i), get_row(&fresh.rows, fresh.traces.reaction, level, i), 1e-12);
             }
@@ -263,8 +272,8 @@ static void of_a_nonlinear_body_at_rest_is_that_of_the_linear_one(void **state)
         }
 }
 
-/* A body is as it was when its compliance has been asked for in the middle of a controller step, and so is what it does afterwards. Sums over nodes may
-   differ by round-off: a mesh need not be dealt out twice in the same way. */
+/* A body is as it was when its compliance has been asked for in the middle of a controller step, and so is what it does afterwards. Sums
+   over nodes may differ by round-off: a mesh need not be dealt out twice in the same way. */
 static void leaves_no_trace(void **state)
 {
   (void)state;
@@ -281,7 +290,8 @@ static void leaves_no_trace(void **state)
         for (PetscInt asks = 0; asks < 2; asks++) {
           RowBody b;
 
-          row_body_create(&b, shape, (Method)method, substeps, NULL, shape == 1 ? "-gravity 0.1,-0.3 -boundary_traction xmax -boundary_traction_xmax 0.02*(1+t),0.01" : "");
+          row_body_create(&b, shape, (Method)method, substeps, NULL,
+                          shape == 1 ? "-gravity 0.1,-0.3 -boundary_traction xmax -boundary_traction_xmax 0.02*(1+t),0.01" : "");
           row_body_start(&b);
           set_row_conditions(&b, conditions);
           load_rows(&b, 1, 0, 0.02);

@@ -96,9 +96,7 @@ static void create_system(System *s, PetscMPIInt owner)
     for (PetscInt j = PetscMax(0, i - 1); j <= PetscMin(SIZE - 1, i + 1); j++) ok(MatSetValue(A, i, j, a_entry(i, j), INSERT_VALUES));
   ok(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
   ok(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
-  ok(MatCreateAIJ(PETSC_COMM_WORLD, owner < 0 ? PETSC_DECIDE : rank == owner ? ROWS
-                                                                             : 0,
-                  end - begin, ROWS, SIZE, 2, NULL, 2, NULL, &B));
+  ok(MatCreateAIJ(PETSC_COMM_WORLD, owner < 0 ? PETSC_DECIDE : rank == owner ? ROWS : 0, end - begin, ROWS, SIZE, 2, NULL, 2, NULL, &B));
   ok(MatGetOwnershipRange(B, &s->begin, &s->end));
   for (PetscInt i = s->begin; i < s->end; i++)
     for (PetscInt j = 0; j < SIZE; j++)
@@ -150,12 +148,9 @@ static void check_solution(System *s, const PetscBool held[ROWS], PetscInt seed)
 }
 
 static const PetscBool sets[][ROWS] = {
-    {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE},
-    {PETSC_TRUE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE},
-    {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_FALSE},
-    {PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE},
-    {PETSC_FALSE, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE},
-    {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE},
+    {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE}, {PETSC_TRUE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE},
+    {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_FALSE},    {PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE},
+    {PETSC_FALSE, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE},   {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE},
     {PETSC_TRUE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE},
 };
 

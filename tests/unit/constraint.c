@@ -54,7 +54,8 @@ static void dampers_dissipate(void **state)
   PetscReal   last[2], energy;
 
   AddCollision(4, 4, 0);
-  AddOptions("-left_dm_plex_box_lower -0.101 -right_dm_plex_box_upper 0.101 -contact_type penalty -contact_penalty 500 -contact_penalty_damping 5");
+  AddOptions("-left_dm_plex_box_lower -0.101 -right_dm_plex_box_upper 0.101 -contact_type penalty -contact_penalty 500 "
+             "-contact_penalty_damping 5");
   for (PetscInt k = 0; k < 2; k++) {
     SimulationRepeat(simulation, k ? "-contact_constraint both" : "-contact_constraint gap");
     energy = TotalEnergy(simulation);
@@ -132,7 +133,9 @@ static void impulses_are_told(void **state)
 static void gap_is_kept_by_schwarz(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
-  const char *const ways[]     = {"-schwarz_transmission dirichlet_neumann", "-schwarz_transmission robin", "-schwarz_transmission dirichlet_neumann -left_ts_time_step 0.005 -right_ts_time_step 0.01", "-contact_swap_sides"};
+  const char *const ways[]     = {"-schwarz_transmission dirichlet_neumann", "-schwarz_transmission robin",
+                                  "-schwarz_transmission dirichlet_neumann -left_ts_time_step 0.005 -right_ts_time_step 0.01",
+                                  "-contact_swap_sides"};
 
   AddCollision(8, 10, 3);
   AddOptions("-contact_constraint gap_rate -left_initial_displacement 1e-3"); /* 1 mm is left, and 4 mm would be gone after the step */
@@ -177,7 +180,8 @@ static void wrong_options_are_refused(void **state)
   refused(PETSC_ERR_USER_INPUT, "-contact_penalty_damping 50|unstable", SimulationCreate(simulation));
   ok(ControllerDestroy(&simulation->controller));
   AddOptions("-contact_type lagrange -left_mass_redistribute 1 -right_mass_redistribute 1");
-  refused(PETSC_ERR_USER_INPUT, "-contact_constraint both|'left' and 'right' have none|-left_mass_redistribute false", SimulationCreate(simulation));
+  refused(PETSC_ERR_USER_INPUT, "-contact_constraint both|'left' and 'right' have none|-left_mass_redistribute false",
+          SimulationCreate(simulation));
 }
 
 int main(int argc, char **argv)

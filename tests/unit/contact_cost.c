@@ -29,7 +29,8 @@ static void a_changing_set_factors_nothing(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
 
-  AddOptions("-prefix_push a_ " BLOCK "-dm_plex_box_faces 12,4 -dm_plex_box_lower 0,0.01 -dm_plex_box_upper 2,0.61 -initial_velocity 0.02,-0.1-0.05*x -prefix_pop "
+  AddOptions("-prefix_push a_ " BLOCK
+             "-dm_plex_box_faces 12,4 -dm_plex_box_lower 0,0.01 -dm_plex_box_upper 2,0.61 -initial_velocity 0.02,-0.1-0.05*x -prefix_pop "
              "-bodies a -obstacles disc -disc_obstacle_type cylinder -disc_point 0.7,-3 -disc_radius 3 -time_step 0.02 -time_end 4");
   for (size_t way = 0; way < sizeof(ways) / sizeof(ways[0]); way++)
     for (size_t i = 0; i < 2; i++) {

@@ -21,7 +21,10 @@ static void AddPlates(const char more[])
   for (int i = 0; i < 3; i++) {
     char text[512];
 
-    snprintf(text, sizeof(text), "-%s_dm_plex_dim 2 -%s_dm_plex_simplex 0 -%s_dm_plex_box_faces 3,2 -%s_dm_plex_box_lower %g,0.2 -%s_dm_plex_box_upper %g,0.6 -%s_thickness " THICKNESS " -%s_density 1 -%s_youngs_modulus 1", names[i], names[i], names[i], names[i], 0.901 * i, names[i], 0.901 * i + 0.9, names[i], names[i], names[i]);
+    snprintf(text, sizeof(text),
+             "-%s_dm_plex_dim 2 -%s_dm_plex_simplex 0 -%s_dm_plex_box_faces 3,2 -%s_dm_plex_box_lower %g,0.2 -%s_dm_plex_box_upper %g,0.6 "
+             "-%s_thickness " THICKNESS " -%s_density 1 -%s_youngs_modulus 1",
+             names[i], names[i], names[i], names[i], 0.901 * i, names[i], 0.901 * i + 0.9, names[i], names[i], names[i]);
     AddOptions(text);
   }
   AddOptions("-a_initial_velocity 0.1,0 -bodies a,b,c -contact_pairs a.xmax:b.xmin,b.xmax:c.xmin -time_step 0.02 -time_end 1.4");
@@ -67,7 +70,8 @@ static void CheckFace(Simulation *simulation, ContactFields fields, PetscInt b, 
     } else if (PetscAbsReal(x[2 * i] - 0.901 - 0.45) > 0.449 - 1e-9) { /* on no contact surface: not b's other end */
       continue;
     } else {
-      assert_true(force[0] == 0 && force[1] == 0 && node[CONTACT_FIELDS_PRESSURE] == 0 && isnan(node[CONTACT_FIELDS_GAP]) && node[CONTACT_FIELDS_ACTIVE] == 0);
+      assert_true(force[0] == 0 && force[1] == 0 && node[CONTACT_FIELDS_PRESSURE] == 0 && isnan(node[CONTACT_FIELDS_GAP]) &&
+                  node[CONTACT_FIELDS_ACTIVE] == 0);
       sums[3] += 1;
     }
   }

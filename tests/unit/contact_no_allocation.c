@@ -1,6 +1,6 @@
-/* Bodies in two and three dimensions that fly and touch allocate nothing in a controller step that builds nothing again. What PETSc takes for itself
-   in some solvers is counted apart. PETSc's allocator is replaced by one that counts, and on one rank the C library's too: on several, MPI takes
-   memory for messages. */
+/* Bodies in two and three dimensions that fly and touch allocate nothing in a controller step that builds nothing again. What PETSc takes
+   for itself in some solvers is counted apart. PETSc's allocator is replaced by one that counts, and on one rank the C library's too: on
+   several, MPI takes memory for messages. */
 #include "simulation.h"
 #include "count_allocations.h"
 
@@ -83,13 +83,18 @@ static PetscErrorCode event_ends(PetscLogEvent event, int unused, PetscObject a,
   return PETSC_SUCCESS;
 }
 
-/* Two blocks with other elements each, 4 mm apart; the waves of an impact at 0.2 m/s run at 1.1 m/s, and come back to the faces after 1.8 s */
+/* Two blocks with other elements each, 4 mm apart; the waves of an impact at 0.2 m/s run at 1.1 m/s, and come back to the faces after 1.8 s
+ */
 #define BLOCK "-dm_plex_simplex 0 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 "
 static const char *const blocks[] = {
-    "-prefix_push a_ -dm_plex_dim 2 " BLOCK "-dm_plex_box_faces 10,4 -dm_plex_box_lower -1.002,0 -dm_plex_box_upper -0.002,0.4 -initial_velocity 0.1,0 -prefix_pop "
-    "-prefix_push b_ -dm_plex_dim 2 " BLOCK "-dm_plex_box_faces 8,3 -dm_plex_box_lower 0.002,0 -dm_plex_box_upper 1.002,0.4 -initial_velocity -0.1,0 -prefix_pop ",
-    "-prefix_push a_ -dm_plex_dim 3 " BLOCK "-dm_plex_box_faces 8,3,3 -dm_plex_box_lower -1.002,0,0 -dm_plex_box_upper -0.002,0.4,0.4 -initial_velocity 0.1,0,0 -prefix_pop "
-    "-prefix_push b_ -dm_plex_dim 3 " BLOCK "-dm_plex_box_faces 6,2,2 -dm_plex_box_lower 0.002,0,0 -dm_plex_box_upper 1.002,0.4,0.4 -initial_velocity -0.1,0,0 -prefix_pop "};
+    "-prefix_push a_ -dm_plex_dim 2 " BLOCK
+    "-dm_plex_box_faces 10,4 -dm_plex_box_lower -1.002,0 -dm_plex_box_upper -0.002,0.4 -initial_velocity 0.1,0 -prefix_pop "
+    "-prefix_push b_ -dm_plex_dim 2 " BLOCK
+    "-dm_plex_box_faces 8,3 -dm_plex_box_lower 0.002,0 -dm_plex_box_upper 1.002,0.4 -initial_velocity -0.1,0 -prefix_pop ",
+    "-prefix_push a_ -dm_plex_dim 3 " BLOCK
+    "-dm_plex_box_faces 8,3,3 -dm_plex_box_lower -1.002,0,0 -dm_plex_box_upper -0.002,0.4,0.4 -initial_velocity 0.1,0,0 -prefix_pop "
+    "-prefix_push b_ -dm_plex_dim 3 " BLOCK
+    "-dm_plex_box_faces 6,2,2 -dm_plex_box_lower 0.002,0,0 -dm_plex_box_upper 1.002,0.4,0.4 -initial_velocity -0.1,0,0 -prefix_pop "};
 
 #define IMPLICIT "-a_ts_type alpha2 -b_ts_type alpha2 -b_ts_time_step 0.01 "
 #define EXPLICIT "-a_ts_type centraldifference -b_ts_type centraldifference -b_ts_time_step 0.01 "
@@ -169,13 +174,7 @@ static Counted count(Simulation *simulation, PetscInt dim, const char integrator
 static const struct {
   PetscInt    dim;
   const char *integrators;
-} cases[] = {
-    {2, IMPLICIT},
-    {3, EXPLICIT},
-    {2, MIXED},
-    {3, IMPLICIT},
-    {2, EXPLICIT},
-    {3, MIXED}};
+} cases[] = {{2, IMPLICIT}, {3, EXPLICIT}, {2, MIXED}, {3, IMPLICIT}, {2, EXPLICIT}, {3, MIXED}};
 
 /* Nobody allocates anything, in the first `n` cases */
 static void expect_nothing(Simulation *simulation, int n, const char method[])
@@ -183,7 +182,9 @@ static void expect_nothing(Simulation *simulation, int n, const char method[])
   for (int i = 0; i < n; i++) {
     const Counted counted = count(simulation, cases[i].dim, cases[i].integrators, method);
 
-    if (counted.free || counted.ours || counted.petsc) print_error("%d dimensions, %s%s: %ld allocations in free flight, %ld of Impakt's and %ld of PETSc's in contact\n", (int)cases[i].dim, cases[i].integrators, method, counted.free, counted.ours, counted.petsc);
+    if (counted.free || counted.ours || counted.petsc)
+      print_error("%d dimensions, %s%s: %ld allocations in free flight, %ld of Impakt's and %ld of PETSc's in contact\n", (int)cases[i].dim,
+                  cases[i].integrators, method, counted.free, counted.ours, counted.petsc);
     assert_int_equal(counted.free, 0);
     assert_int_equal(counted.ours, 0);
     assert_int_equal(counted.petsc, 0);
@@ -264,8 +265,8 @@ static void anderson_allocates_once_an_iteration(void **state)
   }
 }
 
-/* The tangent of a nonlinear body is factored anew: MatLUFactorNumeric() takes four work arrays for that, and MatSetOptionsPrefixFactor() one for a
-   name. On more ranks it is a library's own business. */
+/* The tangent of a nonlinear body is factored anew: MatLUFactorNumeric() takes four work arrays for that, and MatSetOptionsPrefixFactor()
+   one for a name. On more ranks it is a library's own business. */
 static void nonlinear_implicit_bodies_allocate_in_lu_alone(void **state)
 {
   skip_beyond_ranks(1);
@@ -278,8 +279,9 @@ static void nonlinear_implicit_bodies_allocate_in_lu_alone(void **state)
   }
 }
 
-/* SNESVINEWTONRSLS, which finds the forces between bodies with massless contact nodes, makes index sets, scatters, submatrices and a factor anew in
-   each of its iterations: 390 allocations on one rank, 646 on two, of whatever size the problem is. An iteration is a sweep but the first. */
+/* SNESVINEWTONRSLS, which finds the forces between bodies with massless contact nodes, makes index sets, scatters, submatrices and a factor
+   anew in each of its iterations: 390 allocations on one rank, 646 on two, of whatever size the problem is. An iteration is a sweep but the
+   first. */
 static void implicit_lagrange_allocates_in_snesvi_alone(void **state)
 {
   for (int i = 0; i < 3; i++) {

@@ -5,7 +5,10 @@ static void AddBox(const char name[], PetscInt dim, const char faces[], const ch
 {
   char options[1024];
 
-  ok(PetscSNPrintf(options, sizeof(options), "-prefix_push %s_ -dm_plex_dim %d -dm_plex_simplex 0 -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s -density 1 -youngs_modulus 1 %s -prefix_pop", name, (int)dim, faces, lower, upper, more));
+  ok(PetscSNPrintf(options, sizeof(options),
+                   "-prefix_push %s_ -dm_plex_dim %d -dm_plex_simplex 0 -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s "
+                   "-density 1 -youngs_modulus 1 %s -prefix_pop",
+                   name, (int)dim, faces, lower, upper, more));
   AddOptions(options);
 }
 
@@ -29,8 +32,9 @@ static void check_pairs(Simulation *simulation, PetscInt n, const char *const ex
 /* The implicit body, then the finer mesh, then the one named first */
 static void sides_are_chosen(void **state)
 {
-  static const char *const finer[] = {"a:b", "c:a", "c:b", "a:floor", "a:wall", "b:floor", "b:wall", "c:floor", "c:wall"}, *const implicit[] = {"a:b", "a:c", "b:c", "a:floor", "a:wall", "b:floor", "b:wall", "c:floor", "c:wall"};
-  Simulation *simulation = (Simulation *)*state;
+  static const char *const finer[]           = {"a:b", "c:a", "c:b", "a:floor", "a:wall", "b:floor", "b:wall", "c:floor", "c:wall"},
+                           *const implicit[] = {"a:b", "a:c", "b:c", "a:floor", "a:wall", "b:floor", "b:wall", "c:floor", "c:wall"};
+  Simulation                     *simulation = (Simulation *)*state;
 
   AddBox("a", 2, "3,3", "0,0", "1,1", "");
   AddBox("b", 2, "3,3", "2,0", "3,1", "");
@@ -66,7 +70,8 @@ static void bars_touch_their_neighbours(void **state)
   AddBar("c", 3, 4, 10, -0.1);
   AddBar("a", 0.1, 1, 9, 0.1);
   AddBar("b", 1.5, 2.5, 10, 0);
-  AddOptions("-floor_obstacle_type plane -floor_point 0 -floor_normal 1 -wall_obstacle_type plane -wall_point 5 -wall_normal -1 -obstacles floor,wall -bodies a,b,c -contact_pairs auto -time_step 0.1 -time_end 20");
+  AddOptions("-floor_obstacle_type plane -floor_point 0 -floor_normal 1 -wall_obstacle_type plane -wall_point 5 -wall_normal -1 -obstacles "
+             "floor,wall -bodies a,b,c -contact_pairs auto -time_step 0.1 -time_end 20");
   ok(SimulationCreate(simulation));
   check_pairs(simulation, 4, expected);
   for (PetscInt step = 0; step < 200; step++) (void)Step(simulation);
@@ -122,8 +127,8 @@ static void bodies_of_different_dimension_are_refused(void **state)
   refused(PETSC_ERR_USER_INPUT, "a:b|dimension|2|3", SimulationCreate(simulation));
 }
 
-/* A body thrown at a plane, a disc, or a sphere, bounces: what it hands over as impulse it gains in momentum, along all axes, and it does not
-   get in. A plane has a normal against the fall, of which only one component takes part. */
+/* A body thrown at a plane, a disc, or a sphere, bounces: what it hands over as impulse it gains in momentum, along all axes, and it does
+   not get in. A plane has a normal against the fall, of which only one component takes part. */
 static void check_bounce(Simulation *simulation, PetscInt dim, PetscInt steps, PetscReal tolerance)
 {
   BodyMeasures     before, after;
@@ -142,17 +147,22 @@ static void check_bounce(Simulation *simulation, PetscInt dim, PetscInt steps, P
   assert_int_equal(pair.active, 0);
   between(deepest, -1e-10, 0);
   assert_true(after.momentum[dim - 1] > 0 && before.momentum[dim - 1] < 0);
-  for (PetscInt d = 0; d < dim; d++) near(after.momentum[d] - before.momentum[d], -pair.impulse[d], tolerance * PetscAbsReal(before.momentum[dim - 1]));
+  for (PetscInt d = 0; d < dim; d++)
+    near(after.momentum[d] - before.momentum[d], -pair.impulse[d], tolerance * PetscAbsReal(before.momentum[dim - 1]));
 }
 
 static const char *const integrators_of_bodies[] = {"", "-a_ts_type centraldifference"};
-static const char *const planes[]                = {"-o_obstacle_type plane -o_point 0 -o_normal 1 ", "-o_obstacle_type plane -o_point 0,0 -o_normal 0,1 ", "-o_obstacle_type plane -o_point 0,0,0 -o_normal 0,0,1 "};
-static const char *const rounds[]                = {NULL, "-o_obstacle_type cylinder -o_point 0.5,-2 -o_radius 2 ", "-o_obstacle_type sphere -o_point 0.5,0.5,-2 -o_radius 2 "};
-static const char *const lying[]                 = {NULL, NULL, "-o_obstacle_type cylinder -o_point 0.5,0.5,-2 -o_radius 2 -o_axis 0,1,0 "};
+static const char *const planes[] = {"-o_obstacle_type plane -o_point 0 -o_normal 1 ", "-o_obstacle_type plane -o_point 0,0 -o_normal 0,1 ",
+                                     "-o_obstacle_type plane -o_point 0,0,0 -o_normal 0,0,1 "};
+static const char *const rounds[] = {NULL, "-o_obstacle_type cylinder -o_point 0.5,-2 -o_radius 2 ",
+                                     "-o_obstacle_type sphere -o_point 0.5,0.5,-2 -o_radius 2 "};
+static const char *const lying[]  = {NULL, NULL, "-o_obstacle_type cylinder -o_point 0.5,0.5,-2 -o_radius 2 -o_axis 0,1,0 "};
 
 static void AddThrown(PetscInt dim, const char obstacle[])
 {
-  static const char *const faces[] = {"12", "3,4", "2,2,3"}, *const lowers[] = {"0.02", "0,0.02", "0,0,0.02"}, *const uppers[] = {"1.02", "1,1.02", "1,1,1.02"}, *const velocities[] = {"-initial_velocity -0.1", "-initial_velocity 0.01,-0.1", "-initial_velocity 0.01,0,-0.1"};
+  static const char *const faces[] = {"12", "3,4", "2,2,3"}, *const lowers[] = {"0.02", "0,0.02", "0,0,0.02"},
+                           *const uppers[]     = {"1.02", "1,1.02", "1,1,1.02"},
+                           *const velocities[] = {"-initial_velocity -0.1", "-initial_velocity 0.01,-0.1", "-initial_velocity 0.01,0,-0.1"};
 
   AddBox("a", dim, faces[dim - 1], lowers[dim - 1], uppers[dim - 1], velocities[dim - 1]);
   AddOptions(obstacle);
@@ -166,8 +176,7 @@ static void thrown_bodies_bounce(void **state)
   for (PetscInt dim = 1; dim <= 3; dim++)
     for (PetscInt kind = 0; kind < 3; kind++)
       for (PetscInt i = 0; i < 2; i++) {
-        const char *obstacle = kind == 0 ? planes[dim - 1] : kind == 1 ? rounds[dim - 1]
-                                                                       : lying[dim - 1];
+        const char *obstacle = kind == 0 ? planes[dim - 1] : kind == 1 ? rounds[dim - 1] : lying[dim - 1];
 
         if (!obstacle) continue;
         AddThrown(dim, obstacle);

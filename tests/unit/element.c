@@ -94,7 +94,8 @@ static void refuses_what_is_no_bar(void **state)
   Element         element = create_bars(&material, &options), other;
 
   (void)state;
-  refused(PETSC_ERR_SUP, "-bar_|pyramid|segment|triangle|quad|tetrahedron|hexahedron", ElementCreate(PETSC_COMM_SELF, "bar_", DM_POLYTOPE_PYRAMID, material, &other));
+  refused(PETSC_ERR_SUP, "-bar_|pyramid|segment|triangle|quad|tetrahedron|hexahedron",
+          ElementCreate(PETSC_COMM_SELF, "bar_", DM_POLYTOPE_PYRAMID, material, &other));
   ok(ElementCreate(PETSC_COMM_SELF, "bar_", DM_POLYTOPE_SEGMENT, material, &other));
   refused(PETSC_ERR_USER_INPUT, "x = 1|no length", ElementSetUp(other, 2, connectivity, same));
   ok(ElementDestroy(&other));
@@ -111,8 +112,9 @@ static void gives_the_stable_step(void **state)
   (void)state;
   for (PetscInt type = 0; type < 3; type++) {
     Body         body;
-    PetscOptions options = bar_create(&body, "-dm_plex_box_faces 8 -dm_plex_box_upper 2 -density 3 -youngs_modulus 12 -cross_section 7 -mass_type %s", types[type]);
-    PetscReal    step;
+    PetscOptions options = bar_create(
+        &body, "-dm_plex_box_faces 8 -dm_plex_box_upper 2 -density 3 -youngs_modulus 12 -cross_section 7 -mass_type %s", types[type]);
+    PetscReal step;
 
     ok(BodySetControllerStep(body, 0, 0.1));
     ok(BodySetUp(body));
@@ -179,7 +181,8 @@ static void gives_a_stable_step_next_to_a_massless_node(void **state)
   (void)state;
   for (PetscInt type = 0; type < 3; type++) {
     Body         body;
-    PetscOptions options = bar_create(&body, "-dm_plex_box_faces %d -dm_plex_box_upper %g -density 2 -youngs_modulus 8 -mass_type %s", NODES - 1, (double)end, types[type]);
+    PetscOptions options = bar_create(&body, "-dm_plex_box_faces %d -dm_plex_box_upper %g -density 2 -youngs_modulus 8 -mass_type %s",
+                                      NODES - 1, (double)end, types[type]);
     PetscReal    K[NODES * NODES], M[NODES * NODES], step, held, loose;
     Rows         rows;
 

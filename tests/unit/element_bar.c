@@ -59,9 +59,9 @@ static void energy_force_and_tangent_agree(void **state)
   }
 }
 
-/* Strain 0.1 everywhere: stretch a = 1.1. Neo-Hookean with lambda = mu: J times the Cauchy stress is mu (b^2 - 1) + mu/2 (J^2 - 1) across, where
-   the stretch is b; none, with J = a b^2, at a^2 b^4 + 2 b^2 - 3 = 0. Along the bar it is mu (a^2 - 1) + mu/2 (J^2 - 1) = mu (a^2 - b^2).
-   Linear: E 0.1 = 20 Pa. */
+/* Strain 0.1 everywhere: stretch a = 1.1. Neo-Hookean with lambda = mu: J times the Cauchy stress is mu (b^2 - 1) + mu/2 (J^2 - 1) across,
+   where the stretch is b; none, with J = a b^2, at a^2 b^4 + 2 b^2 - 3 = 0. Along the bar it is mu (a^2 - 1) + mu/2 (J^2 - 1) = mu (a^2 -
+   b^2). Linear: E 0.1 = 20 Pa. */
 static void stress_is_force_over_the_present_cross_section(void **state)
 {
   const PetscReal a = 1.1, square = (PetscSqrtReal(1 + 3 * a * a) - 1) / (a * a), neo_hookean = LAME * (a * a - square) / (a * square);

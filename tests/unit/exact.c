@@ -12,7 +12,8 @@ static void AddPaperBars(PetscReal frame)
 {
   AddBar("left", -0.27, -0.02, 4, frame + 100);
   AddBar("right", 0.02, 0.27, 4, frame - 100);
-  AddOptions("-bodies left,right -time_start -2e-4 -time_end 8e-4 -time_step 1e-5 -left_density 1000 -right_density 1000 -left_youngs_modulus 1e9 -right_youngs_modulus 1e9 -left_cross_section 1e-6 -right_cross_section 1e-6");
+  AddOptions("-bodies left,right -time_start -2e-4 -time_end 8e-4 -time_step 1e-5 -left_density 1000 -right_density 1000 "
+             "-left_youngs_modulus 1e9 -right_youngs_modulus 1e9 -left_cross_section 1e-6 -right_cross_section 1e-6");
 }
 
 /* Everything but a rounding or two of numbers of size `scale` */
@@ -49,8 +50,7 @@ static void solution_of_the_paper(void **state)
   const struct {
     PetscReal time, expected[6];
   } cases[] = {
-      {-2e-4, {-0.02, 100, 0, 1.25, 0, 100}},
-      {-1e-4, {-0.01, 100, 0, 1.25, 0, 100}},
+      {-2e-4, {-0.02, 100, 0, 1.25, 0, 100}},    {-1e-4, {-0.01, 100, 0, 1.25, 0, 100}},
       {1.25e-4, {0, 0, 100, 0.625, 0.625, 50}},  /* the wave has met half of the bar */
       {2e-4, {0, 0, 100, 0.25, 1, 20}},          /* 4/5 of it */
       {2.5e-4, {0, 0, 100, 0, 1.25, 0}},         /* all */
@@ -110,10 +110,11 @@ static void errors_of_a_run(void **state)
   BodyMeasures     bodies[2]    = {0};
   PetscReal        positions[6] = {0}, velocities[6] = {0};
   ContactPairState pair  = {0};
-  ControllerFrame  frame = {.n_bodies = 2, .n_pairs = 1, .bodies = bodies, .contact_positions = positions, .contact_velocities = velocities, .pairs = &pair};
-  ExactSolution    solution;
-  Exact            exact;
-  ExactErrors      errors;
+  ControllerFrame  frame = {
+      .n_bodies = 2, .n_pairs = 1, .bodies = bodies, .contact_positions = positions, .contact_velocities = velocities, .pairs = &pair};
+  ExactSolution solution;
+  Exact         exact;
+  ExactErrors   errors;
 
   AddPaperBars(0);
   ok(SimulationCreate(simulation));
@@ -392,7 +393,9 @@ static void other_problems_are_refused(void **state)
       {"-right_youngs_modulus 1e9 -right_dm_plex_box_upper 0.3", "length of 'left' is 0.25 m|0.28 m"},
       {"-right_dm_plex_box_upper 0.27 -right_cross_section 2e-6", "mass of 'left'|0.0005 kg"},
       {"-right_cross_section 1e-6 -right_initial_velocity 100", "approach|'left' moves at 100|'right' at 100"},
-      {"-right_initial_velocity -100 -bodies left,right,third -contact_pairs left:right,right:third -third_dm_plex_dim 1 -third_dm_plex_box_faces 4 -third_dm_plex_box_lower 0.3 -third_dm_plex_box_upper 0.4 -third_density 1 -third_youngs_modulus 1", "3 bodies and 2 pairs"},
+      {"-right_initial_velocity -100 -bodies left,right,third -contact_pairs left:right,right:third -third_dm_plex_dim 1 "
+       "-third_dm_plex_box_faces 4 -third_dm_plex_box_lower 0.3 -third_dm_plex_box_upper 0.4 -third_density 1 -third_youngs_modulus 1",
+       "3 bodies and 2 pairs"},
   };
   Simulation *simulation = (Simulation *)*state;
   Exact       exact;
@@ -404,8 +407,10 @@ static void other_problems_are_refused(void **state)
   }
   refused(PETSC_ERR_USER_INPUT, "Unknown -exact 'wave'|none impact characteristics", ExactCreate(simulation->controller, "wave", &exact));
   /* waves that arrive more often than anyone can use: 2 L/c = 1.3e-8 s and more, for 1 ms */
-  SimulationRepeat(simulation, "-bodies left,right -contact_pairs left:right -right_cross_section 1e-6 -right_dm_plex_box_lower 0.02 -right_dm_plex_box_upper 0.0200127 -left_dm_plex_box_lower -0.0200061 -right_density 1 -left_density 1.3");
-  refused(PETSC_ERR_USER_INPUT, "arrive at the contact more than 20000 times|-time_end", ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
+  SimulationRepeat(simulation, "-bodies left,right -contact_pairs left:right -right_cross_section 1e-6 -right_dm_plex_box_lower 0.02 "
+                               "-right_dm_plex_box_upper 0.0200127 -left_dm_plex_box_lower -0.0200061 -right_density 1 -left_density 1.3");
+  refused(PETSC_ERR_USER_INPUT, "arrive at the contact more than 20000 times|-time_end",
+          ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
 }
 
 int main(int argc, char **argv)

@@ -39,12 +39,9 @@ typedef struct {
 static void tells_what_a_formula_depends_on(void **state)
 {
   const Nature natures[] = {
-      {"2*pi - 1", PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_FALSE},
-      {"x + z", PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE},
-      {"0*y", PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE},
-      {"nx", PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_TRUE},
-      {"sin(t)", PETSC_FALSE, PETSC_FALSE, PETSC_TRUE, PETSC_FALSE},
-      {"t*x*nz", PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_TRUE},
+      {"2*pi - 1", PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_FALSE}, {"x + z", PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE},
+      {"0*y", PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE},    {"nx", PETSC_FALSE, PETSC_TRUE, PETSC_FALSE, PETSC_TRUE},
+      {"sin(t)", PETSC_FALSE, PETSC_FALSE, PETSC_TRUE, PETSC_FALSE}, {"t*x*nz", PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_TRUE},
   };
 
   (void)state;
@@ -215,7 +212,8 @@ static void refuses_tables(void **state)
     assert_null(expression);
     assert_int_equal(MPI_Barrier(PETSC_COMM_WORLD), 0);
   }
-  refused(PETSC_ERR_USER_INPUT, "-bar_load|'nowhere.txt'|No such file", ExpressionCreate(PETSC_COMM_WORLD, "bar_load", "table:nowhere.txt", &expression));
+  refused(PETSC_ERR_USER_INPUT, "-bar_load|'nowhere.txt'|No such file",
+          ExpressionCreate(PETSC_COMM_WORLD, "bar_load", "table:nowhere.txt", &expression));
   refused(PETSC_ERR_USER_INPUT, "-bar_load|'.'|directory", ExpressionCreate(PETSC_COMM_WORLD, "bar_load", "table:.", &expression));
 }
 
@@ -236,9 +234,12 @@ static void splits_lists(void **state)
   ok(ExpressionListCreate(PETSC_COMM_WORLD, "o", "7", 1, PETSC_FALSE, list));
   ok(ExpressionDestroy(&list[0]));
 
-  refused(PETSC_ERR_USER_INPUT, "-bar_load|'1,2'|2 components|needs 3|free", ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "1,2", 3, PETSC_TRUE, list));
-  refused(PETSC_ERR_USER_INPUT, "-bar_load|'max(1,2)'|1 component;|needs 2", ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "max(1,2)", 2, PETSC_FALSE, list));
-  refused(PETSC_ERR_USER_INPUT, "-bar_load|4 components|needs 3", ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "1,2,3,", 3, PETSC_FALSE, list));
+  refused(PETSC_ERR_USER_INPUT, "-bar_load|'1,2'|2 components|needs 3|free",
+          ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "1,2", 3, PETSC_TRUE, list));
+  refused(PETSC_ERR_USER_INPUT, "-bar_load|'max(1,2)'|1 component;|needs 2",
+          ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "max(1,2)", 2, PETSC_FALSE, list));
+  refused(PETSC_ERR_USER_INPUT, "-bar_load|4 components|needs 3",
+          ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "1,2,3,", 3, PETSC_FALSE, list));
   refused(PETSC_ERR_USER_INPUT, "-bar_load|'free'", ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "1,free,2", 3, PETSC_FALSE, list));
   refused(PETSC_ERR_USER_INPUT, "-bar_load|''|empty", ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "1,,2", 3, PETSC_FALSE, list));
   refused(PETSC_ERR_USER_INPUT, "-bar_load|'2+'", ExpressionListCreate(PETSC_COMM_WORLD, "bar_load", "1,2,2+", 3, PETSC_FALSE, list));
@@ -319,16 +320,11 @@ static void differentiates_tables(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(evaluates_formulas),
-      cmocka_unit_test(tells_what_a_formula_depends_on),
-      cmocka_unit_test(refuses_formulas),
-      cmocka_unit_test(refuses_values_that_are_not_finite),
-      cmocka_unit_test(evaluates_tables),
-      cmocka_unit_test(evaluates_long_tables),
-      cmocka_unit_test(refuses_tables),
-      cmocka_unit_test(splits_lists),
-      cmocka_unit_test(differentiates_in_time),
-      cmocka_unit_test(does_not_look_before_the_start),
+      cmocka_unit_test(evaluates_formulas),     cmocka_unit_test(tells_what_a_formula_depends_on),
+      cmocka_unit_test(refuses_formulas),       cmocka_unit_test(refuses_values_that_are_not_finite),
+      cmocka_unit_test(evaluates_tables),       cmocka_unit_test(evaluates_long_tables),
+      cmocka_unit_test(refuses_tables),         cmocka_unit_test(splits_lists),
+      cmocka_unit_test(differentiates_in_time), cmocka_unit_test(does_not_look_before_the_start),
       cmocka_unit_test(differentiates_tables),
   };
 

@@ -174,12 +174,14 @@ static void CheckFrame(hid_t file, Simulation *simulation, const Record *record,
       assert_int_equal(bodies[c], b);
       assert_in_range(p, first, first + n_cells);
       assert_in_range(q, first, first + n_cells);
-      near(PetscAbsReal(x[q][0] - x[p][0]), 0.999 / n_cells, 1e-15);         /* neighbours: bars of 1 m less half the gap */
-      near(stress[c][0], strain, precision == FIELDS_DOUBLE ? 1e-15 : 1e-8); /* displacements of 0.02 m, rounded to 1e-9 m in single precision, over 1/4 m */
+      near(PetscAbsReal(x[q][0] - x[p][0]), 0.999 / n_cells, 1e-15); /* neighbours: bars of 1 m less half the gap */
+      near(stress[c][0], strain,
+           precision == FIELDS_DOUBLE ? 1e-15 : 1e-8); /* displacements of 0.02 m, rounded to 1e-9 m in single precision, over 1/4 m */
       near(von_mises[c], PetscAbsReal(stress[c][0]), 0);
       for (PetscInt i = 1; i < 9; i++) assert_true(stress[c][i] == 0);
       if (ranks[c] != rank) continue;
-      near(stress[c][0], precision == FIELDS_DOUBLE ? record->stress[step][b][6 * mine] : (double)(float)record->stress[step][b][6 * mine], 0);
+      near(stress[c][0], precision == FIELDS_DOUBLE ? record->stress[step][b][6 * mine] : (double)(float)record->stress[step][b][6 * mine],
+           0);
       mine++;
     }
   }
@@ -326,11 +328,11 @@ static void what_is_refused(void **state)
   AddOptions("-time_end 400"); /* 20000 steps */
   ok(SimulationCreate(simulation));
   if (IsFirst()) assert_int_equal(mkdir("folder", 0777) || mkdir("other.xdmf", 0777), 0);
-#define refuse(code, words, path, interval)                                                             \
-  do {                                                                                                  \
-    fields = NULL;                                                                                      \
-    refused(code, words, FieldsCreate(simulation->controller, path, interval, FIELDS_SINGLE, &fields)); \
-    ok(FieldsDestroy(&fields));                                                                         \
+#define refuse(code, words, path, interval)                                                                                                \
+  do {                                                                                                                                     \
+    fields = NULL;                                                                                                                         \
+    refused(code, words, FieldsCreate(simulation->controller, path, interval, FIELDS_SINGLE, &fields));                                    \
+    ok(FieldsDestroy(&fields));                                                                                                            \
   } while (0)
   MPI_Barrier(PETSC_COMM_WORLD);
   refuse(PETSC_ERR_FILE_WRITE, "-output_fields folder cannot be written", "folder", 0);
@@ -339,7 +341,8 @@ static void what_is_refused(void **state)
   refuse(PETSC_ERR_USER_INPUT, "give the path of the HDF5 file", "f.xdmf", 0);
   refuse(PETSC_ERR_USER_INPUT, "a:b.h5|choose another", "a:b.h5", 0);
   refuse(PETSC_ERR_USER_INPUT, "-output_fields_interval -1 must be", PATH, -1);
-  refuse(PETSC_ERR_USER_INPUT, "-output_fields_interval 2 makes 10001 frames in this run of 20000 |10000 is the limit; give 3 or more", PATH, 2);
+  refuse(PETSC_ERR_USER_INPUT, "-output_fields_interval 2 makes 10001 frames in this run of 20000 |10000 is the limit; give 3 or more",
+         PATH, 2);
   assert_false(Exists(PATH) || Exists(XDMF) || Exists("folder.part"));
   ok(FieldsCreate(simulation->controller, PATH, 3, FIELDS_SINGLE, &fields)); /* 6668 frames */
   ok(FieldsDestroy(&fields));

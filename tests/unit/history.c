@@ -41,7 +41,8 @@ static void CheckText(hid_t object, const char name[], const char expected[])
 }
 
 /* A dataset of one number for each record, or of three, with its units; the numbers */
-static void CheckDataset(hid_t file, const char name[], const char units[], PetscBool integer, hsize_t length, hsize_t components, double values[])
+static void CheckDataset(hid_t file, const char name[], const char units[], PetscBool integer, hsize_t length, hsize_t components,
+                         double values[])
 {
   hid_t   dataset = H5Dopen2(file, name, H5P_DEFAULT), space, type;
   hsize_t size[2];
@@ -260,7 +261,8 @@ static void paths_that_cannot_be_written(void **state)
     fclose(file);
     assert_int_equal(mkdir("folder", 0777), 0);
   }
-  refused(PETSC_ERR_FILE_WRITE, "-output_history blocker/h.h5 cannot be written", HistoryCreate(simulation->controller, "blocker/h.h5", &history));
+  refused(PETSC_ERR_FILE_WRITE, "-output_history blocker/h.h5 cannot be written",
+          HistoryCreate(simulation->controller, "blocker/h.h5", &history));
   refused(PETSC_ERR_FILE_WRITE, "-output_history folder cannot be written", HistoryCreate(simulation->controller, "folder", &history));
   refused(PETSC_ERR_USER_INPUT, "-output_history needs the path", HistoryCreate(simulation->controller, "", &history));
   assert_false(Exists("folder.part"));

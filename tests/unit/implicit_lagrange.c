@@ -47,7 +47,8 @@ static void agrees_with_schwarz(void **state)
     for (PetscInt step = 0; step < 6; step++) forces[step] = Step(simulation).force;
     AddOptions("-contact_type lagrange");
     SimulationRepeat(simulation, pairings[i]);
-    for (PetscInt step = 0; step < 6; step++) near(Step(simulation).force, forces[step], 1e-12); /* 1e-15 m over an element's 1/8 m/N, times growth */
+    for (PetscInt step = 0; step < 6; step++)
+      near(Step(simulation).force, forces[step], 1e-12); /* 1e-15 m over an element's 1/8 m/N, times growth */
   }
 }
 

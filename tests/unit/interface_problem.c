@@ -1,4 +1,5 @@
-/* Newton's method on the interface compliance: how many sweeps it takes, and that every way of solving the interface problem gives the same contact. */
+/* Newton's method on the interface compliance: how many sweeps it takes, and that every way of solving the interface problem gives the same
+   contact. */
 #include "simulation.h"
 
 #define MOST_STEPS 40
@@ -58,12 +59,14 @@ static void compare(const Record *a, const Record *b, PetscReal tolerance)
   }
 }
 
-/* Two blocks that do not match, 0.01 m apart at one end and 0.03 m at the other (the second begins with another height), 1 kg/m^3 and 1 Pa: waves run
-   at some 1.1 m/s, and cross an element in 0.15 s */
+/* Two blocks that do not match, 0.01 m apart at one end and 0.03 m at the other (the second begins with another height), 1 kg/m^3 and 1 Pa:
+   waves run at some 1.1 m/s, and cross an element in 0.15 s */
 static void AddBlocks(const char more[])
 {
-  AddOptions("-prefix_push a_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 4,5 -dm_plex_box_lower -1,0 -dm_plex_box_upper -0.01,1.1 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 -initial_velocity 0.1,0.02*x -prefix_pop "
-             "-prefix_push b_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 3,4 -dm_plex_box_lower 0,0.1 -dm_plex_box_upper 1,1.2 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 -initial_velocity -0.1,0 -prefix_pop "
+  AddOptions("-prefix_push a_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 4,5 -dm_plex_box_lower -1,0 -dm_plex_box_upper "
+             "-0.01,1.1 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 -initial_velocity 0.1,0.02*x -prefix_pop "
+             "-prefix_push b_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 3,4 -dm_plex_box_lower 0,0.1 -dm_plex_box_upper 1,1.2 "
+             "-density 1 -youngs_modulus 1 -poissons_ratio 0.25 -initial_velocity -0.1,0 -prefix_pop "
              "-bodies a,b -contact_pairs a:b -time_step 0.04 -time_end 1 ");
   AddOptions(more);
 }
@@ -76,11 +79,8 @@ static const char *const pairings[] = {
 };
 #define PAIRINGS 4
 static const char *const steps[] = {
-    "-a_ts_time_step 0.04 -b_ts_time_step 0.04",
-    "-a_ts_time_step 0.04 -b_ts_time_step 0.01",
-    "-a_ts_time_step 0.01 -b_ts_time_step 0.04",
-    "-a_ts_time_step 0.02 -b_ts_time_step 0.02",
-    "-a_ts_time_step 0.02 -b_ts_time_step 0.01",
+    "-a_ts_time_step 0.04 -b_ts_time_step 0.04", "-a_ts_time_step 0.04 -b_ts_time_step 0.01", "-a_ts_time_step 0.01 -b_ts_time_step 0.04",
+    "-a_ts_time_step 0.02 -b_ts_time_step 0.02", "-a_ts_time_step 0.02 -b_ts_time_step 0.01",
 };
 #define STEPS 5
 

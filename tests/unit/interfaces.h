@@ -83,9 +83,12 @@ static inline void move_mesh(DM dm, Map map, const PetscReal shift[3], Vec u)
 }
 
 /* [0,1]^dim under [0,1]^(dim - 1) x [1,2] with these elements; lower box first, `flip`: the upper one is the Dirichlet side */
-static inline void interface_create(Interface *interface, PetscInt dim, const char *const faces[2], const PetscBool simplex[2], PetscBool flip)
+static inline void interface_create(Interface *interface, PetscInt dim, const char *const faces[2], const PetscBool simplex[2],
+                                    PetscBool flip)
 {
-  static const char *const lower[2][4] = {{"", "0", "0,0", "0,0,0"}, {"", "1", "0,1", "0,0,1"}}, *const upper[2][4] = {{"", "1", "1,1", "1,1,1"}, {"", "2", "1,2", "1,1,2"}};
+  static const char *const lower[2][4] = {{"", "0", "0,0", "0,0,0"}, {"", "1", "0,1", "0,0,1"}}, *const upper[2][4] = {
+                                                                                                     {"", "1", "1,1", "1,1,1"},
+                                                                                                     {"", "2", "1,2", "1,1,2"}};
   static const char *const names[2][4] = {{"", "xmax", "ymax", "zmax"}, {"", "xmin", "ymin", "zmin"}};
 
   memset(interface, 0, sizeof(*interface));
@@ -158,7 +161,8 @@ static inline Vec interface_force(Interface *interface, PetscInt side, PetscBool
 
     ok(SurfaceGetData(interface->surface[0], &data));
     x = data->reference + 3 * i;
-    ok(VecSetValue(lambda, interface->begin + i, interface->rows.area[i] * (uniform ? 1 : 1.1 + PetscSinReal(5 * x[0] + 3 * x[1] + 7 * x[2])), INSERT_VALUES));
+    ok(VecSetValue(lambda, interface->begin + i,
+                   interface->rows.area[i] * (uniform ? 1 : 1.1 + PetscSinReal(5 * x[0] + 3 * x[1] + 7 * x[2])), INSERT_VALUES));
   }
   ok(VecAssemblyBegin(lambda));
   ok(VecAssemblyEnd(lambda));

@@ -4,7 +4,8 @@
 static void AddExplicitCollision(PetscReal frame)
 {
   AddCollision(8, 10, frame);
-  AddOptions("-contact_type lagrange -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
+  AddOptions("-contact_type lagrange -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 "
+             "-right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
 }
 
 /*
@@ -15,7 +16,8 @@ static void first_step(void **state)
 {
   Simulation      *simulation = (Simulation *)*state;
   const PetscReal  length = 1 - COLLISION_GAP / 2, masses[] = {length / 8 / 2, length / 10 / 2};
-  const PetscReal  force = (2 * COLLISION_SPEED * COLLISION_STEP - COLLISION_GAP) / (PetscSqr(COLLISION_STEP) * (1 / masses[0] + 1 / masses[1]));
+  const PetscReal  force = (2 * COLLISION_SPEED * COLLISION_STEP - COLLISION_GAP) /
+                           (PetscSqr(COLLISION_STEP) * (1 / masses[0] + 1 / masses[1]));
   ContactPairState pair;
 
   AddExplicitCollision(0);
@@ -53,7 +55,8 @@ static void moving_frame(void **state)
   for (PetscInt step = 0; step < 3; step++) forces[step] = Step(simulation).force;
   AddExplicitCollision(5);
   SimulationRepeat(simulation, "");
-  for (PetscInt step = 0; step < 3; step++) near(Step(simulation).force, forces[step], 1e-10); /* round-off of 1e-15 m over dt^2/m, 6e-3 m/N */
+  for (PetscInt step = 0; step < 3; step++)
+    near(Step(simulation).force, forces[step], 1e-10); /* round-off of 1e-15 m over dt^2/m, 6e-3 m/N */
 }
 
 /* No force pulls: bars of 0.1 m come apart after 0.2 s */
@@ -85,17 +88,15 @@ static void other_bodies_are_refused(void **state)
 
   AddExplicitCollision(0);
   AddOptions("-left_ts_time_step 0.01");
-  refused(PETSC_ERR_USER_INPUT, "'left' (2 substeps)|'right'|-left_mass_redistribute true|-right_ts_time_step", SimulationCreate(simulation));
+  refused(PETSC_ERR_USER_INPUT, "'left' (2 substeps)|'right'|-left_mass_redistribute true|-right_ts_time_step",
+          SimulationCreate(simulation));
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(first_step),
-      simulation_test(contact_without_gap),
-      simulation_test(moving_frame),
-      simulation_test(forces_never_pull),
-      simulation_test(other_bodies_are_refused),
+      simulation_test(first_step),        simulation_test(contact_without_gap),      simulation_test(moving_frame),
+      simulation_test(forces_never_pull), simulation_test(other_bodies_are_refused),
   };
 
   return impakt_main(argc, argv, tests);

@@ -35,7 +35,8 @@ static void traction_is_area_times_traction(void **state)
       PetscBool      force;
       Body           body;
 
-      ok(PetscSNPrintf(text, sizeof(text), "-boundary_traction %s -boundary_traction_%s %s", sides[side], sides[side], components[dim - 1]));
+      ok(PetscSNPrintf(text, sizeof(text), "-boundary_traction %s -boundary_traction_%s %s", sides[side], sides[side],
+                       components[dim - 1]));
       options = box_create(&body, box, text);
       ok(BodyLoadsHaveForce(body, &force));
       assert_true(force);
@@ -82,17 +83,20 @@ static void pressure_pushes_inwards(void **state)
       for (PetscInt side = 0; side < 2 * box_dim[box]; side++) {
         const PetscInt  dim = box_dim[box], axis = side / 2;
         const PetscReal push        = (side % 2 ? -2 : 2) * area(dim, axis);
-        const PetscReal expected[3] = {axis == 0 ? c[turned] * push : axis == 1 ? -s[turned] * push
-                                                                                : 0,
-                                       axis == 0 ? s[turned] * push : axis == 1 ? c[turned] * push
-                                                                                : 0,
+        const PetscReal expected[3] = {axis == 0   ? c[turned] * push
+                                       : axis == 1 ? -s[turned] * push
+                                                   : 0,
+                                       axis == 0   ? s[turned] * push
+                                       : axis == 1 ? c[turned] * push
+                                                   : 0,
                                        axis == 2 ? push : 0};
         PetscOptions    options;
         char            text[256];
         Total           total;
         Body            body;
 
-        ok(PetscSNPrintf(text, sizeof(text), "-boundary_traction %s -boundary_traction_%s %s %s", sides[side], sides[side], components[dim - 1], turned ? turns[dim - 1] : ""));
+        ok(PetscSNPrintf(text, sizeof(text), "-boundary_traction %s -boundary_traction_%s %s %s", sides[side], sides[side],
+                         components[dim - 1], turned ? turns[dim - 1] : ""));
         options = box_create(&body, box, text);
         total   = force_at(body, 0);
         for (PetscInt j = 0; j < dim; j++) near(total.force[j], expected[j], ROUND_OFF);
@@ -116,7 +120,8 @@ static void pressure_of_a_fluid_is_buoyancy(void **state)
       Body            body;
 
       for (int side = 0; side < 6; side++) {
-        ok(PetscSNPrintf(one, sizeof(one), " -boundary_traction_%s %s*nx,%s*ny,%s*nz", sides[side], formulas[formula], formulas[formula], formulas[formula]));
+        ok(PetscSNPrintf(one, sizeof(one), " -boundary_traction_%s %s*nx,%s*ny,%s*nz", sides[side], formulas[formula], formulas[formula],
+                         formulas[formula]));
         ok(PetscStrlcat(text, one, sizeof(text)));
       }
       options = box_create(&body, box, text);
@@ -142,7 +147,9 @@ static void linear_traction_has_its_moment(void **state)
     Total        total;
     Body         body;
 
-    options = box_create(&body, box, box < 3 ? "-boundary_traction xmax -boundary_traction_xmax 1+2*y,0" : "-boundary_traction xmax -boundary_traction_xmax 1+2*y+4*z,0,0");
+    options = box_create(&body, box,
+                         box < 3 ? "-boundary_traction xmax -boundary_traction_xmax 1+2*y,0"
+                                 : "-boundary_traction xmax -boundary_traction_xmax 1+2*y+4*z,0,0");
     total   = force_at(body, 0);
     if (box < 3) {
       near(total.force[0], B + 2 * Y, ROUND_OFF);
@@ -205,11 +212,13 @@ static void gravity_is_free_fall(void **state)
       ok(PetscSNPrintf(text, sizeof(text), "-gravity %s -mass_type %s", g[dim - 1], masses[mass]));
       options = box_create(&body, box, text);
       total   = force_at(body, 0);
-      for (PetscInt d = 0; d < dim; d++) near(total.force[d], 3 * volume(dim) * values[dim - 1][d], 700 * ROUND_OFF); /* 3 * 24 * 9.81 = 706 */
+      for (PetscInt d = 0; d < dim; d++)
+        near(total.force[d], 3 * volume(dim) * values[dim - 1][d], 700 * ROUND_OFF); /* 3 * 24 * 9.81 = 706 */
       ok(BodyGetSolution(body, NULL, NULL, &a));
       ok(VecGetLocalSize(a, &n));
       ok(VecGetArrayRead(a, &accelerations));
-      for (PetscInt i = 0; i < n; i++) near(accelerations[i], values[dim - 1][i % dim], 1e-10); /* a solve with the mass matrix, whose condition number is below 100 */
+      for (PetscInt i = 0; i < n; i++)
+        near(accelerations[i], values[dim - 1][i % dim], 1e-10); /* a solve with the mass matrix, whose condition number is below 100 */
       ok(VecRestoreArrayRead(a, &accelerations));
       bar_destroy(&body, options);
     }
@@ -266,7 +275,8 @@ static void steady_and_varying_are_the_same_force(void **state)
       Body         body;
       Vec          f, negative;
 
-      ok(PetscSNPrintf(text, sizeof(text), "-boundary_traction ymax -boundary_traction_ymax 0,%s%s -body_force %s,1%s", formulas[k], box < 3 ? "" : ",2", formulas[k], box < 3 ? "" : ",x"));
+      ok(PetscSNPrintf(text, sizeof(text), "-boundary_traction ymax -boundary_traction_ymax 0,%s%s -body_force %s,1%s", formulas[k],
+                       box < 3 ? "" : ",2", formulas[k], box < 3 ? "" : ",x"));
       options = box_create(&body, box, text);
       ok(BodyCreateVec(body, &f));
       ok(BodyCreateVec(body, &negative));

@@ -11,10 +11,13 @@ static const PetscInt box_dim[N_BOXES] = {1, 2, 2, 3, 3};
 
 static inline PetscOptions box_options(PetscInt box, const char more[])
 {
-  const char *const faces[] = {"5", "3,2", "3,2,3"}, *const lower[] = {"0.5", "0.5,-1", "0.5,-1,0.25"}, *const upper[] = {"2.5", "2.5,2", "2.5,2,4.25"};
-  const PetscInt dim = box_dim[box];
+  const char *const faces[] = {"5", "3,2", "3,2,3"}, *const lower[] = {"0.5", "0.5,-1", "0.5,-1,0.25"},
+                    *const upper[] = {"2.5", "2.5,2", "2.5,2,4.25"};
+  const PetscInt           dim     = box_dim[box];
 
-  return options_begin("-prefix_push bar_ -dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s %s -density 3 -youngs_modulus 16 %s -prefix_pop", (int)dim, faces[dim - 1], lower[dim - 1], upper[dim - 1],
+  return options_begin("-prefix_push bar_ -dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s %s -density 3 "
+                       "-youngs_modulus 16 %s -prefix_pop",
+                       (int)dim, faces[dim - 1], lower[dim - 1], upper[dim - 1],
                        dim == 1       ? ""
                        : box % 2 == 0 ? "-dm_plex_simplex 1"
                                       : "-dm_plex_simplex 0",

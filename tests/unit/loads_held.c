@@ -45,10 +45,15 @@ static void held_dofs_are_those_of_the_surfaces(void **state)
       {1, 6, "-boundary_displacement xmin -boundary_displacement_xmin 0,0"},
       {2, 3, "-boundary_displacement xmin -boundary_displacement_xmin free,0"},
       {2, 0, "-boundary_displacement xmin -boundary_displacement_xmin free,free"},
-      {1, 6 + 3, "-boundary_displacement xmin,ymin -boundary_displacement_xmin 0,0 -boundary_displacement_ymin x,free"}, /* they share a node */
+      {1, 6 + 3,
+       "-boundary_displacement xmin,ymin -boundary_displacement_xmin 0,0 -boundary_displacement_ymin x,free"}, /* they share a node */
       {3, 36, "-boundary_displacement xmin -boundary_displacement_xmin 0,1,t"},
-      {4, 12 + 16 + 12, "-boundary_displacement xmin,ymin,zmin -boundary_displacement_xmin 0,free,free -boundary_displacement_ymin free,0,free -boundary_displacement_zmin free,free,0"},
-      {4, 12 + 16 - 4 + 12, "-boundary_displacement xmin,ymin,zmin -boundary_displacement_xmin 0,free,free -boundary_displacement_ymin 0,free,free -boundary_displacement_zmin free,free,0"}, /* four nodes on the edge of both */
+      {4, 12 + 16 + 12,
+       "-boundary_displacement xmin,ymin,zmin -boundary_displacement_xmin 0,free,free -boundary_displacement_ymin free,0,free "
+       "-boundary_displacement_zmin free,free,0"},
+      {4, 12 + 16 - 4 + 12,
+       "-boundary_displacement xmin,ymin,zmin -boundary_displacement_xmin 0,free,free -boundary_displacement_ymin 0,free,free "
+       "-boundary_displacement_zmin free,free,0"}, /* four nodes on the edge of both */
   };
 
   (void)state;
@@ -78,10 +83,13 @@ static void held_dofs_go_as_prescribed(void **state)
     Vec          vecs[3];
     Body         body;
 
-    options = box_create(&body, box, "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0.5,x-y -boundary_displacement_xmax 0.1*sin(20*t)*y,free");
+    options = box_create(
+        &body, box,
+        "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0.5,x-y -boundary_displacement_xmax 0.1*sin(20*t)*y,free");
     for (int k = 0; k < 3; k++) ok(BodyCreateVec(body, &vecs[k]));
     for (size_t i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
-      const PetscReal t = times[i], expected[] = {0.2 * PetscSinReal(20 * t), 4 * PetscCosReal(20 * t), -80 * PetscSinReal(20 * t)}, tolerance[] = {1e-15, 4e-6, 80e-4};
+      const PetscReal t = times[i], expected[] = {0.2 * PetscSinReal(20 * t), 4 * PetscCosReal(20 * t), -80 * PetscSinReal(20 * t)},
+                      tolerance[] = {1e-15, 4e-6, 80e-4};
 
       for (int k = 0; k < 3; k++) ok(VecSet(vecs[k], 77));
       ok(BodyLoadsPrescribe(body, t, vecs[0], vecs[1], vecs[2]));
@@ -115,7 +123,8 @@ static void rates_begin_at_the_start(void **state)
   Body            body;
 
   (void)state;
-  options = box_options(0, "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0 -boundary_displacement_xmax t<1?sqrt(t-1):3*(t-1)+(t-1)^2");
+  options = box_options(
+      0, "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0 -boundary_displacement_xmax t<1?sqrt(t-1):3*(t-1)+(t-1)^2");
   ok(BodyCreate(PETSC_COMM_WORLD, "bar", &body));
   ok(BodySetFromOptions(body));
   ok(BodySetControllerStep(body, 1, 0.01));
@@ -171,7 +180,9 @@ static void the_state_at_the_start_is_that_of_the_options(void **state)
   Vec             u, v;
 
   (void)state;
-  options = box_create(&body, 1, "-initial_displacement 0.01*x,-0.02*y -initial_velocity 3,x*y -boundary_displacement xmax -boundary_displacement_xmax 5*t+0.1,free");
+  options = box_create(
+      &body, 1,
+      "-initial_displacement 0.01*x,-0.02*y -initial_velocity 3,x*y -boundary_displacement xmax -boundary_displacement_xmax 5*t+0.1,free");
   ok(BodyGetSolution(body, &u, &v, NULL));
   near(component_at(body, u, inside, 0), 0.01 * inside[0], 1e-17);
   near(component_at(body, u, inside, 1), -0.01, 1e-17);
@@ -200,12 +211,14 @@ static void refuses_bad_displacements(void **state)
       {"-boundary_displacement xmin,top -boundary_displacement_xmin 1,2 -boundary_displacement_top 1,2", "bar|'top'|xmin"},
       {"-boundary_displacement xmax,xmax -boundary_displacement_xmax 1,2", "-bar_boundary_displacement|twice"},
       {"-boundary_displacement xmax, -boundary_displacement_xmax 1,2", "-bar_boundary_displacement|empty name"},
-      {"-boundary_displacement xmax -boundary_displacement_xmax 1", "-bar_boundary_displacement_xmax|1 component;|'bar'|2-dimensional|free"},
+      {"-boundary_displacement xmax -boundary_displacement_xmax 1",
+       "-bar_boundary_displacement_xmax|1 component;|'bar'|2-dimensional|free"},
       {"-boundary_displacement xmax -boundary_displacement_xmax 1,free,free", "-bar_boundary_displacement_xmax|3 components|2-dimensional"},
       {"-boundary_displacement xmax -boundary_displacement_xmax 1,Free", "-bar_boundary_displacement_xmax|'Free'"},
       {"-boundary_displacement xmax -boundary_displacement_xmax nx,0", "-bar_boundary_displacement_xmax|nx|tractions"},
       {"-boundary_displacement xmax -boundary_displacement_xmax 1/0,0", "-bar_boundary_displacement_xmax|finite"},
-      {"-dm_plex_box_faces 1,1 -boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0 -boundary_displacement_xmax t,0", "-bar_boundary_displacement|all components of all nodes|'bar'"},
+      {"-dm_plex_box_faces 1,1 -boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0 -boundary_displacement_xmax t,0",
+       "-bar_boundary_displacement|all components of all nodes|'bar'"},
   };
   PetscMPIInt size;
 

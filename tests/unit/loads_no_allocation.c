@@ -16,8 +16,11 @@ static void loads_do_not_allocate(void **state)
   assert_non_null(file);
   fprintf(file, "0 0\n1 2\n4 12\n");
   assert_int_equal(fclose(file), 0);
-  options = box_create(&body, 3, "-gravity 0,0,-9.81 -body_force 1,t,x*t -boundary_traction xmax,ymax -boundary_traction_xmax -2*t*nx,0,table:loads-allocation.txt -boundary_traction_ymax 1,2,max(x,sin(t),3) "
-                                 "-boundary_displacement xmin,zmin -boundary_displacement_xmin 0,x*sin(t),table:loads-allocation.txt -boundary_displacement_zmin free,free,t^2");
+  options = box_create(&body, 3,
+                       "-gravity 0,0,-9.81 -body_force 1,t,x*t -boundary_traction xmax,ymax -boundary_traction_xmax "
+                       "-2*t*nx,0,table:loads-allocation.txt -boundary_traction_ymax 1,2,max(x,sin(t),3) "
+                       "-boundary_displacement xmin,zmin -boundary_displacement_xmin 0,x*sin(t),table:loads-allocation.txt "
+                       "-boundary_displacement_zmin free,free,t^2");
   ok(BodyCreateVec(body, &f));
   ok(BodyCreateVec(body, &u));
   ok(BodyCreateVec(body, &v));

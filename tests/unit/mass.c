@@ -43,10 +43,13 @@ static void is_that_found_by_hand(void **state)
   for (PetscInt moved = 0; moved < 2; moved++)
     for (PetscInt type = 0; type < 3; type++) {
       Body         body;
-      PetscOptions options = bar_create(&body, "-dm_plex_box_faces 2 -dm_plex_box_upper 2 -density 3 -cross_section 2 -youngs_modulus 1 -mass_type %s -mass_redistribute %d", types[type], (int)moved);
-      PetscReal    column[3];
-      PetscBool    redistributed;
-      Rows         rows;
+      PetscOptions options = bar_create(
+          &body,
+          "-dm_plex_box_faces 2 -dm_plex_box_upper 2 -density 3 -cross_section 2 -youngs_modulus 1 -mass_type %s -mass_redistribute %d",
+          types[type], (int)moved);
+      PetscReal column[3];
+      PetscBool redistributed;
+      Rows      rows;
 
       set_rows(body, 1, &end, &rows);
       ok(BodySetControllerStep(body, 0, 0.1));
@@ -71,7 +74,10 @@ static void adds_up_to_that_of_the_body(void **state)
     for (PetscInt moved = 0; moved < 2; moved++)
       for (PetscInt type = 0; type < 3; type++) {
         Body         body;
-        PetscOptions options = bar_create(&body, "-dm_plex_box_faces 7 -dm_plex_box_upper 1.4 -density 3 -cross_section 0.5 -youngs_modulus 1 -initial_velocity 1 -mass_type %s -mass_redistribute %d", types[type], (int)moved);
+        PetscOptions options = bar_create(&body,
+                                          "-dm_plex_box_faces 7 -dm_plex_box_upper 1.4 -density 3 -cross_section 0.5 -youngs_modulus 1 "
+                                          "-initial_velocity 1 -mass_type %s -mass_redistribute %d",
+                                          types[type], (int)moved);
         BodyMeasures measures;
         PetscReal    mass;
         Rows         rows;
@@ -129,7 +135,9 @@ static PetscReal measure_frequency(const char type[], const char integrator[], P
 {
   const PetscReal dt = 2 / 3. / 2 / steps; /* a quarter period is L / (2 c) */
   Body            body;
-  PetscOptions    options = bar_create(&body, "-dm_plex_box_faces %d -dm_plex_box_upper 2 -density 2 -youngs_modulus 18 -mass_type %s -ts_type %s", (int)elements, type, integrator);
+  PetscOptions    options = bar_create(&body,
+                                       "-dm_plex_box_faces %d -dm_plex_box_upper 2 -density 2 -youngs_modulus 18 -mass_type %s -ts_type %s",
+                                       (int)elements, type, integrator);
   PetscReal       phi;
   Vec             u;
 
@@ -157,9 +165,12 @@ static void gives_vibrations_their_order_in_space(void **state)
 
       for (PetscInt k = 0; k < 3; k++) {
         const PetscInt  elements = 6 << k;
-        const PetscReal theta = PETSC_PI / elements, cosine = PetscCosReal(theta), mass = type == 0 ? 1 : type == 1 ? (2 + cosine) / 3
-                                                                                                                    : (5 + cosine) / 6;
-        const PetscReal exact = 1.5 * PETSC_PI, omega = measure_frequency(types[type], integrators[i], elements, 24); /* stable: 24 >= 12 sqrt(3) */
+        const PetscReal theta = PETSC_PI / elements, cosine = PetscCosReal(theta),
+                        mass  = type == 0   ? 1
+                                : type == 1 ? (2 + cosine) / 3
+                                            : (5 + cosine) / 6;
+        const PetscReal exact = 1.5 * PETSC_PI,
+                        omega = measure_frequency(types[type], integrators[i], elements, 24); /* stable: 24 >= 12 sqrt(3) */
 
         near(omega, 3 * elements / 2. * PetscSqrtReal(2 * (1 - cosine) / mass), 1e-11); /* round-off of 24 steps, and of acos */
         errors[k] = omega / exact - 1;

@@ -13,10 +13,11 @@ static Material create(void)
 
 static void is_made_from_options(void **state)
 {
-  PetscOptions options  = options_begin("-bar_density 7850 -bar_youngs_modulus 2.1e11 -bar_poissons_ratio 0.3 -bar_material_type linear_elastic");
-  Material     material = create();
-  PetscReal    density, modulus;
-  PetscBool    linear, same;
+  PetscOptions options = options_begin(
+      "-bar_density 7850 -bar_youngs_modulus 2.1e11 -bar_poissons_ratio 0.3 -bar_material_type linear_elastic");
+  Material  material = create();
+  PetscReal density, modulus;
+  PetscBool linear, same;
 
   (void)state;
   ok(MaterialSetFromOptions(material));
@@ -72,7 +73,8 @@ static void gives_uniaxial_stress_of_a_batch(void **state)
 
 static Material create_with(const char type[], PetscReal E, PetscReal nu)
 {
-  PetscOptions options  = options_begin("-bar_density 1 -bar_youngs_modulus %.17g -bar_poissons_ratio %.17g -bar_material_type %s", (double)E, (double)nu, type);
+  PetscOptions options  = options_begin("-bar_density 1 -bar_youngs_modulus %.17g -bar_poissons_ratio %.17g -bar_material_type %s",
+                                        (double)E, (double)nu, type);
   Material     material = create();
 
   ok(MaterialSetFromOptions(material));
@@ -131,7 +133,8 @@ static void bars_of_nonlinear_models_have_known_stresses(void **state)
 }
 
 /* Central differences of order 8 with a step of 0.002: truncation and round-off are of order 1e-13 of the modulus as long as nothing
-   is singular near by (s = 0, 0.3 away; the end of the sides' equilibrium with nu = -0.4, 0.1 away). A batch that is no multiple of the vectors' length. */
+   is singular near by (s = 0, 0.3 away; the end of the sides' equilibrium with nu = -0.4, 0.1 away). A batch that is no multiple of the
+   vectors' length. */
 static void bars_have_consistent_stress_tangent_and_energy(void **state)
 {
   const char *const types[]   = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
@@ -341,7 +344,8 @@ static void names_an_unknown_type(void **state)
   PetscOptions options  = options_begin("-bar_material_type chewing_gum");
 
   (void)state;
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-bar_material_type|chewing_gum|linear_elastic, neo_hookean, saint_venant_kirchhoff", MaterialSetFromOptions(material));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-bar_material_type|chewing_gum|linear_elastic, neo_hookean, saint_venant_kirchhoff",
+          MaterialSetFromOptions(material));
   refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "jelly", MaterialSetType(material, "jelly"));
   ok(MaterialDestroy(&material));
   options_drop(options);

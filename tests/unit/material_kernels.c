@@ -167,7 +167,8 @@ static void small_strains_are_linear_and_keep_their_digits(void **state)
 /* The models as textbooks write them, in F, with 64 bits of mantissa; rounding of F costs 1e-19 / size */
 static void definition(int type, PetscReal nu, const PetscReal H[9], PetscReal P[9], PetscReal *W)
 {
-  const long double lambda = (long double)MODULUS * nu / ((1 + (long double)nu) * (1 - 2 * (long double)nu)), mu = MODULUS / (2 * (1 + (long double)nu));
+  const long double lambda = (long double)MODULUS * nu / ((1 + (long double)nu) * (1 - 2 * (long double)nu)),
+                    mu     = MODULUS / (2 * (1 + (long double)nu));
   long double       F[9], C[9], cofactor[9], J = 0, trace = 0, squares = 0;
 
   for (int i = 0; i < 9; i++) F[i] = H[i] + (long double)(i % 4 == 0);
@@ -187,7 +188,8 @@ static void definition(int type, PetscReal nu, const PetscReal H[9], PetscReal P
   } else {
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) {
-        P[3 * i + j] = (PetscReal)(lambda / 2 * trace * F[3 * i + j] + mu * (F[3 * i] * C[j] + F[3 * i + 1] * C[3 + j] + F[3 * i + 2] * C[6 + j] - F[3 * i + j]));
+        P[3 * i + j] = (PetscReal)(lambda / 2 * trace * F[3 * i + j] +
+                                   mu * (F[3 * i] * C[j] + F[3 * i + 1] * C[3 + j] + F[3 * i + 2] * C[6 + j] - F[3 * i + j]));
       }
     *W = (PetscReal)(lambda / 8 * trace * trace + mu / 4 * squares);
   }
@@ -221,7 +223,8 @@ static void stress_and_energy_are_those_of_the_textbooks(void **state)
     }
 }
 
-/* The neo-Hookean energy changes from a series to a logarithm at volume changes of 0.2: both are exact to round-off there. Observed: 4e-16. */
+/* The neo-Hookean energy changes from a series to a logarithm at volume changes of 0.2: both are exact to round-off there. Observed: 4e-16.
+ */
 static void energy_is_exact_where_its_logarithm_changes_form(void **state)
 {
   const PetscReal changes[] = {-0.21, -0.2001, -0.1999, -0.19, -0.15, 0.15, 0.19, 0.1999, 0.2001, 0.21};
@@ -326,13 +329,15 @@ static void known_states_have_known_stresses(void **state)
     const PetscReal nu = ratios[n], lambda = lambda_of(nu), mu = mu_of(nu), gamma = 0.7;
     const PetscReal shear[9] = {0, gamma};
     MaterialKernels svk, neo;
-    Material        first = create(MATERIAL_SAINT_VENANT_KIRCHHOFF, nu, PETSC_FALSE, &svk), second = create(MATERIAL_NEO_HOOKEAN, nu, PETSC_FALSE, &neo);
+    Material        first  = create(MATERIAL_SAINT_VENANT_KIRCHHOFF, nu, PETSC_FALSE, &svk),
+                    second = create(MATERIAL_NEO_HOOKEAN, nu, PETSC_FALSE, &neo);
     PetscReal       P[9];
 
     /* simple shear: E_xy = gamma / 2, E_yy = gamma^2 / 2; the neo-Hookean one has no volume change and F - F^-T = gamma (xy and yx) */
     {
       const PetscReal Sxx = lambda * gamma * gamma / 2, Syy = (lambda + 2 * mu) * gamma * gamma / 2, Sxy = mu * gamma;
-      const PetscReal of_svk[9] = {Sxx + gamma * Sxy, Sxy + gamma * Syy, 0, Sxy, Syy, 0, 0, 0, Sxx}, of_neo[9] = {0, mu * gamma, 0, mu * gamma};
+      const PetscReal of_svk[9] = {Sxx + gamma * Sxy, Sxy + gamma * Syy, 0, Sxy, Syy, 0, 0, 0, Sxx},
+                      of_neo[9] = {0, mu * gamma, 0, mu * gamma};
 
       stress_at(&svk, shear, P);
       near_all(P, of_svk, 9, tolerance * MODULUS);
@@ -354,7 +359,8 @@ static void known_states_have_known_stresses(void **state)
         stress_at(&neo, along, P);
         near_all(P, of_neo, 9, tolerance * (MODULUS + largest(of_neo, 9)));
         near(energy_at(&svk, along), (lambda + 2 * mu) * E * E / 2, tolerance * (MODULUS + PetscAbsReal(P[0])));
-        near(energy_at(&neo, along), mu * (E - PetscLogReal(s)) + lambda / 2 * (E - PetscLogReal(s)), tolerance * (MODULUS + PetscAbsReal(P[0])));
+        near(energy_at(&neo, along), mu * (E - PetscLogReal(s)) + lambda / 2 * (E - PetscLogReal(s)),
+             tolerance * (MODULUS + PetscAbsReal(P[0])));
       }
       /* the same stretch along every axis */
       {

@@ -59,7 +59,8 @@ static void thickness_is_found_without_a_formula(void **state)
       for (int size = 0; size < 3; size++) {
         const PetscReal sizes[] = {1.6, 0.4, 1e-10};
         MaterialKernels formula, newton;
-        Material        material = create(types[type], ratios[nu], PETSC_TRUE, &formula), other = create(types[type], ratios[nu], PETSC_FALSE, &newton);
+        Material        material = create(types[type], ratios[nu], PETSC_TRUE, &formula),
+                        other    = create(types[type], ratios[nu], PETSC_FALSE, &newton);
 
         ok(MaterialCondenseKernels(other, NULL, &newton));
         for (int point = 0; point < 20; point++) {

@@ -24,7 +24,8 @@ static inline PetscReal mu_of(PetscReal nu)
 
 static inline Material create(const char type[], PetscReal nu, PetscBool plane_stress, MaterialKernels *kernels)
 {
-  PetscOptions options = options_begin("-density 1 -youngs_modulus %.17g -poissons_ratio %.17g -material_type %s", MODULUS, (double)nu, type);
+  PetscOptions options = options_begin("-density 1 -youngs_modulus %.17g -poissons_ratio %.17g -material_type %s", MODULUS, (double)nu,
+                                       type);
   Material     material;
 
   ok(MaterialCreate(PETSC_COMM_SELF, &material));
@@ -36,10 +37,10 @@ static inline Material create(const char type[], PetscReal nu, PetscBool plane_s
 }
 
 /* for each model, Poisson's ratio, and solid or plane stress */
-#define for_all_models(material, kernels, type, nu, plane)            \
-  for (int type = 0; type < N_TYPES; type++)                          \
-    for (size_t nu = 0; nu < PETSC_STATIC_ARRAY_LENGTH(ratios); nu++) \
-      for (int plane = 0; plane < 2; plane++)                         \
+#define for_all_models(material, kernels, type, nu, plane)                                                                                 \
+  for (int type = 0; type < N_TYPES; type++)                                                                                               \
+    for (size_t nu = 0; nu < PETSC_STATIC_ARRAY_LENGTH(ratios); nu++)                                                                      \
+      for (int plane = 0; plane < 2; plane++)                                                                                              \
         for (material = create(types[type], ratios[nu], plane, &kernels); material; ok(MaterialDestroy(&material)))
 
 /* Numbers between -1 and 1, the same ones in every run (Numerical Recipes' quick generator) */
@@ -61,8 +62,7 @@ static inline PetscReal determinant(const PetscReal H[9])
 static inline void draw(uint32_t *seed, PetscReal size, PetscBool plane, PetscReal H[9])
 {
   do {
-    for (int i = 0; i < 9; i++) H[i] = size * pseudo_random(seed) * (!plane ? 1 : i == 2 || i > 4 ? 0
-                                                                                                  : 0.5);
+    for (int i = 0; i < 9; i++) H[i] = size * pseudo_random(seed) * (!plane ? 1 : i == 2 || i > 4 ? 0 : 0.5);
   } while (determinant(H) < 0.3);
 }
 
@@ -98,5 +98,5 @@ static inline PetscReal largest(const PetscReal a[], int n)
 }
 
 /* A macro, so that failures name the line */
-#define near_all(a, b, n, tolerance) \
+#define near_all(a, b, n, tolerance)                                                                                                       \
   for (int i_ = 0; i_ < (n); i_++) near((a)[i_], (b)[i_], tolerance)

@@ -6,7 +6,8 @@ static DM CreateBox(PetscInt dim, PetscBool simplex, const char more[])
 {
   const char *const faces[] = {"6", "2,3", "2,3,2"}, *const upper[] = {"1", "1,2", "1,2,3"};
 
-  return create_mesh("-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_upper %s %s %s", (int)dim, faces[dim - 1], upper[dim - 1], dim > 1 ? (simplex ? "-dm_plex_simplex 1" : "-dm_plex_simplex 0") : "", more);
+  return create_mesh("-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_upper %s %s %s", (int)dim, faces[dim - 1], upper[dim - 1],
+                     dim > 1 ? (simplex ? "-dm_plex_simplex 1" : "-dm_plex_simplex 0") : "", more);
 }
 
 /* A mesh that did not fit at inner faces would have these on its boundary too */
@@ -110,7 +111,8 @@ static void parts_of_ranks(void **state)
 /* Scaled by 2, turned by a right angle about the line x = 1, y = 0 (x goes to y, y to -x), lifted by 5 */
 static void place_in_space(void **state)
 {
-  DM                 dm             = create_mesh("-dm_plex_dim 3 -dm_plex_simplex 0 -dm_plex_box_faces 3,2,2 -scale 2 -rotate 0,0,3,90 -rotate_centre 1,0,0 -translate 0,0,5");
+  DM dm = create_mesh(
+      "-dm_plex_dim 3 -dm_plex_simplex 0 -dm_plex_box_faces 3,2,2 -scale 2 -rotate 0,0,3,90 -rotate_centre 1,0,0 -translate 0,0,5");
   const PetscReal    expected[2][3] = {{-1, -1, 5}, {1, 1, 7}};
   PetscReal          lower[3], upper[3];
   const SurfaceFacts side = surface_facts(dm, "xmin");

@@ -38,7 +38,8 @@ static int TypeOf(const Row *row)
    version 4.1, where there is also a node that no element has. */
 static void AddNames(Text *text, PetscInt dim)
 {
-  Add(text, "$PhysicalNames\n4\n%d 7 \"left\"\n%d 8 \"right\"\n%d 1 \"first\"\n%d 2 \"second\"\n$EndPhysicalNames\n", (int)dim - 1, (int)dim - 1, (int)dim, (int)dim);
+  Add(text, "$PhysicalNames\n4\n%d 7 \"left\"\n%d 8 \"right\"\n%d 1 \"first\"\n%d 2 \"second\"\n$EndPhysicalNames\n", (int)dim - 1,
+      (int)dim - 1, (int)dim, (int)dim);
 }
 
 static PetscInt EndElements(const Row *row)
@@ -72,8 +73,7 @@ static void WriteGmsh22(const char path[], const Row *row)
 {
   Text      text = {0};
   char      tags[32];
-  const int end_type = row->dim == 2 ? 1 : EndElements(row) == 2 ? 2
-                                                                 : 3;
+  const int end_type = row->dim == 2 ? 1 : EndElements(row) == 2 ? 2 : 3;
 
   Add(&text, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
   AddNames(&text, row->dim);
@@ -104,10 +104,8 @@ static void WriteGmsh22(const char path[], const Row *row)
 static void WriteGmsh41(const char path[], const Row *row)
 {
   Text           text     = {0};
-  const int      end_type = row->dim == 2 ? 1 : EndElements(row) == 2 ? 2
-                                                                      : 3,
-                 dim      = (int)row->dim;
-  const PetscInt half     = (row->elements + 1) / 2;
+  const int      end_type = row->dim == 2 ? 1 : EndElements(row) == 2 ? 2 : 3, dim = (int)row->dim;
+  const PetscInt half = (row->elements + 1) / 2;
 
   Add(&text, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
   AddNames(&text, row->dim);
@@ -258,7 +256,8 @@ static void blocks_of_a_file(void **state)
   dm = create_mesh("-dm_plex_filename row.msh -mesh_blocks 1,second");
   assert_int_equal(count_cells(dm), row.elements);
   ok(DMDestroy(&dm));
-  mesh_refused(PETSC_ERR_USER_INPUT, "'box'|row.msh|'third'|-mesh_blocks|first (1), second (2)", "-dm_plex_filename row.msh -mesh_blocks second,third");
+  mesh_refused(PETSC_ERR_USER_INPUT, "'box'|row.msh|'third'|-mesh_blocks|first (1), second (2)",
+               "-dm_plex_filename row.msh -mesh_blocks second,third");
 }
 
 /* A part of a sound file is no sound file */
@@ -294,8 +293,9 @@ static void truncated_gmsh_files(void **state)
   }
 }
 
-#define GMSH_BEGIN "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n6 2 1 0\n$EndNodes\n$Elements\n"
-#define GMSH_END   "$EndElements\n"
+#define GMSH_BEGIN                                                                                                                         \
+  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n6 2 1 0\n$EndNodes\n$Elements\n"
+#define GMSH_END "$EndElements\n"
 
 static void bad_gmsh_files(void **state)
 {
@@ -325,9 +325,15 @@ static void bad_gmsh_files(void **state)
       {GMSH_BEGIN "1\n1 2 2 0 1 1 2 5\n" GMSH_END, "element 1|area 0"},
       {GMSH_BEGIN "2\n1 3 2 0 1 1 2 3 4\n7 1 2 3 1 1 5\n" GMSH_END, "element 7|not a face"},
       {GMSH_BEGIN "0\n" GMSH_END, "no elements"},
-      {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"depth\"\n$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n2\n1 3 2 0 1 1 2 3 4\n2 1 2 1 1 1 2\n" GMSH_END, "'depth'|rename"},
-      {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0.5\n4 0 1 0\n$EndNodes\n$Elements\n1\n1 3 2 0 1 1 2 3 4\n" GMSH_END, "node 3|z = 0.5|dimension 2"},
-      {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 nan 0\n4 0 1 0\n$EndNodes\n$Elements\n1\n1 3 2 0 1 1 2 3 4\n" GMSH_END, "node 3|no number"},
+      {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"depth\"\n$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 "
+       "0 1 0\n$EndNodes\n$Elements\n2\n1 3 2 0 1 1 2 3 4\n2 1 2 1 1 1 2\n" GMSH_END,
+       "'depth'|rename"},
+      {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0.5\n4 0 1 0\n$EndNodes\n$Elements\n1\n1 3 2 0 1 1 2 3 "
+       "4\n" GMSH_END,
+       "node 3|z = 0.5|dimension 2"},
+      {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 nan 0\n4 0 1 0\n$EndNodes\n$Elements\n1\n1 3 2 0 1 1 2 3 "
+       "4\n" GMSH_END,
+       "node 3|no number"},
   };
   char words[512];
 
@@ -359,7 +365,9 @@ static void bars_of_a_file(void **state)
   DM dm;
 
   (void)state;
-  write_file("line.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n0 5 \"tip\"\n$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 3 0 0\n4 6 0 0\n$EndNodes\n$Elements\n4\n1 1 2 1 1 1 2\n2 1 2 1 1 3 2\n3 1 2 1 1 3 4\n4 15 2 5 1 4\n$EndElements\n");
+  write_file("line.msh",
+             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n0 5 \"tip\"\n$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 3 0 "
+             "0\n4 6 0 0\n$EndNodes\n$Elements\n4\n1 1 2 1 1 1 2\n2 1 2 1 1 3 2\n3 1 2 1 1 3 4\n4 15 2 5 1 4\n$EndElements\n");
   dm = create_mesh("-dm_plex_filename line.msh");
   assert_int_equal(count_cells(dm), 3);
   near(volume_of(dm), 6, 1e-14);
@@ -414,26 +422,32 @@ static void WriteText(int id, int variable, size_t i, const char text[])
 static void WriteExodus(const char path[], const Row *row, int mode, Fault fault)
 {
   const PetscInt    half = row->elements / 2, dim = row->dim, per_end = EndElements(row);
-  const char *const type = fault == WRONG_TYPE ? "HEX20" : dim == 2        ? (row->corners == 3 ? "TRI3" : "QUAD")
-                                                       : row->corners == 4 ? "TETRA4"
-                                                                           : "hex8";
+  const char *const type = fault == WRONG_TYPE ? "HEX20"
+                           : dim == 2          ? (row->corners == 3 ? "TRI3" : "QUAD")
+                           : row->corners == 4 ? "TETRA4"
+                                               : "hex8";
   int               id, coordinates[3], ids[3], names[2], connect[2], elements[2], sides[2], nodes, numbers[2] = {10, 20}, one = 1;
 
   if (!rank_of_world()) {
     const int d_dim   = (nc(nc_create(path, NC_CLOBBER | mode, &id)), Dimension(id, "num_dim", dim));
     const int d_nodes = Dimension(id, "num_nodes", row->nodes), d_length = Dimension(id, "len_name", 33);
-    const int d_blocks = Dimension(id, "num_el_blk", 2), d_sets = Dimension(id, "num_side_sets", 2), d_node_sets = Dimension(id, "num_node_sets", 1);
-    const int d_in[2]  = {Dimension(id, "num_el_in_blk1", half), Dimension(id, "num_el_in_blk2", row->elements - half)};
-    const int d_per[2] = {Dimension(id, "num_nod_per_el1", row->corners), Dimension(id, "num_nod_per_el2", row->corners)};
-    const int d_set[2] = {Dimension(id, "num_side_ss1", per_end), Dimension(id, "num_side_ss2", per_end)}, d_node_set = Dimension(id, "num_nod_ns1", 1);
-    const int d_short = Dimension(id, "short", row->nodes - 1);
+    const int d_blocks = Dimension(id, "num_el_blk", 2), d_sets = Dimension(id, "num_side_sets", 2),
+              d_node_sets = Dimension(id, "num_node_sets", 1);
+    const int d_in[2]     = {Dimension(id, "num_el_in_blk1", half), Dimension(id, "num_el_in_blk2", row->elements - half)};
+    const int d_per[2]    = {Dimension(id, "num_nod_per_el1", row->corners), Dimension(id, "num_nod_per_el2", row->corners)};
+    const int d_set[2]    = {Dimension(id, "num_side_ss1", per_end), Dimension(id, "num_side_ss2", per_end)},
+              d_node_set  = Dimension(id, "num_nod_ns1", 1);
+    const int d_short     = Dimension(id, "short", row->nodes - 1);
 
     (void)Dimension(id, "num_elem", fault == WRONG_COUNT ? row->elements + 1 : row->elements);
     if (dim == 2) coordinates[0] = Variable(id, "coord", NC_DOUBLE, 2, d_dim, d_nodes);
     else
-      for (PetscInt d = 0; d < 3; d++) coordinates[d] = Variable(id, d == 0 ? "coordx" : d == 1 ? "coordy"
-                                                                                                : "coordz",
-                                                                 NC_DOUBLE, 1, fault == SHORT_COORDINATES && d == 2 ? d_short : d_nodes, 0);
+      for (PetscInt d = 0; d < 3; d++)
+        coordinates[d] = Variable(id,
+                                  d == 0   ? "coordx"
+                                  : d == 1 ? "coordy"
+                                           : "coordz",
+                                  NC_DOUBLE, 1, fault == SHORT_COORDINATES && d == 2 ? d_short : d_nodes, 0);
     ids[0]   = Variable(id, "eb_prop1", NC_INT, 1, d_blocks, 0);
     ids[1]   = Variable(id, "ss_prop1", NC_INT, 1, d_sets, 0);
     ids[2]   = Variable(id, "ns_prop1", NC_INT, 1, d_node_sets, 0);
@@ -484,7 +498,7 @@ static void WriteExodus(const char path[], const Row *row, int mode, Fault fault
       int       set_numbers[2] = {left[0], 8}, element[2][2] = {{1, 2}, {right, right - 1}}, side[2][2] = {{4, 4}, {2, 2}};
 
       if (dim == 3 && row->corners == 8) side[0][0] = 5, side[1][0] = 6; /* base and top */
-      if (dim == 3 && row->corners == 4) {                               /* triangles 1 2 3 and 1 3 4 of the base, 7 8 5 and 5 6 7 of the top */
+      if (dim == 3 && row->corners == 4) { /* triangles 1 2 3 and 1 3 4 of the base, 7 8 5 and 5 6 7 of the top */
         element[0][0] = 1, side[0][0] = 4, element[0][1] = 2, side[0][1] = 4;
         element[1][0] = (int)row->elements - 2, side[1][0] = 2, element[1][1] = (int)row->elements - 1, side[1][1] = 2;
       }
@@ -556,7 +570,16 @@ static void exodus_files(void **state)
 
 static void bad_exodus_files(void **state)
 {
-  const char *const words[N_FAULTS] = {"", "element 3 (block 10)|node 29|1 to 28", "side set 8|element 7|1 to 6", "side set 7|side 7 of element 1", "node set 3|node 0", "block 10|'HEX20'|HEX8", "connect2", "coordz|27 values|28", "num_elem|7|6", "all 6 elements are inverted|left-handed"};
+  const char *const words[N_FAULTS] = {"",
+                                       "element 3 (block 10)|node 29|1 to 28",
+                                       "side set 8|element 7|1 to 6",
+                                       "side set 7|side 7 of element 1",
+                                       "node set 3|node 0",
+                                       "block 10|'HEX20'|HEX8",
+                                       "connect2",
+                                       "coordz|27 values|28",
+                                       "num_elem|7|6",
+                                       "all 6 elements are inverted|left-handed"};
   const Row         row             = row_of(3, N_CUBES, PETSC_FALSE);
   char              expected[512];
 
@@ -615,16 +638,11 @@ static void truncated_exodus_files(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(gmsh_files),
-      cmocka_unit_test(gmsh_as_petsc_reads_it),
-      cmocka_unit_test(blocks_of_a_file),
-      cmocka_unit_test(truncated_gmsh_files),
-      cmocka_unit_test(bad_gmsh_files),
-      cmocka_unit_test(bad_files),
-      cmocka_unit_test(bars_of_a_file),
-      cmocka_unit_test(exodus_files),
-      cmocka_unit_test(bad_exodus_files),
-      cmocka_unit_test(truncated_exodus_files),
+      cmocka_unit_test(gmsh_files),       cmocka_unit_test(gmsh_as_petsc_reads_it),
+      cmocka_unit_test(blocks_of_a_file), cmocka_unit_test(truncated_gmsh_files),
+      cmocka_unit_test(bad_gmsh_files),   cmocka_unit_test(bad_files),
+      cmocka_unit_test(bars_of_a_file),   cmocka_unit_test(exodus_files),
+      cmocka_unit_test(bad_exodus_files), cmocka_unit_test(truncated_exodus_files),
   };
 
   return impakt_main(argc, argv, tests);

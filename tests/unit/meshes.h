@@ -136,16 +136,16 @@ static inline DM create_mesh(const char format[], ...)
 }
 
 /* Making a mesh with these options ends with that error and a message with all the words */
-#define mesh_refused(code, words, ...)                                     \
-  do {                                                                     \
-    char         text_[1024];                                              \
-    DM           dm_;                                                      \
-    PetscOptions options_;                                                 \
-    (void)snprintf(text_, sizeof(text_), __VA_ARGS__);                     \
-    options_ = options_begin("-prefix_push a_ %s -prefix_pop", text_);     \
-    refused(code, words, MeshCreate(PETSC_COMM_WORLD, "a_", "box", &dm_)); \
-    ok(DMDestroy(&dm_));                                                   \
-    options_drop(options_);                                                \
+#define mesh_refused(code, words, ...)                                                                                                     \
+  do {                                                                                                                                     \
+    char         text_[1024];                                                                                                              \
+    DM           dm_;                                                                                                                      \
+    PetscOptions options_;                                                                                                                 \
+    (void)snprintf(text_, sizeof(text_), __VA_ARGS__);                                                                                     \
+    options_ = options_begin("-prefix_push a_ %s -prefix_pop", text_);                                                                     \
+    refused(code, words, MeshCreate(PETSC_COMM_WORLD, "a_", "box", &dm_));                                                                 \
+    ok(DMDestroy(&dm_));                                                                                                                   \
+    options_drop(options_);                                                                                                                \
   } while (0)
 
 /* A file for all ranks */
@@ -172,10 +172,8 @@ static inline Row row_of(PetscInt dim, PetscInt n, PetscBool simplex)
 {
   Row row = {.dim = dim, .n = n};
 
-  row.corners  = simplex ? dim + 1 : dim == 2 ? 4
-                                              : 8;
-  row.per_cell = !simplex ? 1 : dim == 2 ? 2
-                                         : 6;
+  row.corners  = simplex ? dim + 1 : dim == 2 ? 4 : 8;
+  row.per_cell = !simplex ? 1 : dim == 2 ? 2 : 6;
   row.section  = dim == 2 ? 2 : 4;
   row.elements = n * row.per_cell;
   row.nodes    = (n + 1) * row.section;
@@ -207,5 +205,6 @@ static inline void row_element(const Row *row, PetscInt element, PetscInt nodes[
     /* x is the third axis of the element: base at the cross-section, seen from beyond */
     for (PetscInt k = 0; k < 8; k++) corners[k] = first + k;
   }
-  for (PetscInt k = 0; k < row->corners; k++) nodes[k] = row->per_cell == 1 ? corners[k] : corners[row->dim == 2 ? tris[part][k] : tets[part][k]];
+  for (PetscInt k = 0; k < row->corners; k++)
+    nodes[k] = row->per_cell == 1 ? corners[k] : corners[row->dim == 2 ? tris[part][k] : tets[part][k]];
 }

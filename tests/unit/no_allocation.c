@@ -25,10 +25,13 @@ static PetscErrorCode Count(Controller controller, const ControllerFrame *frame,
 
 static void RunCase(const char options[])
 {
-  static const char common[] = "-bodies left,right -time_end 5.2e-4 -time_step 1e-6 "
-                               "-left_dm_plex_dim 1 -left_dm_plex_box_faces 50 -left_dm_plex_box_lower -0.2503 -left_dm_plex_box_upper -3.5e-4 -left_density 1000 -left_youngs_modulus 1e9 -left_cross_section 1e-6 -left_initial_velocity 100 "
-                               "-right_dm_plex_dim 1 -right_dm_plex_box_faces 40 -right_dm_plex_box_lower 3.5e-4 -right_dm_plex_box_upper 0.2503 -right_density 1000 -right_youngs_modulus 1e9 -right_cross_section 1e-6 -right_initial_velocity -100 ";
-  Controller        controller;
+  static const char common[] =
+      "-bodies left,right -time_end 5.2e-4 -time_step 1e-6 "
+      "-left_dm_plex_dim 1 -left_dm_plex_box_faces 50 -left_dm_plex_box_lower -0.2503 -left_dm_plex_box_upper -3.5e-4 -left_density 1000 "
+      "-left_youngs_modulus 1e9 -left_cross_section 1e-6 -left_initial_velocity 100 "
+      "-right_dm_plex_dim 1 -right_dm_plex_box_faces 40 -right_dm_plex_box_lower 3.5e-4 -right_dm_plex_box_upper 0.2503 -right_density "
+      "1000 -right_youngs_modulus 1e9 -right_cross_section 1e-6 -right_initial_velocity -100 ";
+  Controller controller;
 
   assert_int_equal(PetscOptionsClear(NULL), PETSC_SUCCESS);
   assert_int_equal(PetscOptionsInsertString(NULL, common), PETSC_SUCCESS);
@@ -62,7 +65,8 @@ static void ExplicitDoesNotAllocate(void **state)
 static void PaperDoesNotAllocate(void **state)
 {
   (void)state;
-  RunCase("-schwarz_snes_type nrichardson -left_mass_type lumped -right_mass_type lumped -left_mass_redistribute 0 -right_mass_redistribute 0");
+  RunCase(
+      "-schwarz_snes_type nrichardson -left_mass_type lumped -right_mass_type lumped -left_mass_redistribute 0 -right_mass_redistribute 0");
 }
 
 static void TransmissionsDoNotAllocate(void **state)
@@ -77,7 +81,8 @@ static void TransmissionsDoNotAllocate(void **state)
 static void SwappedSidesDoNotAllocate(void **state)
 {
   (void)state;
-  RunCase("-contact_swap_sides -left_ts_time_step 5e-7 -schwarz_predictor extrapolate -schwarz_snes_type nrichardson -schwarz_relaxation aitken");
+  RunCase("-contact_swap_sides -left_ts_time_step 5e-7 -schwarz_predictor extrapolate -schwarz_snes_type nrichardson -schwarz_relaxation "
+          "aitken");
 }
 
 static void PenaltyDoesNotAllocate(void **state)
@@ -89,13 +94,15 @@ static void PenaltyDoesNotAllocate(void **state)
 static void LagrangeDoesNotAllocate(void **state)
 {
   (void)state;
-  RunCase("-contact_type lagrange -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 -right_mass_redistribute 0");
+  RunCase("-contact_type lagrange -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 "
+          "-right_mass_redistribute 0");
 }
 
 static void RatesDoNotAllocate(void **state)
 {
   (void)state;
-  RunCase("-contact_type lagrange -contact_constraint both -left_ts_type centraldifference -right_ts_type centraldifference -left_mass_redistribute 0 -right_mass_redistribute 0");
+  RunCase("-contact_type lagrange -contact_constraint both -left_ts_type centraldifference -right_ts_type centraldifference "
+          "-left_mass_redistribute 0 -right_mass_redistribute 0");
 }
 
 static void NaiveStabilizationDoesNotAllocate(void **state)
@@ -107,7 +114,8 @@ static void NaiveStabilizationDoesNotAllocate(void **state)
 /* A body on its own: the first steps make PETSc's work vectors, the others nothing */
 static void RunSolid(const char options[])
 {
-  static const char common[] = "-b_dm_plex_dim 3 -b_dm_plex_box_faces 3,3,3 -b_density 3 -b_youngs_modulus 5 -b_poissons_ratio 0.2 -b_initial_velocity 0.1*z,0,0.1*x ";
+  static const char common[] = "-b_dm_plex_dim 3 -b_dm_plex_box_faces 3,3,3 -b_density 3 -b_youngs_modulus 5 -b_poissons_ratio 0.2 "
+                               "-b_initial_velocity 0.1*z,0,0.1*x ";
   Body              body;
   long              before = 0;
 
@@ -136,7 +144,9 @@ static void RunSolid(const char options[])
   assert_int_equal(before, 0);
 }
 
-#define SOLID_LOADS "-b_gravity 0,0,-1 -b_boundary_traction xmax -b_boundary_traction_xmax 0.1*t,0,0.02*y -b_boundary_displacement zmin -b_boundary_displacement_zmin 0.01*sin(t),0,free "
+#define SOLID_LOADS                                                                                                                        \
+  "-b_gravity 0,0,-1 -b_boundary_traction xmax -b_boundary_traction_xmax 0.1*t,0,0.02*y -b_boundary_displacement zmin "                    \
+  "-b_boundary_displacement_zmin 0.01*sin(t),0,free "
 
 static void ExplicitSolidsDoNotAllocate(void **state)
 {

@@ -2,15 +2,17 @@
 #include "row_bodies.h"
 
 /* The second and third row share a node; in the plane they are 53 degrees apart, in space so is the fourth from both */
-static const PetscReal     oblique[SHAPES_OF_BODIES][3 * MOST_ROWS] = {{0}, {0, 1, 0, 0.6, 0.8, 0, -0.28, 0.96, 0, 0, 1, 0, 0, 1, 0}, {0, 0, 1, 0, 0, 1, 0, 0.6, 0.8, 0.48, -0.64, 0.6, 0, 0, 1}};
-static const BodyCondition prescribed[MOST_ROWS]                    = {BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED};
-static const BodyCondition mixed[MOST_ROWS]                         = {BODY_FORCED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_FREE};
+static const PetscReal oblique[SHAPES_OF_BODIES][3 * MOST_ROWS] = {
+    {0}, {0, 1, 0, 0.6, 0.8, 0, -0.28, 0.96, 0, 0, 1, 0, 0, 1, 0}, {0, 0, 1, 0, 0, 1, 0, 0.6, 0.8, 0.48, -0.64, 0.6, 0, 0, 1}};
+static const BodyCondition prescribed[MOST_ROWS] = {BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED};
+static const BodyCondition mixed[MOST_ROWS]      = {BODY_FORCED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_PRESCRIBED, BODY_FREE};
 
 static void write_inputs(RowBody *b)
 {
   for (PetscInt i = 0; i < b->n; i++)
     for (PetscInt level = 0; level <= b->substeps; level++) {
-      set_row(&b->rows, b->traces.displacement_in, level, i, get_row(&b->rows, b->traces.displacement, 0, i) + 0.01 * PetscSinReal(0.3 * level * (i + 1)));
+      set_row(&b->rows, b->traces.displacement_in, level, i,
+              get_row(&b->rows, b->traces.displacement, 0, i) + 0.01 * PetscSinReal(0.3 * level * (i + 1)));
       set_row(&b->rows, b->traces.velocity_in, level, i, 0.02 * PetscSinReal(i + level));
       set_row(&b->rows, b->traces.acceleration_in, level, i, 0.03 * PetscCosReal(i + 2 * level));
       set_row(&b->rows, b->traces.force_in, level, i, 0.02 * PetscSinReal(1 + i + 2 * level));
@@ -26,7 +28,8 @@ static void check_prescribed(RowBody *b, const BodyCondition conditions[], Petsc
       near(get_row(&b->rows, b->traces.displacement, level, i), get_row(&b->rows, b->traces.displacement_in, level, i), 1e-14);
       if (!rates) continue;
       near(get_row(&b->rows, b->traces.velocity, level, i), get_row(&b->rows, b->traces.velocity_in, level, i), 1e-14);
-      near(get_row(&b->rows, b->traces.acceleration, level, i), get_row(&b->rows, b->traces.acceleration_in, level, i), 1e-12); /* beside others of 1 m/s^2 and more */
+      near(get_row(&b->rows, b->traces.acceleration, level, i), get_row(&b->rows, b->traces.acceleration_in, level, i),
+           1e-12); /* beside others of 1 m/s^2 and more */
     }
 }
 
@@ -40,7 +43,8 @@ static void check_reactions(RowBody *b, const BodyCondition conditions[], PetscR
     forced[i] = conditions[i] == BODY_PRESCRIBED ? BODY_FORCED : conditions[i];
     for (PetscInt level = 1; level <= b->substeps; level++) {
       displacement[level - 1][i] = get_row(&b->rows, b->traces.displacement, level, i);
-      if (conditions[i] == BODY_PRESCRIBED) set_row(&b->rows, b->traces.force_in, level, i, get_row(&b->rows, b->traces.reaction, level, i));
+      if (conditions[i] == BODY_PRESCRIBED)
+        set_row(&b->rows, b->traces.force_in, level, i, get_row(&b->rows, b->traces.reaction, level, i));
     }
   }
   set_row_conditions(b, forced);
@@ -130,7 +134,9 @@ static void stand_beside_held_displacements(void **state)
       for (PetscInt i = 0; i < 3 * MOST_ROWS; i++) across[i] = oblique[1][i];
       across[12] = 0.6;
       across[13] = 0.8;
-      snprintf(more, sizeof(more), "-material_type %s %s", materials[kind], method == STATIC ? "-boundary_displacement xmax,xmin -boundary_displacement_xmax 0.02*t,free -boundary_displacement_xmin 0,0" : "-boundary_displacement xmax -boundary_displacement_xmax 0.02*t,free");
+      snprintf(more, sizeof(more), "-material_type %s %s", materials[kind],
+               method == STATIC ? "-boundary_displacement xmax,xmin -boundary_displacement_xmax 0.02*t,free -boundary_displacement_xmin 0,0"
+                                : "-boundary_displacement xmax -boundary_displacement_xmax 0.02*t,free");
       row_body_create(&b, 1, (Method)method, 1, across, more);
       row_body_start(&b);
       set_row_conditions(&b, prescribed);

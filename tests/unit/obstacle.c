@@ -16,7 +16,8 @@ static void distances(void **state)
   Obstacle obstacle;
 
   (void)state;
-  AddOptions("-p_obstacle_type plane -p_point 1,2,3 -p_normal 0,3,4 -s_obstacle_type sphere -s_point 1,0,0 -s_radius 2 -c_obstacle_type cylinder -c_point 0,0,5 -c_axis 0,2,0 -c_radius 1 -d_obstacle_type cylinder -d_point 1,1 -d_radius 0.5");
+  AddOptions("-p_obstacle_type plane -p_point 1,2,3 -p_normal 0,3,4 -s_obstacle_type sphere -s_point 1,0,0 -s_radius 2 -c_obstacle_type "
+             "cylinder -c_point 0,0,5 -c_axis 0,2,0 -c_radius 1 -d_obstacle_type cylinder -d_point 1,1 -d_radius 0.5");
   ok(ObstacleCreateFromOptions(PETSC_COMM_WORLD, "p", &obstacle));
   check(obstacle, (PetscReal[3]){7, 7, 3}, 3, (PetscReal[3]){0, 0.6, 0.8}); /* 0.6 (7 - 2) */
   check(obstacle, (PetscReal[3]){0, 2, -2}, -4, (PetscReal[3]){0, 0.6, 0.8});
@@ -62,7 +63,8 @@ static void rows_over_obstacles(void **state)
   const PetscReal down[3] = {0.02, -0.05, 0};
 
   (void)state;
-  AddOptions("-floor_obstacle_type plane -floor_point 0,-0.1 -floor_normal 0,1 -disc_obstacle_type cylinder -disc_point 0.5,-1.1 -disc_radius 1");
+  AddOptions(
+      "-floor_obstacle_type plane -floor_point 0,-0.1 -floor_normal 0,1 -disc_obstacle_type cylinder -disc_point 0.5,-1.1 -disc_radius 1");
   for (PetscInt disc = 0; disc < 2; disc++) {
     DM                 dm = CreateBoxMesh("square", 2, "4,3", "0,0", "1,1", PETSC_FALSE);
     const SurfaceData *data;

@@ -8,7 +8,8 @@ static void read_options_pass(void **state)
   Simulation *simulation = (Simulation *)*state;
 
   AddCollision(4, 3, 0);
-  AddOptions("-contact_type schwarz -schwarz_snes_type anderson -left_mass_type lumped -right_ts_type centraldifference -monitor_interval 0 -progress 0");
+  AddOptions("-contact_type schwarz -schwarz_snes_type anderson -left_mass_type lumped -right_ts_type centraldifference -monitor_interval "
+             "0 -progress 0");
   ok(SimulationCreate(simulation));
   ok(ImpaktCheckOptions(2, names));
 }
@@ -50,7 +51,9 @@ static void all_unread_options_are_named(void **state)
 {
   (void)state;
   AddOptions("-progres -left_densty 1");
-  refused(PETSC_ERR_USER_INPUT, "Unknown options,|-progres (the nearest known one is -progress)|-left_densty 1 (the nearest known one is -left_density)", ImpaktCheckOptions(2, names));
+  refused(PETSC_ERR_USER_INPUT,
+          "Unknown options,|-progres (the nearest known one is -progress)|-left_densty 1 (the nearest known one is -left_density)",
+          ImpaktCheckOptions(2, names));
 }
 
 /* Options of another contact method have no effect, which the user should know */

@@ -48,7 +48,8 @@ static void springs_with_mass_on_the_surface(void **state)
   Simulation *simulation = (Simulation *)*state;
 
   AddCollision(8, 10, 0);
-  AddOptions("-contact_type penalty -contact_penalty 50 -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
+  AddOptions("-contact_type penalty -contact_penalty 50 -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped "
+             "-right_mass_type lumped");
   for (PetscInt i = 0; i < 3; i++) {
     SimulationRepeat(simulation, integrators[i]);
     CheckSprings(simulation);
@@ -61,7 +62,8 @@ static void first_explicit_step(void **state)
   Simulation *simulation = (Simulation *)*state;
 
   AddCollision(8, 10, 0);
-  AddOptions("-contact_type penalty -contact_penalty 50 -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped -right_mass_type lumped");
+  AddOptions("-contact_type penalty -contact_penalty 50 -left_mass_redistribute 0 -right_mass_redistribute 0 -left_mass_type lumped "
+             "-right_mass_type lumped");
   SimulationRepeat(simulation, integrators[2]);
   near(Step(simulation).force, PENALTY * (2 * COLLISION_SPEED * COLLISION_STEP - COLLISION_GAP), 1e-12);
 }
@@ -129,12 +131,9 @@ static void unconverged_steps_are_refused(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(springs_with_massless_layers),
-      simulation_test(springs_with_mass_on_the_surface),
-      simulation_test(first_explicit_step),
-      simulation_test(springs_from_elements),
-      simulation_test(energy_of_the_springs),
-      simulation_test(wrong_options_are_refused),
+      simulation_test(springs_with_massless_layers),  simulation_test(springs_with_mass_on_the_surface),
+      simulation_test(first_explicit_step),           simulation_test(springs_from_elements),
+      simulation_test(energy_of_the_springs),         simulation_test(wrong_options_are_refused),
       simulation_test(unconverged_steps_are_refused),
   };
 

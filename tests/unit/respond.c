@@ -44,7 +44,8 @@ static void compare(RowBody *b, const Outputs *responded, const Outputs *integra
   for (PetscInt k = 0; k < b->substeps; k++)
     for (PetscInt i = 0; i < b->n; i++) {
       near(responded->displacement[k][i], integrated->displacement[k][i], 1e-12);
-      /* of some tenths of N; round-off of displacements of 1e-2 m against stiffnesses of 5 N/m, the heavier against inertia 4 m / dt^2 where steps are short */
+      /* of some tenths of N; round-off of displacements of 1e-2 m against stiffnesses of 5 N/m, the heavier against inertia 4 m / dt^2
+         where steps are short */
       if (roles[i] == BODY_PRESCRIBED) near(responded->reaction[k][i], integrated->reaction[k][i], 1e-11);
       else assert_true(responded->reaction[k][i] == 0);
     }
@@ -101,7 +102,9 @@ static void is_what_an_integration_brings(void **state)
 /* Weight acts on what has mass, and tractions on the side across; nothing from outside acts on the contact nodes */
 static void is_what_an_integration_brings_under_loads(void **state)
 {
-  static const char *const loads[SHAPES_OF_BODIES] = {"-gravity 0.3", "-gravity 0.1,-0.3 -boundary_displacement ymin -boundary_displacement_ymin 0.01*t,free", "-gravity 0,0,-0.3 -boundary_displacement zmin -boundary_displacement_zmin 0.01*t,free,0"};
+  static const char *const loads[SHAPES_OF_BODIES] = {
+      "-gravity 0.3", "-gravity 0.1,-0.3 -boundary_displacement ymin -boundary_displacement_ymin 0.01*t,free",
+      "-gravity 0,0,-0.3 -boundary_displacement zmin -boundary_displacement_zmin 0.01*t,free,0"};
 
   (void)state;
   for (PetscInt shape = 0; shape < SHAPES_OF_BODIES; shape++)

@@ -7,13 +7,8 @@
 static const PetscReal     ends[]          = {2, 0};
 static const char *const   integrators[]   = {TSALPHA2, TSCENTRALDIFFERENCE};
 static const BodyCondition conditions[][2] = {
-    {BODY_PRESCRIBED, BODY_FORCED},
-    {BODY_FORCED, BODY_PRESCRIBED},
-    {BODY_PRESCRIBED, BODY_PRESCRIBED},
-    {BODY_FORCED, BODY_FORCED},
-    {BODY_PRESCRIBED, BODY_FREE},
-    {BODY_ROBIN, BODY_FORCED},
-    {BODY_PRESCRIBED, BODY_ROBIN},
+    {BODY_PRESCRIBED, BODY_FORCED}, {BODY_FORCED, BODY_PRESCRIBED}, {BODY_PRESCRIBED, BODY_PRESCRIBED}, {BODY_FORCED, BODY_FORCED},
+    {BODY_PRESCRIBED, BODY_FREE},   {BODY_ROBIN, BODY_FORCED},      {BODY_PRESCRIBED, BODY_ROBIN},
 };
 /* Springs of Robin rows [N/m]: about the stiffness of an element, E A / h = 6 N/m, with which explicit bodies are stable */
 static const PetscReal robin[] = {5, 7};
@@ -29,9 +24,11 @@ static PetscErrorCode Wave(PetscInt dim, const PetscReal x[], PetscScalar u[], P
 }
 
 /* A body under way, one window after its start, with conditions and smooth inputs */
-static PetscOptions create_body(Body *body, Rows *rows, BodyTraces *traces, const char integrator[], const char mass[], PetscInt moved, PetscInt substeps, const BodyCondition condition[])
+static PetscOptions create_body(Body *body, Rows *rows, BodyTraces *traces, const char integrator[], const char mass[], PetscInt moved,
+                                PetscInt substeps, const BodyCondition condition[])
 {
-  PetscOptions options = bar_create(body, BAR "-ts_type %s -ts_time_step %.17g -mass_type %s -mass_redistribute %d", integrator, DT, mass, (int)moved);
+  PetscOptions options = bar_create(body, BAR "-ts_type %s -ts_time_step %.17g -mass_type %s -mass_redistribute %d", integrator, DT, mass,
+                                    (int)moved);
 
   set_rows(*body, 2, ends, rows);
   ok(BodySetControllerStep(*body, 0, DT * substeps));
@@ -48,7 +45,8 @@ static PetscOptions create_body(Body *body, Rows *rows, BodyTraces *traces, cons
 /* Inputs that ramp over the window, from where the body is to something else */
 static void write_inputs(const Rows *rows, const BodyTraces *traces, PetscInt substeps, PetscInt seed)
 {
-  const Trace in[] = {traces->displacement_in, traces->velocity_in, traces->acceleration_in, traces->force_in}, out[] = {traces->displacement, traces->velocity, traces->acceleration, traces->reaction};
+  const Trace in[]  = {traces->displacement_in, traces->velocity_in, traces->acceleration_in, traces->force_in},
+              out[] = {traces->displacement, traces->velocity, traces->acceleration, traces->reaction};
 
   for (PetscInt kind = 0; kind < 4; kind++)
     for (PetscInt which = 0; which < 2; which++) {
@@ -65,13 +63,18 @@ static void add_unit(const Rows *rows, const BodyTraces *traces, PetscInt subste
 
   for (PetscInt level = 1; level <= substeps; level++) {
     set_level(rows, in, level, which, get_level(rows, in, level, which) + (PetscReal)level / substeps);
-    if (condition == BODY_PRESCRIBED && substeps > 1) set_level(rows, traces->velocity_in, level, which, get_level(rows, traces->velocity_in, level, which) + 1 / (DT * substeps));
+    if (condition == BODY_PRESCRIBED && substeps > 1)
+      set_level(rows, traces->velocity_in, level, which, get_level(rows, traces->velocity_in, level, which) + 1 / (DT * substeps));
   }
 }
 
-static void get_outputs(const Rows *rows, const BodyTraces *traces, PetscInt substeps, const BodyCondition condition[], PetscReal outputs[2])
+static void get_outputs(const Rows *rows, const BodyTraces *traces, PetscInt substeps, const BodyCondition condition[],
+                        PetscReal outputs[2])
 {
-  for (PetscInt which = 0; which < 2; which++) outputs[which] = get_level(rows, condition[which] == BODY_PRESCRIBED || condition[which] == BODY_ROBIN ? traces->reaction : traces->displacement, substeps, which);
+  for (PetscInt which = 0; which < 2; which++)
+    outputs[which] = get_level(
+        rows, condition[which] == BODY_PRESCRIBED || condition[which] == BODY_ROBIN ? traces->reaction : traces->displacement, substeps,
+        which);
 }
 
 /* The body is linear: the difference that a unit input makes is exact from any state, but for round-off */
@@ -101,7 +104,8 @@ static void is_the_difference_that_a_unit_makes(void **state)
           ok(BodyComputeResponse(body, &matrix));
           for (PetscInt k = 0; k < 4; k++) largest = PetscMax(largest, PetscAbsReal(matrix[k]));
           for (PetscInt which = 0; which < 2; which++)
-            for (PetscInt to = 0; to < 2; to++) near(matrix[rows.row[which] * 2 + rows.row[to]], after[which][to] - before[to], 1e-12 * PetscMax(largest, 1));
+            for (PetscInt to = 0; to < 2; to++)
+              near(matrix[rows.row[which] * 2 + rows.row[to]], after[which][to] - before[to], 1e-12 * PetscMax(largest, 1));
           bar_destroy(&body, options);
         }
 }
@@ -117,10 +121,11 @@ static void does_not_depend_on_when_it_is_asked_for(void **state)
         BodyTraces         traces;
         Rows               rows, rest_rows;
         const PetscScalar *first, *second;
-        PetscOptions       other, options = create_body(&moving, &rows, &traces, integrators[i], "averaged", moved, substeps, conditions[0]);
+        PetscOptions other, options = create_body(&moving, &rows, &traces, integrators[i], "averaged", moved, substeps, conditions[0]);
 
         ok(BodyComputeResponse(moving, &second));
-        other = bar_create(&rest, BAR "-ts_type %s -ts_time_step %.17g -mass_type averaged -mass_redistribute %d", integrators[i], DT, (int)moved);
+        other = bar_create(&rest, BAR "-ts_type %s -ts_time_step %.17g -mass_type averaged -mass_redistribute %d", integrators[i], DT,
+                           (int)moved);
         set_rows(rest, 2, ends, &rest_rows);
         ok(BodySetControllerStep(rest, 0, DT * substeps));
         ok(BodySetUp(rest));
@@ -128,7 +133,8 @@ static void does_not_depend_on_when_it_is_asked_for(void **state)
         ok(BodyComputeResponse(rest, &first));
         /* the very same arithmetic; the largest number is about E A / h = 6 N/m, or M / dt^2 */
         for (PetscInt in = 0; in < 2; in++)
-          for (PetscInt out = 0; out < 2; out++) near(first[2 * rest_rows.row[in] + rest_rows.row[out]], second[2 * rows.row[in] + rows.row[out]], 1e-13);
+          for (PetscInt out = 0; out < 2; out++)
+            near(first[2 * rest_rows.row[in] + rest_rows.row[out]], second[2 * rows.row[in] + rows.row[out]], 1e-13);
         bar_destroy(&rest, other);
         bar_destroy(&moving, options);
       }
@@ -176,7 +182,8 @@ static void leaves_no_trace(void **state)
         ok(VecCopy(vec[k], copy[k]));
       }
       for (PetscInt pass = 0; pass < 2; pass++) {
-        const Trace all[] = {traces.displacement_in, traces.velocity_in, traces.acceleration_in, traces.force_in, traces.displacement, traces.velocity, traces.acceleration, traces.reaction};
+        const Trace all[] = {traces.displacement_in, traces.velocity_in, traces.acceleration_in, traces.force_in,
+                             traces.displacement,    traces.velocity,    traces.acceleration,    traces.reaction};
 
         values = before[pass];
         for (PetscInt t = 0; t < 8; t++)
@@ -238,7 +245,8 @@ static void gives_the_same_as_a_whole_integration(void **state)
             between(norm, 0, 1e-12 * PetscMax(scale, k == 2 ? 10 : 1));
             ok(VecDestroy(&copy[k]));
           }
-          for (PetscInt k = 0; k < 8; k++) near(outputs[0][k], outputs[1][k], 1e-12 * PetscMax(PetscAbsReal(outputs[1][k]), k / 2 == 2 ? 10 : 1));
+          for (PetscInt k = 0; k < 8; k++)
+            near(outputs[0][k], outputs[1][k], 1e-12 * PetscMax(PetscAbsReal(outputs[1][k]), k / 2 == 2 ? 10 : 1));
           bar_destroy(&body, options);
         }
 }

@@ -2,28 +2,32 @@
 #pragma once
 #include "solid_bodies.h"
 
-/* Bars, quadrilaterals, hexahedra of edge 0.5 m; 5 Pa and 3 kg/m^3, so that waves run at some 1.4 m/s; explicit steps are stable up to some 0.25 s */
+/* Bars, quadrilaterals, hexahedra of edge 0.5 m; 5 Pa and 3 kg/m^3, so that waves run at some 1.4 m/s; explicit steps are stable up to some
+   0.25 s */
 #define SHAPES_OF_BODIES 3
-static const char *const meshes[SHAPES_OF_BODIES] = {"-dm_plex_dim 1 -dm_plex_box_faces 6 -dm_plex_box_upper 3 -cross_section 0.5 -density 3 -youngs_modulus 5",
-                                                     "-dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 4,3 -dm_plex_box_upper 2,1.5 -density 3 -youngs_modulus 5 -poissons_ratio 0.2",
-                                                     "-dm_plex_dim 3 -dm_plex_simplex 0 -dm_plex_box_faces 3,2,3 -dm_plex_box_upper 1.5,1,1.5 -density 3 -youngs_modulus 5 -poissons_ratio 0.2"};
+static const char *const meshes[SHAPES_OF_BODIES] = {
+    "-dm_plex_dim 1 -dm_plex_box_faces 6 -dm_plex_box_upper 3 -cross_section 0.5 -density 3 -youngs_modulus 5",
+    "-dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 4,3 -dm_plex_box_upper 2,1.5 -density 3 -youngs_modulus 5 -poissons_ratio 0.2",
+    "-dm_plex_dim 3 -dm_plex_simplex 0 -dm_plex_box_faces 3,2,3 -dm_plex_box_upper 1.5,1,1.5 -density 3 -youngs_modulus 5 -poissons_ratio "
+    "0.2"};
 /* one node of the bottom is held along one axis or more, where a body is to be held: static ones cannot do without */
-static const char *const supports[SHAPES_OF_BODIES] = {"-boundary_displacement xmin -boundary_displacement_xmin 0.01*t", "-boundary_displacement xmin -boundary_displacement_xmin 0.01*t,0", "-boundary_displacement xmin -boundary_displacement_xmin 0.01*t,0,0"};
+static const char *const supports[SHAPES_OF_BODIES] = {"-boundary_displacement xmin -boundary_displacement_xmin 0.01*t",
+                                                       "-boundary_displacement xmin -boundary_displacement_xmin 0.01*t,0",
+                                                       "-boundary_displacement xmin -boundary_displacement_xmin 0.01*t,0,0"};
 
-typedef enum {
-  IMPLICIT,
-  STATIC,
-  EXPLICIT,
-  METHODS
-} Method;
+typedef enum { IMPLICIT, STATIC, EXPLICIT, METHODS } Method;
 static const char *const methods[METHODS] = {"-ts_type alpha2", "-ts_type static", "-ts_type centraldifference"};
 
-/* Rows on the side that may touch; those of a node are orthonormal. The last of the two larger bodies are at their edge x = 0, which supports hold:
-   one whose dof is held altogether, and one along the other axis that is too. */
+/* Rows on the side that may touch; those of a node are orthonormal. The last of the two larger bodies are at their edge x = 0, which
+   supports hold: one whose dof is held altogether, and one along the other axis that is too. */
 #define MOST_ROWS 5
-static const PetscInt  n_rows_of[SHAPES_OF_BODIES]                        = {2, 5, 5};
-static const PetscReal row_nodes_of[SHAPES_OF_BODIES][3 * MOST_ROWS]      = {{3, 0, 0, 0, 0, 0}, {0.5, 1.5, 0, 1, 1.5, 0, 1, 1.5, 0, 1.5, 1.5, 0, 2, 1.5, 0}, {0.5, 0.5, 1.5, 0.5, 1, 1.5, 1, 0.5, 1.5, 1, 0.5, 1.5, 1.5, 1, 1.5}};
-static const PetscReal row_directions_of[SHAPES_OF_BODIES][3 * MOST_ROWS] = {{1, 0, 0, 1, 0, 0}, {0, 1, 0, 0.6, 0.8, 0, 0.8, -0.6, 0, 0, 1, 0, 0, 1, 0}, {0, 0, 1, 0, 0, 1, 0, 0.6, 0.8, 0, 0.8, -0.6, 0, 0, 1}};
+static const PetscInt  n_rows_of[SHAPES_OF_BODIES]                   = {2, 5, 5};
+static const PetscReal row_nodes_of[SHAPES_OF_BODIES][3 * MOST_ROWS] = {
+    {3, 0, 0, 0, 0, 0},
+    {0.5, 1.5, 0, 1, 1.5, 0, 1, 1.5, 0, 1.5, 1.5, 0, 2, 1.5, 0},
+    {0.5, 0.5, 1.5, 0.5, 1, 1.5, 1, 0.5, 1.5, 1, 0.5, 1.5, 1.5, 1, 1.5}};
+static const PetscReal row_directions_of[SHAPES_OF_BODIES][3 * MOST_ROWS] = {
+    {1, 0, 0, 1, 0, 0}, {0, 1, 0, 0.6, 0.8, 0, 0.8, -0.6, 0, 0, 1, 0, 0, 1, 0}, {0, 0, 1, 0, 0, 1, 0, 0.6, 0.8, 0, 0.8, -0.6, 0, 0, 1}};
 #define CONTROLLER_STEP 0.12
 
 typedef struct {
@@ -54,11 +58,13 @@ static inline void number_rows(RowBody *b)
 }
 
 /* A body at rest */
-static inline void row_body_create(RowBody *b, PetscInt shape, Method method, PetscInt substeps, const PetscReal directions[], const char more[])
+static inline void row_body_create(RowBody *b, PetscInt shape, Method method, PetscInt substeps, const PetscReal directions[],
+                                   const char more[])
 {
   b->substeps = substeps;
   b->n        = n_rows_of[shape];
-  b->options  = solid_body_create(&b->body, "%s %s %s -ts_time_step %.17g %s", meshes[shape], method == STATIC ? supports[shape] : "", methods[method], CONTROLLER_STEP / substeps, more);
+  b->options  = solid_body_create(&b->body, "%s %s %s -ts_time_step %.17g %s", meshes[shape], method == STATIC ? supports[shape] : "",
+                                  methods[method], CONTROLLER_STEP / substeps, more);
   if (shape) touch_side(b->body, shape == 1 ? "ymax" : "zmax");
   else {
     touch_side(b->body, "xmin");

@@ -23,7 +23,8 @@ static void CheckFirstStep(Simulation *simulation, PetscReal *force)
 static void all_pairings_of_integrators(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
-  const char *const types[]    = {"-left_ts_type alpha2 -right_ts_type alpha2", "-left_ts_type alpha2 -right_ts_type centraldifference", "-left_ts_type centraldifference -right_ts_type alpha2",
+  const char *const types[]    = {"-left_ts_type alpha2 -right_ts_type alpha2", "-left_ts_type alpha2 -right_ts_type centraldifference",
+                                  "-left_ts_type centraldifference -right_ts_type alpha2",
                                   "-left_ts_type centraldifference -right_ts_type centraldifference"};
 
   AddCollision(8, 10, 0);
@@ -39,8 +40,12 @@ static void all_pairings_of_integrators(void **state)
 static void all_types_of_outer_iteration(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
-  const char *const types[]    = {"-schwarz_snes_type newtonls", "-schwarz_snes_type anderson", "-schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5",
-                                  "-schwarz_snes_type nrichardson -schwarz_relaxation aitken", "-schwarz_snes_type ngmres -schwarz_relaxation fixed", "-schwarz_snes_type qn"};
+  const char *const types[]    = {"-schwarz_snes_type newtonls",
+                                  "-schwarz_snes_type anderson",
+                                  "-schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5",
+                                  "-schwarz_snes_type nrichardson -schwarz_relaxation aitken",
+                                  "-schwarz_snes_type ngmres -schwarz_relaxation fixed",
+                                  "-schwarz_snes_type qn"};
   PetscReal         force[6];
 
   AddCollision(8, 10, 0);
@@ -57,7 +62,8 @@ static void all_types_of_outer_iteration(void **state)
 static void newton_needs_two_sweeps(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
-  const char *const variants[] = {"-left_ts_type alpha2", "-left_mass_type lumped -right_mass_type consistent", "-left_mass_redistribute 0 -right_mass_redistribute 0", "-schwarz_traction reaction"};
+  const char *const variants[] = {"-left_ts_type alpha2", "-left_mass_type lumped -right_mass_type consistent",
+                                  "-left_mass_redistribute 0 -right_mass_redistribute 0", "-schwarz_traction reaction"};
 
   AddCollision(8, 13, 50);
   for (PetscInt i = 0; i < 4; i++) {
@@ -82,7 +88,9 @@ static void unconverged_steps(void **state)
   AddOptions("-time_start 1 -time_end 1.2 -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5 -schwarz_snes_max_it 1");
   ok(SimulationCreate(simulation));
   /* one iteration is one sweep beyond the first, which found the residual that it began with */
-  refused(PETSC_ERR_NOT_CONVERGED, "time 1.02 s|after 2 sweeps|change of position is |absolute tolerance 1e-12 m|DIVERGED_MAX_IT|-schwarz_unconverged accept", ContactStep(simulation->contact));
+  refused(PETSC_ERR_NOT_CONVERGED,
+          "time 1.02 s|after 2 sweeps|change of position is |absolute tolerance 1e-12 m|DIVERGED_MAX_IT|-schwarz_unconverged accept",
+          ContactStep(simulation->contact));
   SimulationRepeat(simulation, "-schwarz_unconverged accept");
   for (PetscInt step = 1; step <= 2; step++) {
     Step(simulation);
@@ -99,9 +107,11 @@ static void tolerances_below_round_off(void **state)
   Simulation *simulation = (Simulation *)*state;
 
   AddCollision(8, 13, 50);
-  AddOptions("-schwarz_snes_atol 1e-30 -schwarz_snes_rtol 1e-30 -schwarz_snes_max_it 4 -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.3");
+  AddOptions("-schwarz_snes_atol 1e-30 -schwarz_snes_rtol 1e-30 -schwarz_snes_max_it 4 -schwarz_snes_type nrichardson "
+             "-schwarz_snes_linesearch_damping 0.3");
   ok(SimulationCreate(simulation));
-  refused(PETSC_ERR_NOT_CONVERGED, "time 0.02 s|after 5 sweeps|absolute tolerance 1e-30 m, relative 1e-30", ContactStep(simulation->contact));
+  refused(PETSC_ERR_NOT_CONVERGED, "time 0.02 s|after 5 sweeps|absolute tolerance 1e-30 m, relative 1e-30",
+          ContactStep(simulation->contact));
 }
 
 /*
@@ -175,20 +185,17 @@ static void wrong_options_are_refused(void **state)
   refused(PETSC_ERR_USER_INPUT, "aitken|nrichardson only", SimulationCreate(simulation));
   ok(ControllerDestroy(&simulation->controller));
   AddOptions("-schwarz_relaxation fixed -schwarz_snes_type newtontr");
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-schwarz_snes_type 'newtontr'|newtonls, anderson, nrichardson, ngmres, qn", SimulationCreate(simulation));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-schwarz_snes_type 'newtontr'|newtonls, anderson, nrichardson, ngmres, qn",
+          SimulationCreate(simulation));
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(all_pairings_of_integrators),
-      simulation_test(all_types_of_outer_iteration),
-      simulation_test(newton_needs_two_sweeps),
-      simulation_test(unconverged_steps),
-      simulation_test(tolerances_below_round_off),
-      simulation_test(pulled_pairs_let_go),
-      simulation_test(reaction_of_nodes_with_mass),
-      simulation_test(reaction_needs_an_implicit_partner),
+      simulation_test(all_pairings_of_integrators), simulation_test(all_types_of_outer_iteration),
+      simulation_test(newton_needs_two_sweeps),     simulation_test(unconverged_steps),
+      simulation_test(tolerances_below_round_off),  simulation_test(pulled_pairs_let_go),
+      simulation_test(reaction_of_nodes_with_mass), simulation_test(reaction_needs_an_implicit_partner),
       simulation_test(wrong_options_are_refused),
   };
 

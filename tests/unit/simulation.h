@@ -44,19 +44,25 @@ static inline void AddBar(const char name[], PetscReal lower, PetscReal upper, P
 {
   char options[1024];
 
-  ok(PetscSNPrintf(options, sizeof(options), "-%s_dm_plex_dim 1 -%s_dm_plex_box_lower %.17g -%s_dm_plex_box_upper %.17g -%s_dm_plex_box_faces %d -%s_density 1 -%s_youngs_modulus 1 -%s_initial_velocity %.17g", name, name, (double)lower, name, (double)upper, name, (int)elements, name, name, name, (double)velocity));
+  ok(PetscSNPrintf(options, sizeof(options),
+                   "-%s_dm_plex_dim 1 -%s_dm_plex_box_lower %.17g -%s_dm_plex_box_upper %.17g -%s_dm_plex_box_faces %d -%s_density 1 "
+                   "-%s_youngs_modulus 1 -%s_initial_velocity %.17g",
+                   name, name, (double)lower, name, (double)upper, name, (int)elements, name, name, name, (double)velocity));
   AddOptions(options);
 }
 
 /* A box of boxes, or of triangles in two dimensions, with a block of displacements at each vertex, as a body's mesh has it */
-static inline DM CreateBoxMesh(const char name[], PetscInt dim, const char faces[], const char lower[], const char upper[], PetscBool simplex)
+static inline DM CreateBoxMesh(const char name[], PetscInt dim, const char faces[], const char lower[], const char upper[],
+                               PetscBool simplex)
 {
   PetscSection section;
   PetscInt     start, end, vstart, vend;
   char         options[512];
   DM           dm;
 
-  ok(PetscSNPrintf(options, sizeof(options), "-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s -dm_plex_simplex 0", (int)dim, faces, lower, upper));
+  ok(PetscSNPrintf(options, sizeof(options),
+                   "-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s -dm_plex_simplex 0", (int)dim, faces,
+                   lower, upper));
   AddOptions(options);
   /* each quadrilateral cut into two triangles: PETSc alone has no generator of triangles */
   if (simplex && dim > 1) AddOptions("-dm_plex_transform_type refine_tosimplex -dm_refine 1");

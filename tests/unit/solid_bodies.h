@@ -9,7 +9,8 @@
 static const PetscInt     kind_dim[KINDS] = {2, 2, 3, 3};
 static inline const char *kind_options(PetscInt kind)
 {
-  static const char *const options[KINDS] = {"-dm_plex_dim 2 -dm_plex_simplex 0", "-dm_plex_dim 2 -dm_plex_simplex 1", "-dm_plex_dim 3 -dm_plex_simplex 0", "-dm_plex_dim 3 -dm_plex_simplex 1"};
+  static const char *const options[KINDS] = {"-dm_plex_dim 2 -dm_plex_simplex 0", "-dm_plex_dim 2 -dm_plex_simplex 1",
+                                             "-dm_plex_dim 3 -dm_plex_simplex 0", "-dm_plex_dim 3 -dm_plex_simplex 1"};
 
   return options[kind];
 }
@@ -134,7 +135,8 @@ static inline void set_node_rows(Body body, PetscInt n, const PetscReal x[], con
   ok(MatCreateAIJ(PETSC_COMM_WORLD, rows->local, size, n, PETSC_DETERMINE, dim, NULL, dim, NULL, &B));
   ok(MatGetOwnershipRange(B, &begin, NULL));
   for (PetscInt i = 0; i < rows->local; i++)
-    for (PetscInt d = 0; d < dim; d++) ok(MatSetValue(B, begin + i, first + node[i] * dim + d, direction[3 * rows->which[i] + d], INSERT_VALUES));
+    for (PetscInt d = 0; d < dim; d++)
+      ok(MatSetValue(B, begin + i, first + node[i] * dim + d, direction[3 * rows->which[i] + d], INSERT_VALUES));
   ok(MatAssemblyBegin(B, MAT_FINAL_ASSEMBLY));
   ok(MatAssemblyEnd(B, MAT_FINAL_ASSEMBLY));
   ok(BodySetInterface(body, B));

@@ -11,10 +11,7 @@ static const PetscInt three[3] = {3, 3, 3};
 static void get_rotation(PetscInt dim, PetscReal gradient[3][3])
 {
   const PetscReal c = PetscCosReal(1), s = PetscSinReal(1), C = dim == 3 ? PetscCosReal(0.7) : 1, S = dim == 3 ? PetscSinReal(0.7) : 0;
-  const PetscReal R[3][3] = {
-      {c, -s, 0},
-      {C * s, C * c, -S},
-      {S * s, S * c, C}};
+  const PetscReal R[3][3] = {{c, -s, 0}, {C * s, C * c, -S}, {S * s, S * c, C}};
 
   for (PetscInt i = 0; i < 3; i++)
     for (PetscInt j = 0; j < 3; j++) gradient[i][j] = R[i][j] - (i == j);
@@ -25,13 +22,10 @@ static void get_rotation(PetscInt dim, PetscReal gradient[3][3])
    rotation is a difference of terms of 80 J/m^3: as much. */
 static void rigid_motion_meets_no_resistance(void **state)
 {
-  const PetscReal spin[3][3] = {
-      {0, -0.3, 0.2},
-      {0.3, 0, 0.5},
-      {-0.2, -0.5, 0}};
-  PetscReal rotation[3][3], u[MAX_DOFS], f[MAX_DOFS];
-  Mesh      mesh;
-  Solid     solid;
+  const PetscReal spin[3][3] = {{0, -0.3, 0.2}, {0.3, 0, 0.5}, {-0.2, -0.5, 0}};
+  PetscReal       rotation[3][3], u[MAX_DOFS], f[MAX_DOFS];
+  Mesh            mesh;
+  Solid           solid;
 
   (void)state;
   for (PetscInt s = 0; s < SHAPES; s++)
@@ -48,10 +42,7 @@ static void rigid_motion_meets_no_resistance(void **state)
     }
 }
 
-static const PetscReal stretch[3][3] = {
-    {0.11, 0.05, -0.07},
-    {-0.02, -0.08, 0.03},
-    {0.04, 0.06, 0.09}};
+static const PetscReal stretch[3][3] = {{0.11, 0.05, -0.07}, {-0.02, -0.08, 0.03}, {0.04, 0.06, 0.09}};
 
 /* Cauchy stress, xx yy zz xy yz xz, of a displacement gradient G with lambda = mu. Neo-Hookean: mu/J (F F^T - I) + lambda/(2 J) (J^2 - 1) I
    (Wriggers 2008, eq. (3.119)); Saint-Venant-Kirchhoff: F S F^T / J with S = lambda tr(E) I + 2 mu E. Plane: plane strain. */
@@ -62,7 +53,8 @@ static void get_cauchy(PetscInt dim, PetscInt material, const PetscReal G[3][3],
 
   for (PetscInt i = 0; i < 3; i++)
     for (PetscInt j = 0; j < 3; j++) F[i][j] = (i == j) + (i < dim && j < dim ? G[i][j] : 0);
-  J = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) + F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+  J = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
+      F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
   for (PetscInt i = 0; i < 3; i++)
     for (PetscInt j = 0; j < 3; j++) {
       E[i][j] = -0.5 * (i == j);
@@ -104,7 +96,8 @@ static void linear_displacement_is_exact_on_distorted_meshes(void **state)
       get_force(&solid, &mesh, u, f);
       between(largest_of(mesh.dim * mesh.n_nodes, f), 1, 100);
       for (PetscInt node = 0; node < mesh.n_nodes; node++)
-        for (PetscInt d = 0; d < mesh.dim && mesh.inner[node]; d++) near(f[mesh.dim * node + d], 0, 1e-12 * largest_of(mesh.dim * mesh.n_nodes, f));
+        for (PetscInt d = 0; d < mesh.dim && mesh.inner[node]; d++)
+          near(f[mesh.dim * node + d], 0, 1e-12 * largest_of(mesh.dim * mesh.n_nodes, f));
       solid_destroy(&solid);
     }
 }
@@ -207,13 +200,15 @@ static void small_strains_keep_their_digits(void **state)
     for (PetscInt m = 0; m < MATERIALS; m++) {
       solid_create(&solid, &mesh, materials[m], "");
       get_force(&solid, &mesh, u, m ? f : linear);
-      for (PetscInt i = 0; i < mesh.dim * mesh.n_nodes && m; i++) near(f[i], linear[i], 2e-12 * largest_of(mesh.dim * mesh.n_nodes, linear));
+      for (PetscInt i = 0; i < mesh.dim * mesh.n_nodes && m; i++)
+        near(f[i], linear[i], 2e-12 * largest_of(mesh.dim * mesh.n_nodes, linear));
       solid_destroy(&solid);
     }
   }
 }
 
-/* Every number of elements from 1 to 17, which fills no, one and two batches and leaves any rest: the same as one element after the other */
+/* Every number of elements from 1 to 17, which fills no, one and two batches and leaves any rest: the same as one element after the other
+ */
 static void batches_may_be_of_any_size(void **state)
 {
   PetscReal u[MAX_DOFS], f[MAX_DOFS], expected[MAX_DOFS], stress[6 * MAX_CELLS + 6], expected_stress[6], energy;

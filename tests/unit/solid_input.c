@@ -3,15 +3,14 @@
 #include "solid_mesh.h"
 
 /* Of positive determinant, and so is its part in the plane */
-static const PetscReal edges[3][3] = {
-    {1.1, 0.2, -0.1},
-    {0.3, 1.2, 0.1},
-    {0.2, 0.3, 0.8}};
+static const PetscReal edges[3][3] = {{1.1, 0.2, -0.1}, {0.3, 1.2, 0.1}, {0.2, 0.3, 0.8}};
 
 static PetscReal get_volume(const Mesh *mesh)
 {
   const PetscReal plane = edges[0][0] * edges[1][1] - edges[0][1] * edges[1][0];
-  const PetscReal space = edges[0][0] * (edges[1][1] * edges[2][2] - edges[1][2] * edges[2][1]) - edges[0][1] * (edges[1][0] * edges[2][2] - edges[1][2] * edges[2][0]) + edges[0][2] * (edges[1][0] * edges[2][1] - edges[1][1] * edges[2][0]);
+  const PetscReal space = edges[0][0] * (edges[1][1] * edges[2][2] - edges[1][2] * edges[2][1]) -
+                          edges[0][1] * (edges[1][0] * edges[2][2] - edges[1][2] * edges[2][0]) +
+                          edges[0][2] * (edges[1][0] * edges[2][1] - edges[1][1] * edges[2][0]);
 
   if (mesh->shape == DM_POLYTOPE_TRIANGLE) return plane / 2;
   if (mesh->shape == DM_POLYTOPE_QUADRILATERAL) return plane;
@@ -28,7 +27,8 @@ static PetscInt get_edges_between(PetscInt a, PetscInt b)
 }
 
 /* Integrals of N_a N_b over simplices are V (1 + delta_ab) / ((d + 1) (d + 2)), over parallelepipeds V times 1/3 for each axis along
-   which a and b are at the same end and 1/6 for each other. (Zienkiewicz and Taylor, The Finite Element Method, volume 1, app. of integrals) */
+   which a and b are at the same end and 1/6 for each other. (Zienkiewicz and Taylor, The Finite Element Method, volume 1, app. of
+   integrals) */
 static void mass_is_that_of_the_book(void **state)
 {
   Mesh      mesh;
@@ -265,7 +265,8 @@ static void thickness_multiplies_what_is_integrated(void **state)
     options_drop(solid.options);
     ok(ElementDestroy(&solid.element));
     solid.options = options_begin("-b_thickness 0");
-    refused(PETSC_ERR_USER_INPUT, "-b_thickness|positive", ElementCreate(PETSC_COMM_SELF, "b_", mesh.shape, solid.material, &solid.element));
+    refused(PETSC_ERR_USER_INPUT, "-b_thickness|positive",
+            ElementCreate(PETSC_COMM_SELF, "b_", mesh.shape, solid.material, &solid.element));
     options_drop(solid.options);
     ok(ElementDestroy(&solid.element));
     ok(MaterialDestroy(&solid.material));
@@ -275,13 +276,10 @@ static void thickness_multiplies_what_is_integrated(void **state)
 /* Uniaxial stress: 0.01 along x, -0.25 * 0.01 along y, E = 200 Pa; in plane strain, sigma_zz = nu (sigma_xx + sigma_yy) */
 static void linear_plane_stress_is_that_of_hooke(void **state)
 {
-  const PetscReal uniaxial[3][3] = {
-      {0.01, 0, 0},
-      {0, -0.0025, 0},
-      {0, 0, 0}};
-  PetscReal u[MAX_DOFS], stress[6 * MAX_CELLS];
-  Mesh      mesh;
-  Solid     solid;
+  const PetscReal uniaxial[3][3] = {{0.01, 0, 0}, {0, -0.0025, 0}, {0, 0, 0}};
+  PetscReal       u[MAX_DOFS], stress[6 * MAX_CELLS];
+  Mesh            mesh;
+  Solid           solid;
 
   (void)state;
   for (PetscInt s = 0; s < 2; s++) {
@@ -304,10 +302,7 @@ static void linear_plane_stress_is_that_of_hooke(void **state)
    s^2 = 3 / (2 + A^2). A solid with that stretch has the same Cauchy stress. */
 static void nonlinear_plane_stress_is_that_of_a_solid(void **state)
 {
-  PetscReal gradient[3][3] = {
-      {0.3, 0.1, 0},
-      {0.2, -0.2, 0},
-      {0, 0, 0}};
+  PetscReal gradient[3][3] = {{0.3, 0.1, 0}, {0.2, -0.2, 0}, {0, 0, 0}};
   PetscReal u[MAX_DOFS], stress[6 * MAX_CELLS], expected[6], area;
   Mesh      mesh;
   Solid     solid;

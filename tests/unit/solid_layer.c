@@ -8,7 +8,8 @@ static const char *const materials[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_NEO_HO
 /* Elements of 0.5 m; waves run at 1.4 m/s and cross an element in some 0.3 s */
 #define STEP   0.05
 #define COMMON "-density 3 -youngs_modulus 5 -poissons_ratio 0.2 -ts_type centraldifference "
-static const char *const boxes[] = {"-dm_plex_box_faces 4,3 -dm_plex_box_upper 2,1.5", "-dm_plex_box_faces 3,2,3 -dm_plex_box_upper 1.5,1,1.5"};
+static const char *const boxes[] = {"-dm_plex_box_faces 4,3 -dm_plex_box_upper 2,1.5",
+                                    "-dm_plex_box_faces 3,2,3 -dm_plex_box_upper 1.5,1,1.5"};
 static const char *const sides[] = {"ymax", "zmax"};
 
 /* Strains of some hundredths */
@@ -32,7 +33,8 @@ static void advance(Body body)
 static PetscOptions create(Body *body, PetscInt kind, PetscInt material, const char more[])
 {
   const PetscInt space   = kind_dim[kind] - 2;
-  PetscOptions   options = solid_body_create(body, "%s %s -material_type %s " COMMON "%s", kind_options(kind), boxes[space], materials[material], more);
+  PetscOptions   options = solid_body_create(body, "%s %s -material_type %s " COMMON "%s", kind_options(kind), boxes[space],
+                                             materials[material], more);
 
   touch_side(*body, sides[space]);
   ok(BodySetControllerStep(*body, 0, STEP));
@@ -93,7 +95,8 @@ static void is_in_balance(void **state)
 
 static void is_in_balance_with_a_traction(void **state)
 {
-  static const char *const tractions[] = {"-boundary_traction ymax -boundary_traction_ymax 0.02*(1+t),-0.03*x", "-boundary_traction zmax -boundary_traction_zmax 0.02*(1+t),0.01,-0.03*x"};
+  static const char *const tractions[] = {"-boundary_traction ymax -boundary_traction_ymax 0.02*(1+t),-0.03*x",
+                                          "-boundary_traction zmax -boundary_traction_zmax 0.02*(1+t),0.01,-0.03*x"};
 
   (void)state;
   for (PetscInt kind = 0; kind < KINDS; kind++)
@@ -104,8 +107,10 @@ static void is_in_balance_with_a_traction(void **state)
 static void is_in_balance_where_its_edge_is_held(void **state)
 {
   static const char *const held[2][2] = {
-      {"-boundary_displacement xmin -boundary_displacement_xmin 0,free", "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0 -boundary_displacement_xmax 0.01*sin(t),free"},
-      {"-boundary_displacement xmin -boundary_displacement_xmin 0,free,free", "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0,0 -boundary_displacement_xmax 0.01*sin(t),free,free"}};
+      {"-boundary_displacement xmin -boundary_displacement_xmin 0,free",
+       "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0 -boundary_displacement_xmax 0.01*sin(t),free"},
+      {"-boundary_displacement xmin -boundary_displacement_xmin 0,free,free",
+       "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0,0 -boundary_displacement_xmax 0.01*sin(t),free,free"}};
 
   (void)state;
   for (PetscInt kind = 0; kind < KINDS; kind++)
@@ -122,7 +127,8 @@ static PetscErrorCode Flying(PetscInt dim, const PetscReal x[], PetscScalar u[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After 5 s of flight positions are known to 1e-14 m, which no iteration of the layer can better: with Young's modulus 5 Pa, some 1e-13 N */
+/* After 5 s of flight positions are known to 1e-14 m, which no iteration of the layer can better: with Young's modulus 5 Pa, some 1e-13 N
+ */
 static void is_in_balance_in_flight(void **state)
 {
   (void)state;
@@ -141,7 +147,8 @@ static void is_in_balance_in_flight(void **state)
       ok(BodyGetMeasures(body, &after));
       get_imbalance(body, &left, &largest);
       between(left, 0, 1e-12);
-      for (PetscInt d = 0; d < body->dim; d++) near(after.momentum[d], before.momentum[d], 1e-11); /* round-off of 100 kg m/s, and such forces over 5 s */
+      for (PetscInt d = 0; d < body->dim; d++)
+        near(after.momentum[d], before.momentum[d], 1e-11); /* round-off of 100 kg m/s, and such forces over 5 s */
       bar_destroy(&body, options);
     }
 }

@@ -1,5 +1,5 @@
-/* Energies, momentum and angular momentum of bodies in two and three dimensions, against integrals over boxes in affine motion and sums over
-   nodes. */
+/* Energies, momentum and angular momentum of bodies in two and three dimensions, against integrals over boxes in affine motion and sums
+   over nodes. */
 #include "solid_bodies.h"
 
 static const char *const materials[]   = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
@@ -13,14 +13,8 @@ static const PetscReal lower[] = {0.5, -1, 0.25}, size[] = {2, 1.5, 1};
 
 /* u = c + G x, v = b + L x */
 static const PetscReal c[3] = {0.3, -0.2, 0.1}, b[3] = {1, -2, 0.5};
-static const PetscReal G[3][3] = {
-    {0.11, 0.05, -0.07},
-    {-0.02, -0.08, 0.03},
-    {0.04, 0.06, 0.09}};
-static const PetscReal L[3][3] = {
-    {0.3, -1, 0.5},
-    {1, 0.2, 0.7},
-    {-.5, 0.1, -.4}};
+static const PetscReal G[3][3] = {{0.11, 0.05, -0.07}, {-0.02, -0.08, 0.03}, {0.04, 0.06, 0.09}};
+static const PetscReal L[3][3] = {{0.3, -1, 0.5}, {1, 0.2, 0.7}, {-.5, 0.1, -.4}};
 
 static PetscErrorCode Affine(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
 {
@@ -39,7 +33,11 @@ static PetscErrorCode Affine(PetscInt dim, const PetscReal x[], PetscScalar u[],
 
 static PetscOptions create(Body *body, PetscInt kind, const char more[])
 {
-  PetscOptions options = solid_body_create(body, "%s %s -density 3 -youngs_modulus 200 -poissons_ratio 0.25 %s", kind_options(kind), kind_dim[kind] == 2 ? "-dm_plex_box_faces 4,3 -dm_plex_box_lower 0.5,-1 -dm_plex_box_upper 2.5,0.5" : "-dm_plex_box_faces 3,2,3 -dm_plex_box_lower 0.5,-1,0.25 -dm_plex_box_upper 2.5,0.5,1.25", more);
+  PetscOptions options = solid_body_create(body, "%s %s -density 3 -youngs_modulus 200 -poissons_ratio 0.25 %s", kind_options(kind),
+                                           kind_dim[kind] == 2
+                                               ? "-dm_plex_box_faces 4,3 -dm_plex_box_lower 0.5,-1 -dm_plex_box_upper 2.5,0.5"
+                                               : "-dm_plex_box_faces 3,2,3 -dm_plex_box_lower 0.5,-1,0.25 -dm_plex_box_upper 2.5,0.5,1.25",
+                                           more);
 
   ok(BodySetControllerStep(*body, 0, 1e-3));
   return options;
@@ -65,7 +63,8 @@ static PetscReal energy_density(PetscInt dim, PetscInt material)
       square += e * e;
       stretch += F[i][j] * F[i][j];
     }
-  J = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) + F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+  J = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
+      F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
   if (material == 2) return LAME * (0.5 * (stretch - 3) - PetscLogReal(J) + 0.25 * (J * J - 1) - 0.5 * PetscLogReal(J));
   return LAME * (0.5 * trace * trace + square);
 }
@@ -82,7 +81,8 @@ static PetscReal mean_square(PetscInt i, PetscInt j)
 }
 
 /* Mean over the box of (p + A x)_k (q + B x)_l */
-static PetscReal mean_product(PetscInt dim, const PetscReal p[3], const PetscReal A[3][3], PetscInt k, const PetscReal q[3], const PetscReal B[3][3], PetscInt l)
+static PetscReal mean_product(PetscInt dim, const PetscReal p[3], const PetscReal A[3][3], PetscInt k, const PetscReal q[3],
+                              const PetscReal B[3][3], PetscInt l)
 {
   PetscReal sum;
 

@@ -20,7 +20,8 @@ static Moments moments_of(Body body)
   for (PetscInt node = 0; node < body->owned_nodes; node++) {
     const PetscReal m = mass[node * body->dim];
 
-    for (PetscInt d = 1; d < body->dim; d++) near(mass[node * body->dim + d], m, 1e-14 * PetscAbsReal(m)); /* the same sums in another order */
+    for (PetscInt d = 1; d < body->dim; d++)
+      near(mass[node * body->dim + d], m, 1e-14 * PetscAbsReal(m)); /* the same sums in another order */
     moments.mass += m;
     for (PetscInt d = 0; d < body->dim; d++) {
       const PetscReal x = body->coordinates[node * body->dim + d];
@@ -44,7 +45,8 @@ static void check_layer(Body body)
   ok(BodyCreateVec(body, &layer));
   ok(BodyCreateVec(body, &image));
   ok(VecGetArray(layer, &x));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) x[i] = body->in_layer[i / body->dim] ? scattered(&body->coordinates[i], 1, 0) : 0;
+  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++)
+    x[i] = body->in_layer[i / body->dim] ? scattered(&body->coordinates[i], 1, 0) : 0;
   ok(VecRestoreArray(layer, &x));
   ok(BodyMultiplyMass(body, layer, image));
   ok(VecGetArrayRead(image, &y));
@@ -71,7 +73,8 @@ static void compare(Body moved, Body whole, PetscReal size)
   /* sums of some hundred terms */
   near(after.mass, before.mass, 1e-13 * before.mass);
   near(moved->total_mass, before.mass, 1e-13 * before.mass);
-  for (PetscInt d = 0; d < moved->dim; d++) near(moved->mass_shift[d], after.first[d] / after.mass - before.first[d] / before.mass, 1e-13 * size);
+  for (PetscInt d = 0; d < moved->dim; d++)
+    near(moved->mass_shift[d], after.first[d] / after.mass - before.first[d] / before.mass, 1e-13 * size);
   for (PetscInt d = 0; d < 3; d++) near(whole->mass_shift[d], 0, 0);
 }
 
@@ -89,7 +92,8 @@ static Pair pair_create(const char text[], PetscInt type, PetscBool is_explicit)
   char all[2048];
 
   for (PetscInt i = 0; i < 2; i++) {
-    (void)snprintf(all, sizeof(all), "%s " MATERIAL "-mass_type %s -ts_type %s %s -mass_redistribute %d", text, types[type], is_explicit ? TSCENTRALDIFFERENCE : TSALPHA2, is_explicit ? "-ts_time_step auto" : "", i == 0);
+    (void)snprintf(all, sizeof(all), "%s " MATERIAL "-mass_type %s -ts_type %s %s -mass_redistribute %d", text, types[type],
+                   is_explicit ? TSCENTRALDIFFERENCE : TSALPHA2, is_explicit ? "-ts_time_step auto" : "", i == 0);
     pair.options[i] = solid_body_create_on(PETSC_COMM_WORLD, i ? &pair.whole : &pair.moved, all);
     ok(BodySetControllerStep(i ? pair.whole : pair.moved, 0, 0.01));
   }
@@ -134,7 +138,8 @@ static void of_a_layer_is_kept(void **state)
         if (kind == 0 || kind == 2) { /* a mirror image of itself */
           for (PetscInt d = 0; d < axis; d++) near(pair.moved->mass_shift[d], 0, 1e-13);
         }
-        if (kind == 0 && type == 0) near(pair.moved->mass_shift[1], -9. / 6 * 0.5 / 9, 1e-13); /* half a row of elements of height 0.5 m moves by that */
+        if (kind == 0 && type == 0)
+          near(pair.moved->mass_shift[1], -9. / 6 * 0.5 / 9, 1e-13); /* half a row of elements of height 0.5 m moves by that */
         pair_destroy(&pair);
       }
 }
@@ -142,9 +147,10 @@ static void of_a_layer_is_kept(void **state)
 /* Rank 0 writes a mesh for Gmsh */
 static void write_mesh(const char path[], const Mesh *mesh)
 {
-  const int   type = mesh->shape == DM_POLYTOPE_TRIANGLE ? 2 : mesh->shape == DM_POLYTOPE_QUADRILATERAL ? 3
-                                                           : mesh->shape == DM_POLYTOPE_TETRAHEDRON     ? 4
-                                                                                                        : 5;
+  const int   type = mesh->shape == DM_POLYTOPE_TRIANGLE        ? 2
+                     : mesh->shape == DM_POLYTOPE_QUADRILATERAL ? 3
+                     : mesh->shape == DM_POLYTOPE_TETRAHEDRON   ? 4
+                                                                : 5;
   PetscMPIInt rank;
 
   assert_int_equal(MPI_Comm_rank(PETSC_COMM_WORLD, &rank), 0);
@@ -153,7 +159,9 @@ static void write_mesh(const char path[], const Mesh *mesh)
 
     assert_non_null(file);
     fprintf(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", (int)mesh->n_nodes);
-    for (PetscInt node = 0; node < mesh->n_nodes; node++) fprintf(file, "%d %.17g %.17g %.17g\n", (int)node + 1, mesh->x[mesh->dim * node], mesh->x[mesh->dim * node + 1], mesh->dim == 3 ? mesh->x[mesh->dim * node + 2] : 0);
+    for (PetscInt node = 0; node < mesh->n_nodes; node++)
+      fprintf(file, "%d %.17g %.17g %.17g\n", (int)node + 1, mesh->x[mesh->dim * node], mesh->x[mesh->dim * node + 1],
+              mesh->dim == 3 ? mesh->x[mesh->dim * node + 2] : 0);
     fprintf(file, "$EndNodes\n$Elements\n%d\n", (int)mesh->count);
     for (PetscInt cell = 0; cell < mesh->count; cell++) {
       fprintf(file, "%d %d 2 0 1", (int)cell + 1, type);

@@ -38,7 +38,8 @@ static inline void mesh_box(Mesh *mesh, DMPolytopeType shape, const PetscInt n[3
   static const PetscInt halves[][3] = {{0, 1, 2}, {0, 2, 3}};
   /* about the diagonal from 0 to 6 */
   static const PetscInt sixths[][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
-  const PetscInt        dim = DMPolytopeTypeGetDim(shape), layers = dim == 3 ? n[2] : 1, m0 = n[0] + 1, m1 = n[1] + 1, m2 = dim == 3 ? n[2] + 1 : 1;
+  const PetscInt        dim = DMPolytopeTypeGetDim(shape), layers = dim == 3 ? n[2] : 1, m0 = n[0] + 1, m1 = n[1] + 1,
+                        m2 = dim == 3 ? n[2] + 1 : 1;
 
   memset(mesh, 0, sizeof(*mesh));
   mesh->shape   = shape;
@@ -123,7 +124,8 @@ typedef struct {
 /* Without set-up */
 static inline void solid_begin(Solid *solid, const Mesh *mesh, const char material[], const char more[])
 {
-  solid->options = options_begin("-prefix_push b_ -density 3 -youngs_modulus 200 -poissons_ratio 0.25 -material_type %s %s -prefix_pop", material, more);
+  solid->options = options_begin("-prefix_push b_ -density 3 -youngs_modulus 200 -poissons_ratio 0.25 -material_type %s %s -prefix_pop",
+                                 material, more);
   ok(MaterialCreate(PETSC_COMM_SELF, &solid->material));
   ok(MaterialSetOptionsPrefix(solid->material, "b_"));
   ok(MaterialSetFromOptions(solid->material));

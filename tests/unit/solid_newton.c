@@ -6,16 +6,20 @@ static const char *const materials[] = {MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIA
 
 /* Waves run at 1.4 m/s and cross an element of 0.5 m in 0.36 s */
 #define COMMON "-density 3 -youngs_modulus 5 -poissons_ratio 0.2 "
-static const char *const boxes[] = {"-dm_plex_box_faces 4,3 -dm_plex_box_upper 2,1.5", "-dm_plex_box_faces 3,2,3 -dm_plex_box_upper 1.5,1,1.5"};
+static const char *const boxes[] = {"-dm_plex_box_faces 4,3 -dm_plex_box_upper 2,1.5",
+                                    "-dm_plex_box_faces 3,2,3 -dm_plex_box_upper 1.5,1,1.5"};
 static const char *const sides[] = {"ymax", "zmax"};
 
 /* The lower side clamped, a traction of 0.06 of Young's modulus in each second on the upper one, askew */
-static const char *const loads[] = {"-boundary_displacement ymin -boundary_displacement_ymin 0,0 -boundary_traction ymax -boundary_traction_ymax 0.15*t,0.3*t", "-boundary_displacement zmin -boundary_displacement_zmin 0,0,0 -boundary_traction zmax -boundary_traction_zmax 0.15*t,0.05*t,0.3*t"};
+static const char *const loads[] = {
+    "-boundary_displacement ymin -boundary_displacement_ymin 0,0 -boundary_traction ymax -boundary_traction_ymax 0.15*t,0.3*t",
+    "-boundary_displacement zmin -boundary_displacement_zmin 0,0,0 -boundary_traction zmax -boundary_traction_zmax 0.15*t,0.05*t,0.3*t"};
 
 static PetscOptions create(Body *body, PetscInt kind, PetscInt material, PetscReal step, const char more[])
 {
   const PetscInt space   = kind_dim[kind] - 2;
-  PetscOptions   options = solid_body_create(body, "%s %s -material_type %s " COMMON "%s", kind_options(kind), boxes[space], materials[material], more);
+  PetscOptions   options = solid_body_create(body, "%s %s -material_type %s " COMMON "%s", kind_options(kind), boxes[space],
+                                             materials[material], more);
 
   ok(BodySetControllerStep(*body, 0, step));
   return options;
@@ -221,7 +225,8 @@ static void repeats_a_window_bit_for_bit(void **state)
           assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
           rounded = (PetscBool)(size > 2);
 
-          (void)snprintf(more, sizeof(more), "%s -ts_type %s -ts_time_step %.17g", loads[kind_dim[kind] - 2], integrators[i], 0.06 / substeps);
+          (void)snprintf(more, sizeof(more), "%s -ts_type %s -ts_time_step %.17g", loads[kind_dim[kind] - 2], integrators[i],
+                         0.06 / substeps);
           for (PetscInt b = 0; b < 2; b++) {
             options[b] = create(&bodies[b], kind, material, 0.06, more);
             create_rows(bodies[b], kind, &rows[b]);
@@ -250,7 +255,8 @@ static void repeats_a_window_bit_for_bit(void **state)
             same(&first, &again, rounded ? 1e-11 : 0);
             for (PetscInt b = 0; b < 2; b++) ok(BodySave(bodies[b])); /* where one substep's work is found */
             assert_true(bodies[0]->external_work != 0);
-            near(bodies[1]->external_work, bodies[0]->external_work, 1e-12); /* round-off of forces of 1 N and ways of 1 cm, and what Newton's method leaves */
+            near(bodies[1]->external_work, bodies[0]->external_work,
+                 1e-12); /* round-off of forces of 1 N and ways of 1 cm, and what Newton's method leaves */
           }
           bar_destroy(&bodies[1], options[1]);
           bar_destroy(&bodies[0], options[0]);
@@ -269,7 +275,8 @@ static void tells_what_did_not_converge(void **state)
     (void)snprintf(more, sizeof(more), "%s -snes_max_it 1", loads[kind_dim[kind] - 2]);
     options = create(&body, kind, 1, 0.2, more);
     ok(BodySetUp(body));
-    refused(PETSC_ERR_NOT_CONVERGED, "Newton's method|'b'|0.2 s|step 1|MAX_IT|1 iterations|-b_ts_time_step|-b_snes_monitor", BodyIntegrate(body));
+    refused(PETSC_ERR_NOT_CONVERGED, "Newton's method|'b'|0.2 s|step 1|MAX_IT|1 iterations|-b_ts_time_step|-b_snes_monitor",
+            BodyIntegrate(body));
     ok(BodyDestroy(&body));
     options_drop(options);
   }
@@ -280,7 +287,9 @@ static void tells_what_did_not_converge(void **state)
 static void names_an_inverted_element(void **state)
 {
   static const char *const integrators[] = {TSALPHA2, TSCENTRALDIFFERENCE, TSSTATIC};
-  static const char *const pushed[]      = {"-boundary_displacement ymin,ymax -boundary_displacement_ymin 0,0 -boundary_displacement_ymax free,t>0?-2:0", "-boundary_displacement zmin,zmax -boundary_displacement_zmin 0,0,0 -boundary_displacement_zmax free,free,t>0?-2:0"};
+  static const char *const pushed[]      = {
+      "-boundary_displacement ymin,ymax -boundary_displacement_ymin 0,0 -boundary_displacement_ymax free,t>0?-2:0",
+      "-boundary_displacement zmin,zmax -boundary_displacement_zmin 0,0,0 -boundary_displacement_zmax free,free,t>0?-2:0"};
 
   (void)state;
   for (PetscInt kind = 0; kind < KINDS; kind++)
@@ -325,12 +334,9 @@ static void names_an_element_inverted_at_the_start(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(converges_quadratically),
-      cmocka_unit_test(follows_prescribed_rows),
-      cmocka_unit_test(repeats_a_window_bit_for_bit),
-      cmocka_unit_test(tells_what_did_not_converge),
-      cmocka_unit_test(names_an_inverted_element),
-      cmocka_unit_test(names_an_element_inverted_at_the_start),
+      cmocka_unit_test(converges_quadratically),      cmocka_unit_test(follows_prescribed_rows),
+      cmocka_unit_test(repeats_a_window_bit_for_bit), cmocka_unit_test(tells_what_did_not_converge),
+      cmocka_unit_test(names_an_inverted_element),    cmocka_unit_test(names_an_element_inverted_at_the_start),
   };
 
   return impakt_main(argc, argv, tests);

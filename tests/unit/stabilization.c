@@ -22,7 +22,8 @@ static PetscReal ContactAcceleration(Simulation *simulation, PetscInt b)
 /* After a step in contact its nodes have no acceleration, also in the state from which the next step starts */
 static void naive(void **state)
 {
-  static const char *const methods[]  = {"-contact_type schwarz", "-contact_type penalty", "-contact_type lagrange", "-contact_type augmented_lagrangian"};
+  static const char *const methods[]  = {"-contact_type schwarz", "-contact_type penalty", "-contact_type lagrange",
+                                         "-contact_type augmented_lagrangian"};
   Simulation              *simulation = (Simulation *)*state;
 
   AddCollision(8, 10, 0);
@@ -55,7 +56,8 @@ static void naive(void **state)
 /* The whole contact force of the end of the step acts over all of it: dt F_1, not dt/2 (F_0 + F_1). Gap closed, no energy gained. */
 static void contact_stabilized(void **state)
 {
-  static const char *const masses[]   = {"-left_mass_type lumped -right_mass_type lumped", "-left_mass_type averaged -right_mass_type consistent"};
+  static const char *const masses[]   = {"-left_mass_type lumped -right_mass_type lumped",
+                                         "-left_mass_type averaged -right_mass_type consistent"};
   Simulation              *simulation = (Simulation *)*state;
 
   AddCollision(8, 10, 0.5);
@@ -101,7 +103,8 @@ static void first_step_by_hand(void **state)
   AddOptions(lumped);
   ok(SimulationCreate(simulation));
   near(p / 2, free - moved, 1e-15);
-  near(Step(simulation).force, squeeze / h / 2, 1e-11); /* mean of 0 and squeeze / h; 1e-12 m over dt^2 / (2 m), 4e-4 m/N, is 2e-9 at most */
+  near(Step(simulation).force, squeeze / h / 2,
+       1e-11); /* mean of 0 and squeeze / h; 1e-12 m over dt^2 / (2 m), 4e-4 m/N, is 2e-9 at most */
 }
 
 static void wrong_options_are_refused(void **state)

@@ -7,14 +7,17 @@
 /* A Gmsh file, version 2.2, in the working directory */
 static void write_mesh(const Mesh *mesh, const char path[])
 {
-  const int type = mesh->shape == DM_POLYTOPE_TRIANGLE ? 2 : mesh->shape == DM_POLYTOPE_QUADRILATERAL ? 3
-                                                         : mesh->shape == DM_POLYTOPE_TETRAHEDRON     ? 4
-                                                                                                      : 5;
+  const int type = mesh->shape == DM_POLYTOPE_TRIANGLE        ? 2
+                   : mesh->shape == DM_POLYTOPE_QUADRILATERAL ? 3
+                   : mesh->shape == DM_POLYTOPE_TETRAHEDRON   ? 4
+                                                              : 5;
   FILE     *file = fopen(path, "w");
 
   assert_non_null(file);
   fprintf(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", (int)mesh->n_nodes);
-  for (PetscInt node = 0; node < mesh->n_nodes; node++) fprintf(file, "%d %.17g %.17g %.17g\n", (int)node + 1, (double)mesh->x[mesh->dim * node], (double)mesh->x[mesh->dim * node + 1], mesh->dim == 3 ? (double)mesh->x[mesh->dim * node + 2] : 0.);
+  for (PetscInt node = 0; node < mesh->n_nodes; node++)
+    fprintf(file, "%d %.17g %.17g %.17g\n", (int)node + 1, (double)mesh->x[mesh->dim * node], (double)mesh->x[mesh->dim * node + 1],
+            mesh->dim == 3 ? (double)mesh->x[mesh->dim * node + 2] : 0.);
   fprintf(file, "$EndNodes\n$Elements\n%d\n", (int)mesh->count);
   for (PetscInt e = 0; e < mesh->count; e++) {
     fprintf(file, "%d %d 2 1 1", (int)e + 1, type);
@@ -107,7 +110,9 @@ static void is_a_close_bound(void **state)
         Body         body;
 
         if (k == 1 && mesh.dim == 3) continue;
-        options = options_begin("-prefix_push s_ -dm_plex_filename %s -density 3 -youngs_modulus 200 -mass_type lumped -poissons_ratio 0.3 %s -prefix_pop", path, kinds[k]);
+        options = options_begin(
+            "-prefix_push s_ -dm_plex_filename %s -density 3 -youngs_modulus 200 -mass_type lumped -poissons_ratio 0.3 %s -prefix_pop",
+            path, kinds[k]);
         ok(BodyCreate(PETSC_COMM_WORLD, "s", &body));
         ok(BodySetFromOptions(body));
         ok(BodySetControllerStep(body, 0, 0.1));

@@ -18,7 +18,9 @@ static int count(const char name[])
 
 static PetscOptions create(Body *body, const char more[])
 {
-  PetscOptions options = options_begin("-prefix_push box_ -dm_plex_dim 3 -dm_plex_box_faces 3,3,3 -density 1 -youngs_modulus 1 -poissons_ratio 0.3 -initial_velocity sin(x),y*z,0 %s -prefix_pop", more);
+  PetscOptions options = options_begin("-prefix_push box_ -dm_plex_dim 3 -dm_plex_box_faces 3,3,3 -density 1 -youngs_modulus 1 "
+                                       "-poissons_ratio 0.3 -initial_velocity sin(x),y*z,0 %s -prefix_pop",
+                                       more);
 
   ok(BodyCreate(PETSC_COMM_WORLD, "box", body));
   ok(BodySetFromOptions(*body));
@@ -46,7 +48,8 @@ static void implicit_linear(void **state)
 
   (void)state;
   options = create(&body, "");
-  assert_int_equal(count("MatLUFactorNum"), factors + 1); /* the effective matrix; without initial strain there is no acceleration to find by that of the mass */
+  assert_int_equal(count("MatLUFactorNum"),
+                   factors + 1); /* the effective matrix; without initial strain there is no acceleration to find by that of the mass */
   solves = count("MatSolve");
   forces = count("BodyForce");
   advance(body);

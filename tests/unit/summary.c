@@ -147,7 +147,8 @@ static void keys_and_numbers(void **state)
   near(Number(root, "system.momentum_error_max"), 0, 1e-10); /* of the outer iteration, relative to 0.02 kg m/s */
   between(Number(root, "system.energy_error_final"), Number(root, "system.energy_error_min"), Number(root, "system.energy_error_max"));
   near(Number(root, "schwarz.unconverged_steps"), 0, 0);
-  near(Number(root, "schwarz.mean_contact_steps") * Number(root, "contact.steps_in_contact"), Number(root, "timing.per_phase.sweeps.count"), 3); /* but for the steps of release */
+  near(Number(root, "schwarz.mean_contact_steps") * Number(root, "contact.steps_in_contact"), Number(root, "timing.per_phase.sweeps.count"),
+       3); /* but for the steps of release */
   json_decref(root);
   remove(PATH);
 }
@@ -280,11 +281,8 @@ static void paths_that_cannot_be_written(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(keys_and_numbers),
-      simulation_test(errors_against_the_exact_solution),
-      simulation_test(without_contact),
-      simulation_test(figures_of_each_pair),
-      simulation_test(paths_that_cannot_be_written),
+      simulation_test(keys_and_numbers),     simulation_test(errors_against_the_exact_solution), simulation_test(without_contact),
+      simulation_test(figures_of_each_pair), simulation_test(paths_that_cannot_be_written),
   };
 
   return impakt_main(argc, argv, tests);

@@ -42,7 +42,8 @@ static inline void expect_between(double a, double low, double high, const char 
   _fail(file, line);
 }
 
-static inline PetscErrorCode NoteMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *ctx)
+static inline PetscErrorCode NoteMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                         PetscErrorType type, const char *message, void *ctx)
 {
   (void)comm;
   (void)line;
@@ -54,16 +55,17 @@ static inline PetscErrorCode NoteMessage(MPI_Comm comm, int line, const char *fu
 }
 
 /* refused(code, words, call): the call ends with that error, and its message has all the words (split by '|') in it */
-#define refused(code, words, ...)                                      \
-  do {                                                                 \
-    char           message_[2048] = "";                                \
-    PetscErrorCode error_;                                             \
-    ok(PetscPushErrorHandler(NoteMessage, message_));                  \
-    error_ = (__VA_ARGS__);                                            \
-    ok(PetscPopErrorHandler());                                        \
-    expect_message(error_, code, words, message_, __FILE__, __LINE__); \
+#define refused(code, words, ...)                                                                                                          \
+  do {                                                                                                                                     \
+    char           message_[2048] = "";                                                                                                    \
+    PetscErrorCode error_;                                                                                                                 \
+    ok(PetscPushErrorHandler(NoteMessage, message_));                                                                                      \
+    error_ = (__VA_ARGS__);                                                                                                                \
+    ok(PetscPopErrorHandler());                                                                                                            \
+    expect_message(error_, code, words, message_, __FILE__, __LINE__);                                                                     \
   } while (0)
-static inline void expect_message(PetscErrorCode error, PetscErrorCode code, const char words[], const char message[], const char file[], int line)
+static inline void expect_message(PetscErrorCode error, PetscErrorCode code, const char words[], const char message[], const char file[],
+                                  int line)
 {
   char **word;
   int    n;
@@ -260,8 +262,9 @@ static inline PetscReal value_at(Body body, Vec vec, PetscReal x)
 }
 
 /* main(): the tests of an array, between start and end of Impakt */
-#define impakt_main(argc, argv, tests)        run_group(argc, argv, #tests, tests, sizeof(tests) / sizeof((tests)[0]), PETSC_FALSE)
-#define impakt_main_logged(argc, argv, tests) run_group(argc, argv, #tests, tests, sizeof(tests) / sizeof((tests)[0]), PETSC_TRUE) /* for counts of events */
+#define impakt_main(argc, argv, tests) run_group(argc, argv, #tests, tests, sizeof(tests) / sizeof((tests)[0]), PETSC_FALSE)
+#define impakt_main_logged(argc, argv, tests)                                                                                              \
+  run_group(argc, argv, #tests, tests, sizeof(tests) / sizeof((tests)[0]), PETSC_TRUE) /* for counts of events */
 static inline int run_group(int argc, char **argv, const char name[], const struct CMUnitTest tests[], size_t n, PetscBool logged)
 {
   int failed;

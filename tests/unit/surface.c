@@ -247,7 +247,8 @@ static void ends_that_face_each_other(void **state)
 
   (void)state;
   for (PetscInt i = 0; i < 2; i++) {
-    DM      dm[] = {CreateBoxMesh("left", 2, "3,4", "0,0", "1,1", PETSC_FALSE), CreateBoxMesh("right", 2, "3,5", lower[i], "2.5,1", PETSC_FALSE)};
+    DM      dm[] = {CreateBoxMesh("left", 2, "3,4", "0,0", "1,1", PETSC_FALSE),
+                    CreateBoxMesh("right", 2, "3,5", lower[i], "2.5,1", PETSC_FALSE)};
     Surface surface[2];
 
     for (PetscInt side = 0; side < 2; side++) ok(SurfaceCreate(dm[side], NULL, &surface[side]));
@@ -268,15 +269,9 @@ static void ends_that_face_each_other(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(line_ends_by_name),
-      simulation_test(whole_boundary_of_a_line),
-      simulation_test(faces_of_a_label),
-      simulation_test(sides_of_a_rectangle),
-      simulation_test(sides_of_a_hexahedral_box),
-      simulation_test(vertices_of_nodes),
-      simulation_test(ends_that_face_each_other),
-      simulation_test(unknown_names_are_refused),
-      simulation_test(empty_surfaces_are_refused),
+      simulation_test(line_ends_by_name),         simulation_test(whole_boundary_of_a_line),  simulation_test(faces_of_a_label),
+      simulation_test(sides_of_a_rectangle),      simulation_test(sides_of_a_hexahedral_box), simulation_test(vertices_of_nodes),
+      simulation_test(ends_that_face_each_other), simulation_test(unknown_names_are_refused), simulation_test(empty_surfaces_are_refused),
   };
 
   return impakt_main(argc, argv, tests);

@@ -3,8 +3,8 @@
 
 #define MATERIAL "-dm_plex_dim 2 -dm_plex_simplex 0 -density 1 -youngs_modulus 3 -poissons_ratio 0.3 -ts_type static "
 
-/* Sum over nodes of u_d times a function of the position: bodies that are dealt out in another way, or cut in two, can be compared by it. Nodes of
-   the seam at x = 1 count half in each of the two. */
+/* Sum over nodes of u_d times a function of the position: bodies that are dealt out in another way, or cut in two, can be compared by it.
+   Nodes of the seam at x = 1 count half in each of the two. */
 static void add_moments(Body body, PetscBool parts, PetscReal sums[4])
 {
   const PetscScalar *x, *u;
@@ -38,7 +38,9 @@ static void two_blocks_are_as_one(void **state)
   Simulation              *simulation = (Simulation *)*state;
   PetscReal                whole[4]   = {0};
 
-  AddOptions("-prefix_push a_ " MATERIAL "-dm_plex_box_faces 8,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 2,1 -boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0 -boundary_displacement_xmax 0.1,0.05 -prefix_pop -bodies a -time_step 1 -time_end 1");
+  AddOptions("-prefix_push a_ " MATERIAL
+             "-dm_plex_box_faces 8,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 2,1 -boundary_displacement xmin,xmax "
+             "-boundary_displacement_xmin 0,0 -boundary_displacement_xmax 0.1,0.05 -prefix_pop -bodies a -time_step 1 -time_end 1");
   ok(SimulationCreate(simulation));
   ok(ContactStep(simulation->contact));
   add_moments(simulation->bodies[0], PETSC_FALSE, whole);
@@ -51,8 +53,10 @@ static void two_blocks_are_as_one(void **state)
     options_drop(simulation->options);
     simulation->options = options_begin("");
     /* the one that would float without its partner takes displacements */
-    AddOptions("-prefix_push a_ " MATERIAL "-dm_plex_box_faces 4,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 1,1 -boundary_displacement xmin -boundary_displacement_xmin 0,0 -prefix_pop "
-               "-prefix_push b_ " MATERIAL "-dm_plex_box_faces 4,4 -dm_plex_box_lower 1,0 -dm_plex_box_upper 2,1 -boundary_displacement xmax -boundary_displacement_xmax 0.1,0.05 -prefix_pop "
+    AddOptions("-prefix_push a_ " MATERIAL "-dm_plex_box_faces 4,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 1,1 -boundary_displacement "
+               "xmin -boundary_displacement_xmin 0,0 -prefix_pop "
+               "-prefix_push b_ " MATERIAL "-dm_plex_box_faces 4,4 -dm_plex_box_lower 1,0 -dm_plex_box_upper 2,1 -boundary_displacement "
+               "xmax -boundary_displacement_xmax 0.1,0.05 -prefix_pop "
                "-bodies a,b -contact_pairs b:a -contact_law tied -time_step 1 -time_end 1");
     SimulationRepeat(simulation, ways[way]);
     ok(ContactStep(simulation->contact));

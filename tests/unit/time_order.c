@@ -36,7 +36,8 @@ static void write_step(const char body[], PetscReal step, const char integrator[
   const char *ratio = strchr(integrator, '/');
   const int   n     = ratio ? atoi(ratio + 1) : 1;
 
-  snprintf(text, size, "-%s_ts_type %s -%s_ts_time_step %.17g", body, integrator[0] == 'E' ? TSCENTRALDIFFERENCE : TSALPHA2, body, (double)(step / n));
+  snprintf(text, size, "-%s_ts_type %s -%s_ts_time_step %.17g", body, integrator[0] == 'E' ? TSCENTRALDIFFERENCE : TSALPHA2, body,
+           (double)(step / n));
 }
 
 static void copy_displacement(Body body, PetscReal x0, PetscReal result[])
@@ -116,27 +117,18 @@ static void measure(const Pairing *pairing, const char mass[], PetscReal limit[]
   }
   *order = PetscLog2Real(differences[LEVELS - 3] / differences[LEVELS - 2]);
   for (PetscInt i = 0; i < 2 * NODES; i++) limit[i] = results[LEVELS - 1][i] + (results[LEVELS - 1][i] - results[LEVELS - 2][i]) / 3;
-  print_message("  %s:%s  order %.3f, last difference %.1e m\n", pairing->left, pairing->right, (double)*order, (double)differences[LEVELS - 2]);
+  print_message("  %s:%s  order %.3f, last difference %.1e m\n", pairing->left, pairing->right, (double)*order,
+                (double)differences[LEVELS - 2]);
 }
 
 /* Every pairing is of order 2 and has the limit of two implicit bodies with a common step */
 static void has_order_two(const char mass[])
 {
   const Pairing pairings[] = {
-      {"I", "I"},
-      {"I", "E"},
-      {"E", "I"},
-      {"E", "E"}, /* common step */
-      {"I", "E/5"},
-      {"I", "E/10"},
-      {"E/5", "I"},
-      {"E/10", "I"}, /* mixed, the explicit body with substeps */
-      {"E/2", "E/3"},
-      {"E/3", "E/2"},
-      {"I/2", "I/3"},
-      {"I/2", "E/5"}, /* both with substeps, at times of their own */
-      {"I", "I/3"},
-      {"I/3", "I"},
+      {"I", "I"},     {"I", "E"},     {"E", "I"},     {"E", "E"},     /* common step */
+      {"I", "E/5"},   {"I", "E/10"},  {"E/5", "I"},   {"E/10", "I"},  /* mixed, the explicit body with substeps */
+      {"E/2", "E/3"}, {"E/3", "E/2"}, {"I/2", "I/3"}, {"I/2", "E/5"}, /* both with substeps, at times of their own */
+      {"I", "I/3"},   {"I/3", "I"},
   };
   PetscReal reference[2 * NODES], limit[2 * NODES], order;
 
@@ -184,7 +176,10 @@ static void a_body_alone_has_order_two(void **state)
     for (PetscInt k = 0; k < 3; k++) {
       const PetscInt substeps = k == 2 ? 32 * 16 : 32 << k;
       Body           body;
-      PetscOptions   options = bar_create(&body, "-dm_plex_box_faces 8 -dm_plex_box_upper 2 -density 1 -youngs_modulus 4 -cross_section 0.5 -mass_type lumped -ts_type %s -ts_time_step %.17g", integrators[i], 0.7 / substeps);
+      PetscOptions   options = bar_create(&body,
+                                          "-dm_plex_box_faces 8 -dm_plex_box_upper 2 -density 1 -youngs_modulus 4 -cross_section 0.5 "
+                                          "-mass_type lumped -ts_type %s -ts_time_step %.17g",
+                                          integrators[i], 0.7 / substeps);
       Vec            u;
 
       ok(BodySetControllerStep(body, 0, 0.7));

@@ -105,8 +105,9 @@ static void far_bars_are_partners(void **state)
 static void surfaces_that_do_not_face_each_other(void **state)
 {
   /* both look right; both look left; they look away from each other */
-  const char *const lower[] = {"0", "1.25"}, *const upper[] = {"1", "2"}, *const names[][2] = {{"xmax", "xmax"}, {"xmin", "xmin"}, {"xmin", "xmax"}};
-  Bars bars;
+  const char *const lower[] = {"0", "1.25"}, *const upper[] = {"1", "2"},
+                    *const names[][2] = {{"xmax", "xmax"}, {"xmin", "xmin"}, {"xmin", "xmax"}};
+  Bars                     bars;
 
   (void)state;
   for (PetscInt i = 0; i < 3; i++) {
@@ -136,10 +137,8 @@ static void dimensions_must_agree(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(bars_that_face_each_other),
-      simulation_test(overlap_is_a_negative_gap),
-      simulation_test(far_bars_are_partners),
-      simulation_test(surfaces_that_do_not_face_each_other),
+      simulation_test(bars_that_face_each_other), simulation_test(overlap_is_a_negative_gap),
+      simulation_test(far_bars_are_partners),     simulation_test(surfaces_that_do_not_face_each_other),
       simulation_test(dimensions_must_agree),
   };
 

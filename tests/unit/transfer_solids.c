@@ -7,15 +7,13 @@
 static const PetscInt    pair_dim[PAIRS]      = {2, 2, 3, 3, 3};
 static const char *const pair_faces[PAIRS][2] = {
     {"2,1", "4,1"}, {"3,1", "5,1"}, {"2,2,1", "4,4,1"}, {"3,3,1", "2,2,1"}, {"3,2,1", "2,2,1"}};
-static const PetscBool pair_simplex[PAIRS][2] = {
-    {QUADS, QUADS}, {QUADS, SIMPLICES}, {QUADS, QUADS}, {QUADS, QUADS}, {QUADS, SIMPLICES}};
+static const PetscBool pair_simplex[PAIRS][2] = {{QUADS, QUADS}, {QUADS, SIMPLICES}, {QUADS, QUADS}, {QUADS, QUADS}, {QUADS, SIMPLICES}};
 
 static const PetscReal nowhere[3] = {0, 0, 0};
 
 static Map straight_map(PetscInt dim, PetscInt which)
 {
-  return !which ? map_nothing : dim == 2 ? map_oblique_2d
-                                         : map_oblique;
+  return !which ? map_nothing : dim == 2 ? map_oblique_2d : map_oblique;
 }
 
 static void open_pair(Interface *interface, PetscInt pair, PetscBool flip, Map map)
@@ -171,7 +169,8 @@ static void rows_are_built_when_needed(void **state)
   interface_destroy(&interface);
 }
 
-/* Half of the partner gone to the side: rows beyond its end are empty but for those that guard it, and the areas sum up to what is covered */
+/* Half of the partner gone to the side: rows beyond its end are empty but for those that guard it, and the areas sum up to what is covered
+ */
 static void ends_are_covered_in_part(void **state)
 {
   const PetscReal aside[3] = {0.6, 0, 0};
@@ -236,8 +235,8 @@ static void map_tilted(const PetscReal X[3], PetscReal x[3])
   x[2] += 0.02 + 0.1 * X[0];
 }
 
-/* A narrower partner that tilts toward its end at x = 0.6: the gap of the nodes before it, at 1/2 or 1/3, is that of the end, as is that of no row
-   without guards; other gaps are those of the straight partner, 0.06 at x = 1. Resultant and moment agree. */
+/* A narrower partner that tilts toward its end at x = 0.6: the gap of the nodes before it, at 1/2 or 1/3, is that of the end, as is that of
+   no row without guards; other gaps are those of the straight partner, 0.06 at x = 1. Resultant and moment agree. */
 static void ends_are_guarded(void **state)
 {
   const PetscReal aside[3] = {0.6, 0, 0};
@@ -302,14 +301,10 @@ static void search_costs_in_proportion(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(uniform_pressure_stays_uniform),
-      simulation_test(flat_rows),
-      simulation_test(linear_fields_are_reproduced),
-      simulation_test(force_and_moment_are_conserved),
-      simulation_test(rows_are_built_when_needed),
-      simulation_test(ends_are_covered_in_part),
-      simulation_test(neighbours_share_an_edge),
-      simulation_test(ends_are_guarded),
+      simulation_test(uniform_pressure_stays_uniform), simulation_test(flat_rows),
+      simulation_test(linear_fields_are_reproduced),   simulation_test(force_and_moment_are_conserved),
+      simulation_test(rows_are_built_when_needed),     simulation_test(ends_are_covered_in_part),
+      simulation_test(neighbours_share_an_edge),       simulation_test(ends_are_guarded),
       simulation_test(search_costs_in_proportion),
   };
 

@@ -18,7 +18,8 @@ static PetscOptions create_body(Body *body, Rows *rows, BodyTraces *traces, cons
 }
 
 /*
-   A Robin row answers with a force f along it and a displacement w, f + k w = r at the end of each substep. The same force put on it as a load brings about the same state.
+   A Robin row answers with a force f along it and a displacement w, f + k w = r at the end of each substep. The same force put on it as a
+   load brings about the same state.
 */
 static void robin_rows(void **state)
 {
@@ -49,7 +50,8 @@ static void robin_rows(void **state)
       set_conditions(body, &rows, forced);
       for (PetscInt level = 0; level <= substeps; level++) set_level(&rows, traces.force_in, level, 0, force[level]);
       ok(BodyIntegrate(body));
-      for (PetscInt level = 1; level <= substeps; level++) near(get_level(&rows, traces.displacement, level, 0), displacement[level], 1e-15);
+      for (PetscInt level = 1; level <= substeps; level++)
+        near(get_level(&rows, traces.displacement, level, 0), displacement[level], 1e-15);
       bar_destroy(&body, options);
     }
 }
@@ -134,10 +136,13 @@ static const char *const pairings[] = {
 static void one_solution(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
-  const char *const ways[]     = {"-schwarz_transmission robin", "-schwarz_transmission robin -schwarz_robin_parameter 3", "-schwarz_transmission impedance", "-schwarz_transmission robin -schwarz_snes_type nrichardson -schwarz_convergence mismatch",
-                                  "-schwarz_predictor last", "-schwarz_predictor trial", "-schwarz_predictor extrapolate", "-schwarz_predictor inelastic"};
-  const size_t      n          = sizeof(pairings) / sizeof(pairings[0]);
-  PetscMPIInt       size;
+  const char *const ways[]     = {
+      "-schwarz_transmission robin",     "-schwarz_transmission robin -schwarz_robin_parameter 3",
+      "-schwarz_transmission impedance", "-schwarz_transmission robin -schwarz_snes_type nrichardson -schwarz_convergence mismatch",
+      "-schwarz_predictor last",         "-schwarz_predictor trial",
+      "-schwarz_predictor extrapolate",  "-schwarz_predictor inelastic"};
+  const size_t n = sizeof(pairings) / sizeof(pairings[0]);
+  PetscMPIInt  size;
 
   assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
   /* the last alone on several ranks, which is implicit on one side and explicit on the other */
@@ -168,7 +173,8 @@ static void newton_needs_two_sweeps(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
   const char *const ways[]     = {"-schwarz_transmission robin", "-schwarz_transmission impedance", "-contact_swap_sides"};
-  const char *const steps[]    = {"", "-left_ts_time_step 0.01 -right_ts_time_step 0.005", "-left_ts_time_step 0.005", "-right_ts_time_step 0.005"};
+  const char *const steps[]    = {"", "-left_ts_time_step 0.01 -right_ts_time_step 0.005", "-left_ts_time_step 0.005",
+                                  "-right_ts_time_step 0.005"};
 
   for (PetscInt way = 0; way < 3; way++)
     for (PetscInt i = 0; i < 4; i++) {
@@ -216,8 +222,10 @@ static void wrong_options_are_refused(void **state)
   } cases[] = {
       {"-schwarz_transmission robin -schwarz_robin_parameter 0", "-schwarz_robin_parameter 0|must be positive", PETSC_ERR_USER_INPUT},
       {"-schwarz_transmission robin -schwarz_robin_parameter -2", "-schwarz_robin_parameter -2|must be positive", PETSC_ERR_USER_INPUT},
-      {"-schwarz_transmission robin -right_ts_type centraldifference -right_mass_redistribute 0", "'right' have mass|-right_mass_redistribute true|dirichlet_neumann", PETSC_ERR_USER_INPUT},
-      {"-schwarz_transmission impedance -left_ts_type centraldifference -left_mass_redistribute 0", "'left' have mass|-left_mass_redistribute true", PETSC_ERR_USER_INPUT},
+      {"-schwarz_transmission robin -right_ts_type centraldifference -right_mass_redistribute 0",
+       "'right' have mass|-right_mass_redistribute true|dirichlet_neumann", PETSC_ERR_USER_INPUT},
+      {"-schwarz_transmission impedance -left_ts_type centraldifference -left_mass_redistribute 0",
+       "'left' have mass|-left_mass_redistribute true", PETSC_ERR_USER_INPUT},
   };
 
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {

@@ -86,7 +86,7 @@ struct _p_Contact {
   PetscReal           *force, *gap;             /* at the end of the controller step */
   PetscReal           *saved_force, *saved_gap; /* at its start */
   PetscBool           *active, *saved_active;
-  PetscBool            fades;             /* rows are not let go all at once: their forces fall to zero in the course of the controller step */
+  PetscBool            fades; /* rows are not let go all at once: their forces fall to zero in the course of the controller step */
   PetscInt            *release_intervals; /* per row let go in this controller step: between the times at which its force is told; else 0 */
   PetscInt             release_room;      /* times that each row has room for */
   PetscReal           *release;           /* per row: its force at these times [N] */

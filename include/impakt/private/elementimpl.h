@@ -9,14 +9,17 @@ typedef struct _n_Element *Element;
 
 typedef struct {
   PetscErrorCode (*setfromoptions)(Element, MPI_Comm, const char[]);
-  PetscErrorCode (*copyoptions)(Element, Element);                                    /* what options have set, from the first to the second */
-  PetscErrorCode (*setup)(Element, const PetscReal[]);                                /* coordinates of the rank's nodes */
-  PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]);       /* adds to the second [N] */
-  PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);                /* stored by all elements of this rank [J] */
-  PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[], PetscScalar[]); /* tangent of one element at the displacement of the rank's nodes, row by row [N/m] */
-  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]);                           /* consistent mass of one element [kg] */
-  PetscErrorCode (*stress)(Element, const PetscScalar[], PetscReal[]);                /* Cauchy stress, mean of each element: xx yy zz xy yz xz, 6 x count [Pa] */
-  PetscErrorCode (*points)(Element, PetscInt, PetscReal[], PetscReal[]);              /* of one element: reference positions of its load points, n_points x dim [m], and their weights [m^3, m^2 x thickness] */
+  PetscErrorCode (*copyoptions)(Element, Element);                              /* what options have set, from the first to the second */
+  PetscErrorCode (*setup)(Element, const PetscReal[]);                          /* coordinates of the rank's nodes */
+  PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]); /* adds to the second [N] */
+  PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);          /* stored by all elements of this rank [J] */
+  PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[],
+                              PetscScalar[]); /* tangent of one element at the displacement of the rank's nodes, row by row [N/m] */
+  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]); /* consistent mass of one element [kg] */
+  PetscErrorCode (*stress)(Element, const PetscScalar[],
+                           PetscReal[]); /* Cauchy stress, mean of each element: xx yy zz xy yz xz, 6 x count [Pa] */
+  PetscErrorCode (*points)(Element, PetscInt, PetscReal[], PetscReal[]); /* of one element: reference positions of its load points, n_points
+                                                                            x dim [m], and their weights [m^3, m^2 x thickness] */
   PetscErrorCode (*destroy)(Element);
 } ElementOps;
 

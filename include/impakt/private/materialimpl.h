@@ -29,7 +29,8 @@ struct _p_Material {
   void           *data;
 };
 
-PETSC_INTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const void *, const PetscReal[9][8], PetscReal[8]), MaterialKernels *);
+PETSC_INTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const void *, const PetscReal[9][8], PetscReal[8]),
+                                                    MaterialKernels *);
 PETSC_INTERN PetscErrorCode MaterialCreate_LinearElastic(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_SaintVenantKirchhoff(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_NeoHookean(Material);

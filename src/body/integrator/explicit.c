@@ -52,11 +52,13 @@ static PetscErrorCode RefactorLayer(Body body, Vec u)
 }
 
 /* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (forces - internal force)_L, with prescribed
-   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the factors of the undeformed layer, or,
-   since a body that turns makes these worse (23 degrees are too many), of one as it was when they became slow. `force` becomes that of ComputeOutsideForce(), where there is any. */
+   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the factors of the undeformed
+   layer, or, since a body that turns makes these worse (23 degrees are too many), of one as it was when they became slow. `force` becomes
+   that of ComputeOutsideForce(), where there is any. */
 static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
 {
-  const PetscBool outside = HasOutsideForce(body, contact), linear = (PetscBool)(body->linear || body->linearized), robin = (PetscBool)(contact && body->n_robin);
+  const PetscBool outside = HasOutsideForce(body, contact), linear = (PetscBool)(body->linear || body->linearized),
+                  robin = (PetscBool)(contact && body->n_robin);
   PetscReal       first = 0, round_off = 0;
 
   PetscFunctionBegin;
@@ -85,7 +87,10 @@ static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position
     body->layer_slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
     if (change <= BALANCE_TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
   }
-  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED, "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or -%smass_redistribute false", body->hdr.name, MAX_BALANCE_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
+          "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or "
+          "-%smass_redistribute false",
+          body->hdr.name, MAX_BALANCE_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
 }
 
 /* a = (force - internal force) / m in one pass; without a force, where it is NULL */
@@ -209,13 +214,15 @@ PetscErrorCode BodyFinishSubstepExplicit(Body body)
     PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
     PetscCall(VecGetArrayRead(body->state.u, &u1));
     PetscCall(VecGetArray(body->state.v, &v));
-    for (PetscInt i = 0; i < body->n_layer_dofs; i++) v[body->layer_dofs[i]] = (u1[body->layer_dofs[i]] - u0[body->layer_dofs[i]]) / body->time_step;
+    for (PetscInt i = 0; i < body->n_layer_dofs; i++)
+      v[body->layer_dofs[i]] = (u1[body->layer_dofs[i]] - u0[body->layer_dofs[i]]) / body->time_step;
     PetscCall(VecRestoreArray(body->state.v, &v));
     PetscCall(VecRestoreArrayRead(body->state.u, &u1));
     PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   }
   PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, NULL));
-  if (body->prescribed_mass) PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->substep + 1) / body->substeps, body->state.v));
+  if (body->prescribed_mass)
+    PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->substep + 1) / body->substeps, body->state.v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -275,7 +282,10 @@ PetscErrorCode BodyComputeFreeRows(Body body, PetscScalar displacement[])
 
   PetscFunctionBegin;
   PetscCall(BodyHasFreeRows(body, &has));
-  PetscCheck(has, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s' is not explicit with massless contact nodes and one substep to a controller step: only integrating tells where its rows get; see BodyHasFreeRows()", body->hdr.name);
+  PetscCheck(has, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+             "Body '%s' is not explicit with massless contact nodes and one substep to a controller step: only integrating tells where its "
+             "rows get; see BodyHasFreeRows()",
+             body->hdr.name);
   BodyGetNearLayer(body, &n, &near);
   if (!body->linear) PetscCall(VecCopy(body->saved.u, way)); /* the balance takes the size of all of it */
   PetscCall(VecGetArrayRead(body->saved.u, &u));

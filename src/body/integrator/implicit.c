@@ -68,7 +68,8 @@ static PetscErrorCode AssembleShifted(Body body, Vec u)
 }
 
 /* The matrix of a linear body is constant, and was assembled at set-up */
-static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P, void *ctx)
+static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P,
+                                      void *ctx)
 {
   Body body = (Body)ctx;
 
@@ -87,8 +88,8 @@ static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First iterate: the last displacement, of nonlinear bodies that at the last velocity, with held dofs and prescribed rows in place. Also brings the acceleration, which TSALPHA2 would
-   take from its last step, even if that step has been undone since. */
+/* First iterate: the last displacement, of nonlinear bodies that at the last velocity, with held dofs and prescribed rows in place. Also
+   brings the acceleration, which TSALPHA2 would take from its last step, even if that step has been undone since. */
 static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 {
   Body body = (Body)ctx;
@@ -115,7 +116,8 @@ static PetscErrorCode ApplyConstrainedSolver(PC pc, Vec b, Vec x)
 
 /* One Newton iteration solves a linear body. The residual must still be evaluated at the solution, because velocity and
    acceleration are by-products of its evaluation. */
-static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                            SNESConvergedReason *reason, void *ctx)
 {
   PetscFunctionBegin;
   (void)snes;
@@ -128,7 +130,8 @@ static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xn
 }
 
 /* Newton's method has converged where the residual is small against the forces that it is the balance of */
-static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason,
+                                    void *ctx)
 {
   Body      body = (Body)ctx;
   PetscReal rtol, atol;

@@ -197,11 +197,18 @@ static PetscErrorCode CheckSubstep(Body body)
     PetscCall(SNESGetIterationNumber(snes, &iterations));
     if (newton < 0) {
       PetscCall(BodyCheckInverted(body));
-      SETERRQ(comm, PETSC_ERR_NOT_CONVERGED, "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor", body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[newton], iterations, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+      SETERRQ(comm, PETSC_ERR_NOT_CONVERGED,
+              "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
+              " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
+              body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[newton], iterations, ((PetscObject)body)->prefix,
+              ((PetscObject)body)->prefix);
     }
   }
   if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
-  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), comm, PETSC_ERR_FP, "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT "); is a time step too large, or a penalty too stiff for it?", body->hdr.name, (double)body->time, body->step);
+  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), comm, PETSC_ERR_FP,
+             "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
+             "); is a time step too large, or a penalty too stiff for it?",
+             body->hdr.name, (double)body->time, body->step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -148,7 +148,8 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
 
 static PetscErrorCode CreateTraces(Body body)
 {
-  Trace *traces[] = {&body->traces.displacement_in, &body->traces.velocity_in, &body->traces.acceleration_in, &body->traces.force_in, &body->traces.displacement, &body->traces.velocity, &body->traces.acceleration, &body->traces.reaction};
+  Trace *traces[] = {&body->traces.displacement_in, &body->traces.velocity_in, &body->traces.acceleration_in, &body->traces.force_in,
+                     &body->traces.displacement,    &body->traces.velocity,    &body->traces.acceleration,    &body->traces.reaction};
 
   PetscFunctionBegin;
   for (PetscInt t = 0; t < 8; t++) PetscCall(TraceCreate(body->rows.local, body->substeps, traces[t]));
@@ -179,7 +180,8 @@ static PetscErrorCode SetUpRows(Body body)
   PetscCall(PetscMPIIntCast(4 * rows->local, &four));
   PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
-  PetscCall(PetscCalloc4(rows->local, &body->conditions, rows->local, &body->held, rows->local, &body->flexibility, rows->local, &body->robin));
+  PetscCall(
+      PetscCalloc4(rows->local, &body->conditions, rows->local, &body->held, rows->local, &body->flexibility, rows->local, &body->robin));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[k]));
   body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute && !body->is_static);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -199,7 +201,8 @@ static PetscErrorCode SetUpRows(Body body)
 @*/
 PetscErrorCode BodySetUp(Body body)
 {
-  Vec *always[] = {&body->state.u, &body->state.v, &body->state.a, &body->saved.u, &body->saved.v, &body->saved.a, &body->internal_force, &body->work[0], &body->work[1], &body->work[2]};
+  Vec *always[] = {&body->state.u, &body->state.v,        &body->state.a, &body->saved.u, &body->saved.v,
+                   &body->saved.a, &body->internal_force, &body->work[0], &body->work[1], &body->work[2]};
   Vec *sweeps[] = {&body->previous_u, &body->kept[0], &body->kept[1], &body->kept[2], &body->kept[3]};
 
   PetscFunctionBegin;
@@ -253,8 +256,13 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec   *vecs[]   = {&b->state.u, &b->state.v, &b->state.a, &b->saved.u, &b->saved.v, &b->saved.a, &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u, &b->work[0], &b->work[1], &b->work[2], &b->positions, &b->mass_row_sum, &b->orphan_mass, &b->applied, &b->saved_applied, &b->mass_diagonal, &b->inverse_mass, &b->row_vec[0], &b->row_vec[1], &b->row_vec[2], &b->layer_rhs, &b->layer_solution, &b->kept[0], &b->kept[1], &b->kept[2], &b->kept[3]};
-    Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in, &b->traces.displacement, &b->traces.velocity, &b->traces.acceleration, &b->traces.reaction};
+    Vec   *vecs[]   = {&b->state.u,         &b->state.v,         &b->state.a,        &b->saved.u,     &b->saved.v,    &b->saved.a,
+                       &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u,  &b->work[0],    &b->work[1],
+                       &b->work[2],         &b->positions,       &b->mass_row_sum,   &b->orphan_mass, &b->applied,    &b->saved_applied,
+                       &b->mass_diagonal,   &b->inverse_mass,    &b->row_vec[0],     &b->row_vec[1],  &b->row_vec[2], &b->layer_rhs,
+                       &b->layer_solution,  &b->kept[0],         &b->kept[1],        &b->kept[2],     &b->kept[3]};
+    Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
+                       &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
 
     PetscCall(BodyDestroyResponse(b));
     PetscCall(BodyDestroyCompliance(b));

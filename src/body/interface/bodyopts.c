@@ -10,7 +10,9 @@ static PetscErrorCode CheckDescribed(Body body)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < 3 && !found; i++) PetscCall(PetscOptionsHasName(NULL, prefix, mesh[i], &found));
-  PetscCheck(found, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s', named by -bodies, has no mesh: give -%sdm_plex_dim and -%sdm_plex_box_faces, or -%sdm_plex_filename", body->hdr.name, prefix, prefix, prefix);
+  PetscCheck(found, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "Body '%s', named by -bodies, has no mesh: give -%sdm_plex_dim and -%sdm_plex_box_faces, or -%sdm_plex_filename",
+             body->hdr.name, prefix, prefix, prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -41,7 +43,8 @@ static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
     *hidden = PETSC_TRUE;
   } else {
     PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &body->requested_step, NULL));
-    PetscCheck(body->requested_step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sts_time_step %s: a time step must be positive", prefix, text);
+    PetscCheck(body->requested_step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+               "-%sts_time_step %s: a time step must be positive", prefix, text);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,7 +61,8 @@ static PetscErrorCode CreateTime(Body body)
   PetscCall(PetscStrcmp(type, TSALPHA2, &alpha2));
   PetscCall(PetscStrcmp(type, TSCENTRALDIFFERENCE, &body->is_explicit));
   PetscCall(PetscStrcmp(type, TSSTATIC, &body->is_static));
-  PetscCheck(alpha2 || body->is_explicit || body->is_static, comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%sts_type '%s'; known: alpha2 (implicit), centraldifference (explicit), static (without inertia)", prefix, type);
+  PetscCheck(alpha2 || body->is_explicit || body->is_static, comm, PETSC_ERR_ARG_UNKNOWN_TYPE,
+             "Unknown -%sts_type '%s'; known: alpha2 (implicit), centraldifference (explicit), static (without inertia)", prefix, type);
   PetscCall(ReadTimeStep(body, &hidden));
   PetscCall(TSCreate(comm, &body->ts));
   PetscCall(TSSetOptionsPrefix(body->ts, prefix));
@@ -80,8 +84,13 @@ static PetscErrorCode CreateTime(Body body)
   }
   if (!body->is_explicit) {
     PetscCall(TSAlpha2GetParams(body->ts, &body->alpha_m, &body->alpha_f, &body->gamma, &body->beta));
-    if (body->is_static) PetscCheck(body->alpha_m == 1 && body->alpha_f == 1, comm, PETSC_ERR_USER_INPUT, "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", prefix);
-    PetscCheck(body->beta > 0 && body->alpha_f > 0 && body->alpha_m > 0 && body->gamma > 0, comm, PETSC_ERR_USER_INPUT, "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose -%sts_type centraldifference", prefix, (double)body->alpha_m, (double)body->alpha_f, (double)body->gamma, (double)body->beta, prefix);
+    if (body->is_static)
+      PetscCheck(body->alpha_m == 1 && body->alpha_f == 1, comm, PETSC_ERR_USER_INPUT,
+                 "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", prefix);
+    PetscCheck(body->beta > 0 && body->alpha_f > 0 && body->alpha_m > 0 && body->gamma > 0, comm, PETSC_ERR_USER_INPUT,
+               "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose "
+               "-%sts_type centraldifference",
+               prefix, (double)body->alpha_m, (double)body->alpha_f, (double)body->gamma, (double)body->beta, prefix);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -93,8 +102,10 @@ static PetscErrorCode ReadMass(Body body)
   body->mass_type         = body->is_explicit && body->dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
   body->mass_redistribute = PETSC_TRUE;
   PetscObjectOptionsBegin((PetscObject)body);
-  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type, (PetscEnum *)&body->mass_type, NULL));
-  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions", body->mass_redistribute, &body->mass_redistribute, NULL));
+  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type,
+                             (PetscEnum *)&body->mass_type, NULL));
+  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions",
+                             body->mass_redistribute, &body->mass_redistribute, NULL));
   PetscOptionsEnd();
   if (body->is_static) body->mass_redistribute = PETSC_FALSE; /* it has no inertia to move */
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -184,19 +195,22 @@ static PetscErrorCode ComputeInitialAcceleration(Body body)
 
 .seealso: `Body`, `BodySetUp()`
 @*/
-PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *), void *ctx)
+PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *),
+                                   void *ctx)
 {
   PetscScalar *u, *v;
   PetscReal    norm;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->setup && !body->step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp(), before the first step");
+  PetscCheck(body->setup && !body->step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Call after BodySetUp(), before the first step");
   PetscCall(BodyLoadsInitialState(body, body->state.u, body->state.v));
   if (function) {
     PetscCall(VecGetArray(body->state.u, &u));
     PetscCall(VecGetArray(body->state.v, &v));
-    for (PetscInt node = 0; node < body->owned_nodes; node++) PetscCall((*function)(body->dim, body->coordinates + node * body->dim, u + node * body->dim, v + node * body->dim, ctx));
+    for (PetscInt node = 0; node < body->owned_nodes; node++)
+      PetscCall((*function)(body->dim, body->coordinates + node * body->dim, u + node * body->dim, v + node * body->dim, ctx));
     PetscCall(VecRestoreArray(body->state.v, &v));
     PetscCall(VecRestoreArray(body->state.u, &u));
   }

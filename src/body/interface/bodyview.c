@@ -10,7 +10,9 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->cell_shape]));
   if (body->is_explicit) PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->stable_step));
-  if (body->mass_shift[0] != 0 || body->mass_shift[1] != 0 || body->mass_shift[2] != 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n", (double)body->mass_shift[0], (double)body->mass_shift[1], (double)body->mass_shift[2]));
+  if (body->mass_shift[0] != 0 || body->mass_shift[1] != 0 || body->mass_shift[2] != 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n",
+                                     (double)body->mass_shift[0], (double)body->mass_shift[1], (double)body->mass_shift[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,7 +39,11 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(VecGetSize(body->positions, &dofs));
   PetscCall(TSGetType(body->ts, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name, dofs, (double)body->total_mass, BodyMassTypes[body->mass_type], body->mass_redistribute && body->rows.global ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s", (double)body->time_step));
+  PetscCall(PetscViewerASCIIPrintf(
+      viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name,
+      dofs, (double)body->total_mass, BodyMassTypes[body->mass_type],
+      body->mass_redistribute && body->rows.global ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s",
+      (double)body->time_step));
   if (body->dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,7 +9,8 @@ static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscM
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(all, rows->global));
   for (PetscInt i = 0; i < rows->local; i++) all[rows->begin + i] = changed[i] ? 1 : 0;
-  if (rows->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  if (rows->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,12 +16,21 @@ PetscErrorCode BodySetUpSubsteps(Body body)
   } else {
     const PetscReal step = body->requested_step > 0 ? body->requested_step : body->controller_step;
 
-    PetscCheck(body->controller_step / step < 1e9, comm, PETSC_ERR_USER_INPUT, "-%sts_time_step %g s is too small for the controller step -time_step %g s", prefix, (double)step, (double)body->controller_step);
+    PetscCheck(body->controller_step / step < 1e9, comm, PETSC_ERR_USER_INPUT,
+               "-%sts_time_step %g s is too small for the controller step -time_step %g s", prefix, (double)step,
+               (double)body->controller_step);
     body->substeps = (PetscInt)PetscFloorReal(0.5 + body->controller_step / step);
-    PetscCheck(body->substeps > 0 && PetscAbsReal(body->substeps * step - body->controller_step) <= 1e-6 * body->controller_step, comm, PETSC_ERR_USER_INPUT, "-%sts_time_step %g s does not divide the controller step -time_step %g s (ratio %.9g); choose a whole fraction of it, or 'auto'", prefix, (double)step, (double)body->controller_step, (double)(body->controller_step / step));
+    PetscCheck(
+        body->substeps > 0 && PetscAbsReal(body->substeps * step - body->controller_step) <= 1e-6 * body->controller_step, comm,
+        PETSC_ERR_USER_INPUT,
+        "-%sts_time_step %g s does not divide the controller step -time_step %g s (ratio %.9g); choose a whole fraction of it, or 'auto'",
+        prefix, (double)step, (double)body->controller_step, (double)(body->controller_step / step));
   }
   body->time_step = body->controller_step / body->substeps;
-  if (body->is_explicit) PetscCheck(body->time_step <= body->stable_step * (1 + 1e-12), comm, PETSC_ERR_USER_INPUT, "-%sts_time_step %g s of the explicit body '%s' is larger than its stable step, %.6g s; choose a smaller one, or 'auto'", prefix, (double)body->time_step, body->hdr.name, (double)body->stable_step);
+  if (body->is_explicit)
+    PetscCheck(body->time_step <= body->stable_step * (1 + 1e-12), comm, PETSC_ERR_USER_INPUT,
+               "-%sts_time_step %g s of the explicit body '%s' is larger than its stable step, %.6g s; choose a smaller one, or 'auto'",
+               prefix, (double)body->time_step, body->hdr.name, (double)body->stable_step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -35,7 +44,9 @@ PetscErrorCode BodySetUpTime(Body body)
   PetscCall(TS2SetSolution(body->ts, body->state.u, body->state.v));
   PetscCall(TSGetAdapt(body->ts, &adapt));
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &none));
-  PetscCheck(none, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sts_adapt_type: adaptive substeps within a controller step are not supported; leave it at none", ((PetscObject)body)->prefix);
+  PetscCheck(none, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sts_adapt_type: adaptive substeps within a controller step are not supported; leave it at none",
+             ((PetscObject)body)->prefix);
   PetscCall(TSSetMaxTime(body->ts, 1e300));
   PetscCall(TSSetExactFinalTime(body->ts, TS_EXACTFINALTIME_STEPOVER));
   if (body->is_explicit) PetscCall(BodySetUpExplicit(body));

@@ -72,32 +72,32 @@ struct _p_Body {
   PetscScalar *kept_traces;
   Vec          work[3];
   /* interface rows */
-  Mat                     interface;
-  Mat                     free_rows;   /* without held dofs; the same matrix where none is held */
-  BodyGram                gram;        /* of prescribed rows that are not orthonormal */
-  const PetscReal        *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
-  BodyRows                rows;
-  BodyCondition          *conditions;             /* local rows */
-  PetscBool              *held;                   /* those that are prescribed, or Robin rows */
-  PetscReal              *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
-  PetscReal              *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
-  PetscInt                n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
-  PetscInt                n_robin;
-  PetscBool               prescribed_mass; /* prescribed nodes carry mass */
-  BodyTractionType        traction;
-  BodyTraces              traces;
-  PetscInt                substep; /* 0 to substeps - 1 */
-  Vec                     row_vec[3];
-  Mat                     shifted; /* implicit: stiffness + shift mass */
-  PetscReal               shift;
-  PetscReal               force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
-  ConstrainedSolver       solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
-  IS                      layer_is;
-  Vec                     layer_rhs, layer_solution;
-  PetscReal               layer_reach; /* norm of the reference positions, on which round-off of its balance hangs [m] */
-  PetscBool               layer_slow;  /* its last balance took many rounds: the body has turned or changed shape since its matrix was factored */
-  VecScatter              layer_scatter;
-  LayerElements           layer_elements; /* those that touch the massless layer; NULL: no layer on any rank */
+  Mat               interface;
+  Mat               free_rows;   /* without held dofs; the same matrix where none is held */
+  BodyGram          gram;        /* of prescribed rows that are not orthonormal */
+  const PetscReal  *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
+  BodyRows          rows;
+  BodyCondition    *conditions;             /* local rows */
+  PetscBool        *held;                   /* those that are prescribed, or Robin rows */
+  PetscReal        *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
+  PetscReal        *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
+  PetscInt          n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
+  PetscInt          n_robin;
+  PetscBool         prescribed_mass; /* prescribed nodes carry mass */
+  BodyTractionType  traction;
+  BodyTraces        traces;
+  PetscInt          substep; /* 0 to substeps - 1 */
+  Vec               row_vec[3];
+  Mat               shifted; /* implicit: stiffness + shift mass */
+  PetscReal         shift;
+  PetscReal         force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
+  ConstrainedSolver solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
+  IS                layer_is;
+  Vec               layer_rhs, layer_solution;
+  PetscReal         layer_reach; /* norm of the reference positions, on which round-off of its balance hangs [m] */
+  PetscBool         layer_slow;  /* its last balance took many rounds: the body has turned or changed shape since its matrix was factored */
+  VecScatter        layer_scatter;
+  LayerElements     layer_elements; /* those that touch the massless layer; NULL: no layer on any rank */
   struct _BodyResponse   *response;
   struct _BodyCompliance *compliance;
   struct _BodyProbe      *probe; /* room for the state while unit inputs are tried; NULL until then */

@@ -19,7 +19,8 @@ static PetscErrorCode AddFace(Body body, PetscInt face, PetscInt cstart, PetscIn
   PetscFunctionBegin;
   PetscCall(DMPlexGetTransitiveClosure(body->dm, face, PETSC_TRUE, &n_points, &closure));
   for (PetscInt p = 0; p < n_points; p++)
-    if (closure[2 * p] >= body->vertex_start && closure[2 * p] < vend) nodes[n++] = body->node_of_vertex[closure[2 * p] - body->vertex_start];
+    if (closure[2 * p] >= body->vertex_start && closure[2 * p] < vend)
+      nodes[n++] = body->node_of_vertex[closure[2 * p] - body->vertex_start];
   PetscCall(DMPlexRestoreTransitiveClosure(body->dm, face, PETSC_TRUE, &n_points, &closure));
   /* outward is away from the mean of the nodes of the element behind */
   PetscCall(DMPlexGetSupport(body->dm, face, &support));
@@ -119,7 +120,8 @@ PetscErrorCode BodyFacesGetPoints(Body body, const BodyFaces *faces, PetscInt fa
       n[0] = tangent[0][1];
       n[1] = -tangent[0][0];
     } else
-      for (PetscInt d = 0; d < 3; d++) n[d] = tangent[0][(d + 1) % 3] * tangent[1][(d + 2) % 3] - tangent[0][(d + 2) % 3] * tangent[1][(d + 1) % 3];
+      for (PetscInt d = 0; d < 3; d++)
+        n[d] = tangent[0][(d + 1) % 3] * tangent[1][(d + 2) % 3] - tangent[0][(d + 2) % 3] * tangent[1][(d + 1) % 3];
     area = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (area > 0)
       for (PetscInt d = 0; d < 3; d++) n[d] *= side / area;

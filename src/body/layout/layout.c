@@ -91,21 +91,29 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
   /* a rank may have no cells at all */
   shape[0] = -shape[0];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shape, 2, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
-  PetscCheck(shape[1] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s' has no cells: check -%s_dm_plex_box_faces or the mesh file", body->hdr.name, body->hdr.name);
+  PetscCheck(shape[1] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "Body '%s' has no cells: check -%s_dm_plex_box_faces or the mesh file", body->hdr.name, body->hdr.name);
   cell             = (DMPolytopeType)shape[1];
   body->cell_shape = cell;
-  PetscCheck(-shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported; give each shape a body of its own", body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
+  PetscCheck(
+      -shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+      "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported; give each shape a body of its own",
+      body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
   PetscCall(ElementCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, cell, body->material, &body->element));
-  PetscCheck(body->element->dim == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s': cells of shape '%s' in %" PetscInt_FMT " dimensions are not supported", body->hdr.name, DMPolytopeTypes[cell], body->dim);
+  PetscCheck(body->element->dim == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+             "Body '%s': cells of shape '%s' in %" PetscInt_FMT " dimensions are not supported", body->hdr.name, DMPolytopeTypes[cell],
+             body->dim);
   PetscCall(PetscMalloc1((cend - cstart) * body->element->nodes, &body->connectivity));
   for (PetscInt c = cstart; c < cend; c++) {
     PetscInt *closure = NULL, n_points, nodes = 0;
 
     PetscCall(DMPlexGetTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
     for (PetscInt p = 0; p < n_points; p++)
-      if (closure[2 * p] >= vstart && closure[2 * p] < vend) body->connectivity[(c - cstart) * body->element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
+      if (closure[2 * p] >= vstart && closure[2 * p] < vend)
+        body->connectivity[(c - cstart) * body->element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
     PetscCall(DMPlexRestoreTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
-    PetscCall(DMPlexInvertCell(cell, body->connectivity + (c - cstart) * body->element->nodes)); /* from DMPLEX's order of vertices to the usual one */
+    PetscCall(DMPlexInvertCell(cell, body->connectivity +
+                                         (c - cstart) * body->element->nodes)); /* from DMPLEX's order of vertices to the usual one */
   }
   PetscCall(ElementSetUp(body->element, cend - cstart, body->connectivity, body->coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -215,7 +223,8 @@ PetscErrorCode BodyGetCells(Body body, DMPolytopeType *shape, PetscInt *n_cells,
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt node = body->connectivity[i];
 
-    (*cells)[i] = (node < body->owned_nodes ? rstart + node * body->dim : body->ghost_dofs[(node - body->owned_nodes) * body->dim]) / body->dim;
+    (*cells)[i] = (node < body->owned_nodes ? rstart + node * body->dim : body->ghost_dofs[(node - body->owned_nodes) * body->dim]) /
+                  body->dim;
   }
   *shape   = body->cell_shape;
   *n_cells = body->element->count;

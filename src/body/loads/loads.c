@@ -26,18 +26,21 @@ static PetscErrorCode GetNames(Body body, const char name[], PetscInt *n, char *
   *names = NULL;
   PetscCall(BodyLoadsGetText(body, name, &text));
   if (!text) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(!HasEmptyName(text), comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' has an empty name in it; give names of surfaces with commas between them", prefix, name, text);
+  PetscCheck(!HasEmptyName(text), comm, PETSC_ERR_USER_INPUT,
+             "-%s%s '%s' has an empty name in it; give names of surfaces with commas between them", prefix, name, text);
   PetscCall(PetscStrToArray(text, ',', &count, names));
   for (int i = 0; i < count && !twice; i++)
     for (int k = 0; k < i && !twice; k++) PetscCall(PetscStrcasecmp((*names)[i], (*names)[k], &twice));
   if (twice) PetscCall(PetscStrToArrayDestroy(count, *names));
-  PetscCheck(!twice, comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' names a surface twice (upper and lower case are the same in options)", prefix, name, text);
+  PetscCheck(!twice, comm, PETSC_ERR_USER_INPUT, "-%s%s '%s' names a surface twice (upper and lower case are the same in options)", prefix,
+             name, text);
   *n = count;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* -<body>_<list>_<surface> */
-static PetscErrorCode GetSurfaceComponents(Body body, const char list[], const char surface[], PetscBool allow_free, Expression components[])
+static PetscErrorCode GetSurfaceComponents(Body body, const char list[], const char surface[], PetscBool allow_free,
+                                           Expression components[])
 {
   const char *prefix = ((PetscObject)body)->prefix, *text;
   char        name[LOADS_NAME_LENGTH];
@@ -45,7 +48,8 @@ static PetscErrorCode GetSurfaceComponents(Body body, const char list[], const c
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s", list, surface));
   PetscCall(BodyLoadsGetText(body, name, &text));
-  PetscCheck(text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s names '%s', but there is no -%s%s with its components", prefix, list, surface, prefix, name);
+  PetscCheck(text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s names '%s', but there is no -%s%s with its components",
+             prefix, list, surface, prefix, name);
   PetscCall(BodyLoadsGetComponents(body, name, text, allow_free, components));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -84,7 +88,8 @@ static PetscErrorCode ReadForces(Body body, PetscInt n, char **names, const char
   if (body_force) {
     Load *load = &loads->loads[loads->n_loads++];
 
-    PetscCheck(body->element->ops.points, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "-%sbody_force: elements of shape '%s' do not support it", ((PetscObject)body)->prefix, DMPolytopeTypes[body->cell_shape]);
+    PetscCheck(body->element->ops.points, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+               "-%sbody_force: elements of shape '%s' do not support it", ((PetscObject)body)->prefix, DMPolytopeTypes[body->cell_shape]);
     PetscCall(BodyLoadsGetComponents(body, "body_force", body_force, PETSC_FALSE, load->component));
     PetscCall(BodyLoadsRefuseNormal(body, "body_force", load->component));
   }
@@ -108,7 +113,9 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
     if (!is_number) constant = PETSC_FALSE;
     PetscCall(ExpressionDestroy(&list[d]));
   }
-  PetscCheck(constant, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sgravity '%s': components are numbers; -%sbody_force takes formulas", ((PetscObject)body)->prefix, text, ((PetscObject)body)->prefix);
+  PetscCheck(constant, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sgravity '%s': components are numbers; -%sbody_force takes formulas", ((PetscObject)body)->prefix, text,
+             ((PetscObject)body)->prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,12 +129,11 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
 
   Options Database Keys:
 + -<body>_boundary_displacement a,b                  - surfaces, or node sets, with prescribed displacements
-. -<body>_boundary_displacement_<surface> ux,uy,uz   - those displacements: for each component an expression in x, y, z, t [m], or the word `free`
-. -<body>_boundary_traction a,b                      - surfaces with tractions
-. -<body>_boundary_traction_<surface> tx,ty,tz       - those tractions: expressions in x, y, z, t, nx, ny, nz [Pa] per area of the reference configuration
-. -<body>_gravity gx,gy,gz                           - constant acceleration of all mass [m/s^2]
-. -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the reference configuration
-. -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
+. -<body>_boundary_displacement_<surface> ux,uy,uz   - those displacements: for each component an expression in x, y, z, t [m], or the word
+`free` . -<body>_boundary_traction a,b                      - surfaces with tractions . -<body>_boundary_traction_<surface> tx,ty,tz       -
+those tractions: expressions in x, y, z, t, nx, ny, nz [Pa] per area of the reference configuration . -<body>_gravity gx,gy,gz - constant
+acceleration of all mass [m/s^2] . -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the
+reference configuration . -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
 - -<body>_initial_velocity vx,vy,vz                  - expressions in x, y, z [m/s], default 0
 
   Level: intermediate

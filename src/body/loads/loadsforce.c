@@ -65,8 +65,7 @@ static PetscErrorCode SortComponents(Load *load)
     if (!load->component[d]) continue;
     PetscCall(ExpressionIsSteady(load->component[d], &steady));
     PetscCall(ExpressionIsUniform(load->component[d], &uniform));
-    load->part[steady ? LOAD_STEADY : uniform ? LOAD_UNIFORM
-                                              : LOAD_VARYING][d] = load->component[d];
+    load->part[steady ? LOAD_STEADY : uniform ? LOAD_UNIFORM : LOAD_VARYING][d] = load->component[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -150,15 +149,17 @@ static PetscErrorCode SetUpUniform(Body body, const Load *load)
 
 static PetscErrorCode SetUpForces(Body body)
 {
-  struct _BodyLoads *loads    = body->loads;
-  const PetscInt     n_points = PetscMax(FACE_MAX_POINTS, body->element->n_points), n_nodes = PetscMax(FACE_MAX_NODES, body->element->nodes);
-  PetscBool          has[LOAD_KINDS] = {PETSC_FALSE};
+  struct _BodyLoads *loads = body->loads;
+  const PetscInt n_points = PetscMax(FACE_MAX_POINTS, body->element->n_points), n_nodes = PetscMax(FACE_MAX_NODES, body->element->nodes);
+  PetscBool      has[LOAD_KINDS] = {PETSC_FALSE};
   const PetscScalar *array;
 
   PetscFunctionBegin;
-  PetscCheck(!loads->has_gravity || body->mass_row_sum, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first: weight needs the mass");
+  PetscCheck(!loads->has_gravity || body->mass_row_sum, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Call BodySetUp() first: weight needs the mass");
   if (!loads->points) {
-    PetscCall(PetscMalloc4(n_points, &loads->points, n_points * body->dim, &loads->x, n_points, &loads->weights, n_points * n_nodes, &loads->shape));
+    PetscCall(PetscMalloc4(n_points, &loads->points, n_points * body->dim, &loads->x, n_points, &loads->weights, n_points * n_nodes,
+                           &loads->shape));
     PetscCall(PetscCalloc1(3 * loads->n_loads, &loads->uniform));
     PetscCall(BodyCreateVec(body, &loads->varying));
   }

@@ -105,7 +105,9 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body, PetscInt n, char **names)
   count[0] = loads->n_held;
   count[1] = n_dofs;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT64, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCheck(count[0] < count[1], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sboundary_displacement prescribes all components of all nodes of body '%s': there is nothing left to find; leave some free", ((PetscObject)body)->prefix, body->hdr.name);
+  PetscCheck(count[0] < count[1], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sboundary_displacement prescribes all components of all nodes of body '%s': there is nothing left to find; leave some free",
+             ((PetscObject)body)->prefix, body->hdr.name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,7 +143,8 @@ PetscErrorCode BodyLoadsPrescribe(Body body, PetscReal t, Vec u, Vec v, Vec a)
   PetscScalar       *arrays[3] = {NULL};
 
   PetscFunctionBegin;
-  /* ranks without held dofs must open the vectors too: PETSc keeps norms with them, and would take the reduction for done on some ranks alone */
+  /* ranks without held dofs must open the vectors too: PETSc keeps norms with them, and would take the reduction for done on some ranks
+     alone */
   if (!loads || !body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < 3; k++)
     if (vecs[k]) PetscCall(VecGetArray(vecs[k], &arrays[k]));

@@ -33,7 +33,8 @@ static PetscErrorCode CheckSteady(Body body, const char name[], const Expression
     PetscBool steady;
 
     PetscCall(ExpressionIsSteady(list[d], &steady));
-    PetscCheck(steady, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s cannot vary in time: it is what there is at the start; use x, y, z", ((PetscObject)body)->prefix, name);
+    PetscCheck(steady, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+               "-%s%s cannot vary in time: it is what there is at the start; use x, y, z", ((PetscObject)body)->prefix, name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,7 +13,8 @@ PetscErrorCode BodyLoadsGetText(Body body, const char name[], const char *text[]
   PetscCall(PetscOptionsFindPair(NULL, prefix, option, text, &set));
   if (!set) *text = NULL;
   /* PETSc takes -a for an option, but -1 for a value */
-  PetscCheck(!set || (*text && (*text)[0]), PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s has no value; one that begins with - and a letter needs parentheses around it, as in (-x),0", prefix, name);
+  PetscCheck(!set || (*text && (*text)[0]), PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%s%s has no value; one that begins with - and a letter needs parentheses around it, as in (-x),0", prefix, name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -27,7 +28,9 @@ PetscErrorCode BodyLoadsGetComponents(Body body, const char name[], const char t
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(option, sizeof(option), "%s%s", ((PetscObject)body)->prefix, name));
   PetscCall(ExpressionListCount(text, &n));
-  PetscCheck(n == body->dim, comm, PETSC_ERR_USER_INPUT, "-%s '%s' has %" PetscInt_FMT " component%s; body '%s' is %" PetscInt_FMT "-dimensional%s", option, text, n, n == 1 ? "" : "s", body->hdr.name, body->dim, allow_free ? " (a component may be the word free)" : "");
+  PetscCheck(n == body->dim, comm, PETSC_ERR_USER_INPUT,
+             "-%s '%s' has %" PetscInt_FMT " component%s; body '%s' is %" PetscInt_FMT "-dimensional%s", option, text, n, n == 1 ? "" : "s",
+             body->hdr.name, body->dim, allow_free ? " (a component may be the word free)" : "");
   PetscCall(ExpressionListCreate(comm, option, text, body->dim, allow_free, list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -39,7 +42,8 @@ PetscErrorCode BodyLoadsRefuseNormal(Body body, const char name[], const Express
     PetscBool normal = PETSC_FALSE;
 
     if (list[d]) PetscCall(ExpressionUsesNormal(list[d], &normal));
-    PetscCheck(!normal, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s: nx, ny and nz are for tractions alone; use x, y, z", ((PetscObject)body)->prefix, name);
+    PetscCheck(!normal, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+               "-%s%s: nx, ny and nz are for tractions alone; use x, y, z", ((PetscObject)body)->prefix, name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,8 +1,8 @@
 /*
    The interface compliance of a body: what its rows' displacements do in the course of one controller step under contact forces on the
-   rows. A force enters as a hat in the first substep, of 1 N at its end; since the body does not change with time, what comes out k substeps
-   later is the same wherever the hat stands. The matrix of each level is symmetric (Maxwell, Betti), so that a row which becomes known
-   later brings its own column only.
+   rows. A force enters as a hat in the first substep, of 1 N at its end; since the body does not change with time, what comes out k
+   substeps later is the same wherever the hat stands. The matrix of each level is symmetric (Maxwell, Betti), so that a row which becomes
+   known later brings its own column only.
 
    It is exact for linear bodies. For nonlinear ones it is that of the last effective matrix, or of the undeformed body.
 */
@@ -32,7 +32,9 @@ PetscErrorCode BodyCreateCompliance(Body body)
   if (body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&body->compliance));
   c = body->compliance;
-  PetscCall(PetscCalloc6(rows->global, &c->place, rows->local, &c->roles, body->substeps * rows->local, &c->mine, body->substeps * rows->local, &c->base_displacement, body->substeps * rows->local, &c->base_force, rows->global, &c->all_roles));
+  PetscCall(PetscCalloc6(rows->global, &c->place, rows->local, &c->roles, body->substeps * rows->local, &c->mine,
+                         body->substeps * rows->local, &c->base_displacement, body->substeps * rows->local, &c->base_force, rows->global,
+                         &c->all_roles));
   for (PetscInt i = 0; i < rows->global; i++) c->place[i] = -1;
   if (!body->is_explicit)
     for (PetscInt k = 0; k < 4; k++) PetscCall(VecDuplicate(body->state.u, &c->work[k]));
@@ -54,11 +56,13 @@ static PetscErrorCode Grow(Body body, PetscInt n)
   PetscCall(PetscMalloc3(s * capacity * capacity, &levels, capacity * capacity, &ramp, capacity * capacity, &factor));
   PetscCall(PetscArraycpy(rows, c->rows, c->n));
   for (PetscInt k = 0; k < s; k++)
-    for (PetscInt j = 0; j < c->n; j++) PetscCall(PetscArraycpy(levels + (k * capacity + j) * capacity, c->levels + (k * old + j) * old, c->n));
+    for (PetscInt j = 0; j < c->n; j++)
+      PetscCall(PetscArraycpy(levels + (k * capacity + j) * capacity, c->levels + (k * old + j) * old, c->n));
   PetscCall(PetscFree3(c->rows, c->prescribed, c->pivots));
   PetscCall(PetscFree3(c->levels, c->ramp, c->factor));
   PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
-  PetscCall(PetscMalloc6(s * capacity, &c->known_displacement, s * capacity, &c->known_force, s * capacity, &c->input, s * capacity, &c->force, s * capacity, &c->displacement, capacity, &c->rhs));
+  PetscCall(PetscMalloc6(s * capacity, &c->known_displacement, s * capacity, &c->known_force, s * capacity, &c->input, s * capacity,
+                         &c->force, s * capacity, &c->displacement, capacity, &c->rhs));
   c->rows       = rows;
   c->prescribed = prescribed;
   c->pivots     = pivots;
@@ -82,7 +86,8 @@ static PetscErrorCode Grow(Body body, PetscInt n)
   Level: developer
 
   Notes:
-  Each new row costs one solution with factored matrices: of the whole body, if it is implicit, of its massless layer, if it is explicit; for each
+  Each new row costs one solution with factored matrices: of the whole body, if it is implicit, of its massless layer, if it is explicit;
+  for each
   substep, and of explicit bodies with substeps these themselves.
 
 .seealso: `Body`, `BodyGetCompliance()`, `BodyRespond()`
@@ -164,7 +169,8 @@ static PetscErrorCode ComputeRamp(Body body)
     for (PetscInt i = 0; i < c->n; i++) {
       PetscScalar sum = 0;
 
-      for (PetscInt l = 1; l <= body->substeps; l++) sum += (PetscReal)l / body->substeps * c->levels[((body->substeps - l) * c->capacity + j) * c->capacity + i];
+      for (PetscInt l = 1; l <= body->substeps; l++)
+        sum += (PetscReal)l / body->substeps * c->levels[((body->substeps - l) * c->capacity + j) * c->capacity + i];
       c->ramp[j * c->capacity + i] = sum;
     }
   c->ramp_valid = PETSC_TRUE;
@@ -197,7 +203,8 @@ PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *plac
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyExtendCompliance() first");
-  PetscCheck(level >= -1 && level < body->substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE, "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->substeps);
+  PetscCheck(level >= -1 && level < body->substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->substeps);
   if (level < 0 && !c->ramp_valid) PetscCall(ComputeRamp(body));
   *place   = c->place;
   *leading = c->capacity;

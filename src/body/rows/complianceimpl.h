@@ -1,4 +1,5 @@
-/* Displacements of a body's rows under contact forces on them. Private to compliance.c and complianceprobe.c, which make it, and respond.c, which applies it. */
+/* Displacements of a body's rows under contact forces on them. Private to compliance.c and complianceprobe.c, which make it, and respond.c,
+   which applies it. */
 #pragma once
 #include "probe.h"
 
@@ -7,7 +8,8 @@ struct _BodyCompliance {
   PetscInt     n, capacity;
   PetscInt    *place; /* per row of all ranks: its place among the known ones, or -1 */
   PetscInt    *rows;
-  PetscScalar *levels; /* substeps matrices, capacity x capacity by columns: displacement at the end of substep k + 1 for a hat of force in the first [m/N] */
+  PetscScalar *levels; /* substeps matrices, capacity x capacity by columns: displacement at the end of substep k + 1 for a hat of force in
+                          the first [m/N] */
   PetscScalar *ramp;   /* at the end of the controller step, for a force that rises linearly over it [m/N] */
   PetscBool    ramp_valid;
   PetscScalar *mine; /* work space: of the rows of this rank, for each substep */

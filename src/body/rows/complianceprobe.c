@@ -141,6 +141,8 @@ PetscErrorCode BodyGatherKnown(Body body, const PetscScalar mine[], PetscScalar 
 
       all[k * c->n + i] = local >= 0 && local < rows->local ? mine[k * rows->local + local] : 0;
     }
-  if (rows->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(body->substeps * c->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  if (rows->size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(body->substeps * c->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

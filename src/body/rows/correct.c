@@ -92,8 +92,8 @@ static PetscErrorCode MultiplyMarked(Body body, const PetscBool marked[], Vec x,
   Level: developer
 
   Note:
-  a -= B^T (B B^T)^{-1} B a on these rows, the nearest that has none of them: by conjugate gradients, in one iteration if they are orthonormal.
-  To be called before `BodySave()`.
+  a -= B^T (B B^T)^{-1} B a on these rows, the nearest that has none of them: by conjugate gradients, in one iteration if they are
+orthonormal. To be called before `BodySave()`.
 
 .seealso: `Body`, `BodyAddAcceleration()`
 @*/

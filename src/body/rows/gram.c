@@ -1,16 +1,16 @@
 /*
-   Prescribed rows that are not orthonormal. A node that touches two partners has a row for each, along normals that need not be square to each other,
-   and a row along displacements that the user prescribes has less than length one on the others. With such rows B and their Gram matrix
-   G = B B^T, where B is without held dofs,
+   Prescribed rows that are not orthonormal. A node that touches two partners has a row for each, along normals that need not be square to
+   each other, and a row along displacements that the user prescribes has less than length one on the others. With such rows B and their
+   Gram matrix G = B B^T, where B is without held dofs,
 
      u + B^T G^{-1} (x - B u)  is the nearest to u that has B u = x, and   G^{-1} B f  are the forces along the rows that amount to f.
 
    Rows couple only where they share a node, so that G falls into a small block for each such node; the other rows are orthonormal.
 
-   Rows of a node that depend on each other are prescribed as well as can be, by least squares with a weight w for each row, and share the force
-   according to their weights: with A = diag(w) the inverse becomes A^{1/2} (A^{1/2} G A^{1/2})^+ A^{1/2}, which is G^{-1} where there is one. Two
-   with one direction are prescribed their weighted mean, and each takes its part of the force; so the work of the force is that of its parts, and
-   with the areas that two partners cover for weights this is the mortar condition of both together.
+   Rows of a node that depend on each other are prescribed as well as can be, by least squares with a weight w for each row, and share the
+   force according to their weights: with A = diag(w) the inverse becomes A^{1/2} (A^{1/2} G A^{1/2})^+ A^{1/2}, which is G^{-1} where there
+   is one. Two with one direction are prescribed their weighted mean, and each takes its part of the force; so the work of the force is that
+   of its parts, and with the areas that two partners cover for weights this is the mortar condition of both together.
 */
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
@@ -75,9 +75,10 @@ static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Rows sorted by node: those that share one, or are alone and no unit vectors, become candidates. Returns the sum of squares of their numbers, and
-   the largest one. */
-static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt order[], const PetscReal directions[], PetscInt *size, PetscInt *most)
+/* Rows sorted by node: those that share one, or are alone and no unit vectors, become candidates. Returns the sum of squares of their
+   numbers, and the largest one. */
+static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt order[], const PetscReal directions[], PetscInt *size,
+                                     PetscInt *most)
 {
   BodyGram       gram  = body->gram;
   const PetscInt n     = body->rows.local;
@@ -124,12 +125,13 @@ PetscErrorCode BodySetUpGram(Body body)
   PetscCall(FindCandidates(body, nodes, order, directions, &size, &most));
   PetscCall(PetscMalloc1(most * (most + 5), &gram->work));
   PetscCall(PetscFree3(nodes, order, directions));
-  PetscCall(PetscCalloc5(gram->n_runs + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, gram->n_runs, &gram->starts, size, &gram->inverses));
+  PetscCall(PetscCalloc5(gram->n_runs + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, gram->n_runs, &gram->starts, size,
+                         &gram->inverses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The inverse of a symmetric matrix by sweeping its pivots (Goodnight, The American Statistician 33 (1979) 149-158); false if there is none, with the
-   rows that depend on those before them */
+/* The inverse of a symmetric matrix by sweeping its pivots (Goodnight, The American Statistician 33 (1979) 149-158); false if there is
+   none, with the rows that depend on those before them */
 static PetscBool Invert(PetscInt n, PetscScalar A[], PetscScalar diagonal[], PetscBool dependent[])
 {
   PetscBool any = PETSC_FALSE;
@@ -165,7 +167,8 @@ static void FillBlock(const BodyGram gram, PetscInt n, const PetscInt candidates
 }
 
 /* A^{1/2} M^+ A^{1/2} of such a block M with weights */
-static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscInt candidates[], const PetscReal weights[], PetscScalar block[])
+static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscInt candidates[], const PetscReal weights[],
+                                   PetscScalar block[])
 {
   PetscScalar *vectors = gram->work, *values = vectors + n * n, *work = values + n;
   PetscBLASInt order, lwork, info;
@@ -207,7 +210,8 @@ PetscErrorCode BodyUpdateGram(Body body)
       count = first;
       continue;
     }
-    if (!Invert(n, block, gram->work, gram->dependent + first)) PetscCall(PseudoInvert(gram, n, gram->rows + first, body->row_weights, block));
+    if (!Invert(n, block, gram->work, gram->dependent + first))
+      PetscCall(PseudoInvert(gram, n, gram->rows + first, body->row_weights, block));
     for (PetscInt i = first; i < count; i++) gram->rows[i] = gram->candidates[gram->rows[i]];
     gram->starts[gram->n_blocks++] = size;
     gram->offsets[gram->n_blocks]  = count;

@@ -91,7 +91,10 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
     PetscCall(MultiplyRows(body, body->inverse_mass, matrix));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCheck(body->is_static || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP, "Body '%s': a mass that is not lumped couples all contact nodes, of which there are %" PetscInt_FMT ", more than %d; set -%smass_type lumped, or choose -contact_type schwarz", body->hdr.name, rows->global, MAX_PROBED_ROWS, ((PetscObject)body)->prefix);
+  PetscCheck(body->is_static || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
+             "Body '%s': a mass that is not lumped couples all contact nodes, of which there are %" PetscInt_FMT
+             ", more than %d; set -%smass_type lumped, or choose -contact_type schwarz",
+             body->hdr.name, rows->global, MAX_PROBED_ROWS, ((PetscObject)body)->prefix);
   PetscCall(MatCreate(comm, matrix));
   PetscCall(MatSetSizes(*matrix, rows->local, rows->local, rows->global, rows->global));
   PetscCall(MatSetType(*matrix, MATAIJ));

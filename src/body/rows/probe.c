@@ -3,7 +3,8 @@
 
 #define N_BACKUP 7
 
-/* What probing overwrites: present and saved state, internal force; forces from outside, NULL without loads; all traces; where the body is in time */
+/* What probing overwrites: present and saved state, internal force; forces from outside, NULL without loads; all traces; where the body is
+   in time */
 struct _BodyProbe {
   Vec          vecs[N_BACKUP], applied;
   PetscScalar *traces;
@@ -24,7 +25,8 @@ PetscErrorCode BodyDestroyProbe(Body body)
 
 static PetscErrorCode CopyTraces(Body body, PetscBool store)
 {
-  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in, body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in,
+                             body->traces.displacement,    body->traces.velocity,    body->traces.acceleration,    body->traces.reaction};
   const PetscInt n        = (body->substeps + 1) * body->rows.local;
   PetscScalar   *values;
 
@@ -40,7 +42,8 @@ static PetscErrorCode CopyTraces(Body body, PetscBool store)
 /* Puts the body to rest */
 PetscErrorCode BodyBeginProbe(Body body)
 {
-  const Vec vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
+  const Vec vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a,       body->saved.u,
+                              body->saved.v, body->saved.a, body->internal_force};
 
   PetscFunctionBegin;
   if (!body->probe) {
@@ -81,7 +84,8 @@ PetscErrorCode BodySetUnitInput(Body body, PetscInt row, InputKind kind)
 
 PetscErrorCode BodyEndProbe(Body body)
 {
-  const Vec vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->internal_force};
+  const Vec vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a,       body->saved.u,
+                              body->saved.v, body->saved.a, body->internal_force};
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecCopy(body->probe->vecs[k], vecs[k]));

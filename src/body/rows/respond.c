@@ -4,8 +4,8 @@
      u_k = base u_k + sum_{l <= k} W_{k - l} (f_l - base f_l),
 
    with the base from a whole integration. Forces of forced rows are given; those of prescribed ones follow, substep by substep, from the
-   displacement that they are to have. So the sweeps of a controller step need no solution with the body's matrices but for the base, and for
-   the state at the end.
+   displacement that they are to have. So the sweeps of a controller step need no solution with the body's matrices but for the base, and
+   for the state at the end.
 */
 #include "complianceimpl.h"
 #include <petscblaslapack.h>
@@ -75,10 +75,13 @@ static PetscErrorCode FactorPrescribed(Body body)
   PetscFunctionBegin;
   if (!c->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 0; j < c->n_prescribed; j++)
-    for (PetscInt i = 0; i < c->n_prescribed; i++) c->factor[j * c->n_prescribed + i] = c->levels[c->prescribed[j] * c->capacity + c->prescribed[i]];
+    for (PetscInt i = 0; i < c->n_prescribed; i++)
+      c->factor[j * c->n_prescribed + i] = c->levels[c->prescribed[j] * c->capacity + c->prescribed[i]];
   PetscCall(PetscBLASIntCast(c->n_prescribed, &n));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, c->factor, &n, c->pivots, &info));
-  PetscCheck(info == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT, "The prescribed contact rows of body '%s' are not independent (LAPACK getrf info %d); is a node in two contact pairs?", body->hdr.name, (int)info);
+  PetscCheck(info == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT,
+             "The prescribed contact rows of body '%s' are not independent (LAPACK getrf info %d); is a node in two contact pairs?",
+             body->hdr.name, (int)info);
   c->factored = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -113,10 +116,13 @@ PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
   PetscCall(PetscArraycpy(c->roles, roles, rows->local));
   PetscCall(PetscArrayzero(c->all_roles, rows->global));
   for (PetscInt i = 0; i < rows->local; i++) c->all_roles[rows->begin + i] = (PetscMPIInt)roles[i];
-  if (rows->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->all_roles, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  if (rows->size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, c->all_roles, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   for (PetscInt i = 0; i < rows->global; i++) {
     if (c->all_roles[i] == BODY_FREE) continue;
-    PetscCheck(c->place[i] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Row %" PetscInt_FMT " of body '%s' is not known to its compliance; call BodyExtendCompliance() first", i, body->hdr.name);
+    PetscCheck(c->place[i] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+               "Row %" PetscInt_FMT " of body '%s' is not known to its compliance; call BodyExtendCompliance() first", i, body->hdr.name);
     if (c->all_roles[i] != BODY_PRESCRIBED) continue;
     if (count >= c->n_prescribed || c->prescribed[count] != c->place[i]) c->factored = PETSC_FALSE;
     c->prescribed[count++] = c->place[i];
@@ -142,8 +148,8 @@ static PetscErrorCode GatherInputs(Body body)
   for (PetscInt k = 0; k < body->substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement_in, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.force_in, k + 1, &force));
-    for (PetscInt i = 0; i < body->rows.local; i++) c->mine[k * body->rows.local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FORCED ? force[i]
-                                                                                                                                                                      : 0;
+    for (PetscInt i = 0; i < body->rows.local; i++)
+      c->mine[k * body->rows.local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FORCED ? force[i] : 0;
   }
   PetscCall(BodyGatherKnown(body, c->mine, c->input));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -166,7 +172,9 @@ static PetscErrorCode RespondSubstep(Body body, PetscInt k)
   for (PetscInt i = 0; i < c->n_prescribed; i++) f[c->prescribed[i]] = c->known_force[k * c->n + c->prescribed[i]];
   /* f holds changes from here on, of prescribed rows none yet */
   for (PetscInt i = 0; i < c->n; i++) f[i] -= c->known_force[k * c->n + i];
-  for (PetscInt l = 0; l <= k; l++) PetscCallBLAS("BLASgemv", BLASgemv_("N", &n, &n, &plus, c->levels + (k - l) * c->capacity * c->capacity, &leading, c->force + l * c->n, &one, &plus, u, &one));
+  for (PetscInt l = 0; l <= k; l++)
+    PetscCallBLAS("BLASgemv", BLASgemv_("N", &n, &n, &plus, c->levels + (k - l) * c->capacity * c->capacity, &leading, c->force + l * c->n,
+                                        &one, &plus, u, &one));
   if (!c->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < c->n_prescribed; i++) c->rhs[i] = c->input[k * c->n + c->prescribed[i]] - u[c->prescribed[i]];
   PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &m, &one, c->factor, &m, c->pivots, c->rhs, &m, &info));
@@ -191,8 +199,8 @@ static PetscErrorCode RespondSubstep(Body body, PetscInt k)
   Level: developer
 
   Notes:
-  Reads `displacement_in` of prescribed and `force_in` of forced rows, writes `displacement` of known rows and `reaction` of prescribed ones; the
-  state of the body stays as it is. For linear bodies with massless contact nodes the same as `BodyIntegrate()`, up to round-off.
+  Reads `displacement_in` of prescribed and `force_in` of forced rows, writes `displacement` of known rows and `reaction` of prescribed
+ones; the state of the body stays as it is. For linear bodies with massless contact nodes the same as `BodyIntegrate()`, up to round-off.
 
 .seealso: `Body`, `BodySetBase()`, `BodyIntegrate()`
 @*/

@@ -31,15 +31,18 @@ PetscErrorCode BodyDestroyResponse(Body body)
 }
 
 /* Column `row` of a response matrix, on every rank: the force along prescribed and Robin rows, the displacement of the others */
-static PetscErrorCode GatherOutputs(Body body, const PetscScalar displacement[], const PetscScalar reaction[], PetscScalar matrix[], PetscInt row)
+static PetscErrorCode GatherOutputs(Body body, const PetscScalar displacement[], const PetscScalar reaction[], PetscScalar matrix[],
+                                    PetscInt row)
 {
   struct _BodyResponse *response = body->response;
   const BodyRows       *rows     = &body->rows;
 
   PetscFunctionBegin;
   /* in steps of four, as the counts and offsets are */
-  for (PetscInt i = 0; i < rows->local; i++) response->mine[4 * i] = body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN ? reaction[i] : displacement[i];
-  PetscCallMPI(MPI_Allgatherv(response->mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, response->new_inputs, rows->counts, rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
+  for (PetscInt i = 0; i < rows->local; i++)
+    response->mine[4 * i] = body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN ? reaction[i] : displacement[i];
+  PetscCallMPI(MPI_Allgatherv(response->mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, response->new_inputs, rows->counts,
+                              rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
   for (PetscInt i = 0; i < rows->global; i++) matrix[row * rows->global + i] = response->new_inputs[4 * i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,8 +95,10 @@ static PetscErrorCode CreateResponse(Body body)
   response = body->response;
   PetscCall(MaterialIsLinear(body->material, &linear));
   response->condensed = (PetscBool)(linear && body->substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
-  PetscCall(PetscCalloc4(body->substeps * rows->global * rows->global, &response->waveform, rows->global * rows->global, &response->matrix, rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
-  PetscCall(PetscCalloc5(3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs, 4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
+  PetscCall(PetscCalloc4(body->substeps * rows->global * rows->global, &response->waveform, rows->global * rows->global, &response->matrix,
+                         rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
+  PetscCall(PetscCalloc5(3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs,
+                         4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
   PetscCall(PetscMalloc1(rows->global, &response->kinds));
   if (!response->condensed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt c = 0; c < 3 * rows->global; c++) {
@@ -136,7 +141,10 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   kinds    = response->kinds;
   *matrix  = response->matrix;
   if (response->valid) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->linear, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP, "Body '%s' is nonlinear, and the outer iteration wants its response as if it were linear; choose one that does without, as -schwarz_snes_type anderson, or explicit penalty", body->hdr.name);
+  PetscCheck(body->linear, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+             "Body '%s' is nonlinear, and the outer iteration wants its response as if it were linear; choose one that does without, as "
+             "-schwarz_snes_type anderson, or explicit penalty",
+             body->hdr.name);
   PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
   response->n_columns = 0;
   PetscCall(PetscArrayzero(response->waveform, body->substeps * rows->global * rows->global));
@@ -160,7 +168,9 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   PetscCall(BodyEndProbe(body));
   /* a linear rise is a sum of hats */
   for (PetscInt level = 1; level <= body->substeps; level++)
-    for (PetscInt i = 0; i < rows->global * rows->global; i++) response->matrix[i] += (PetscReal)level / body->substeps * response->waveform[(body->substeps - level) * rows->global * rows->global + i];
+    for (PetscInt i = 0; i < rows->global * rows->global; i++)
+      response->matrix[i] += (PetscReal)level / body->substeps *
+                             response->waveform[(body->substeps - level) * rows->global * rows->global + i];
   PetscCall(PetscArraycpy(response->conditions, body->conditions, rows->local));
   response->made = response->valid = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
@@ -191,7 +201,8 @@ PetscErrorCode BodyGetWaveformResponse(Body body, const PetscScalar *matrices[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->response && body->response->valid, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyComputeResponse() first");
+  PetscCheck(body->response && body->response->valid, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Call BodyComputeResponse() first");
   *matrices = body->response->waveform;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -219,7 +230,8 @@ PetscErrorCode BodyGetRateResponse(Body body, const PetscScalar *velocity[], con
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->response && body->response->valid, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyComputeResponse() first");
+  PetscCheck(body->response && body->response->valid, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Call BodyComputeResponse() first");
   *velocity     = body->response->rate_matrix[0];
   *acceleration = body->response->rate_matrix[1];
   PetscFunctionReturn(PETSC_SUCCESS);

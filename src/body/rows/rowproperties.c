@@ -57,7 +57,8 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
 . body - the `Body`
 
   Output Parameter:
-. impedance - sqrt(M rho), M being the modulus of plane waves, lambda + 2 mu [N s/m^3]; of a bar, sqrt(E rho) times its cross-section [N s/m]
+. impedance - sqrt(M rho), M being the modulus of plane waves, lambda + 2 mu [N s/m^3]; of a bar, sqrt(E rho) times its cross-section [N
+s/m]
 
   Level: intermediate
 

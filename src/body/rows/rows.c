@@ -92,7 +92,8 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 
   Input Parameters:
 + body    - the `Body`, set up
-- weights - one for each row of this rank, positive on rows that are prescribed; not copied, and looked at whenever rows or conditions change
+- weights - one for each row of this rank, positive on rows that are prescribed; not copied, and looked at whenever rows or conditions
+change
 
   Level: developer
 
@@ -204,8 +205,9 @@ PetscErrorCode BodySetConstraints(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* vec += B^T G^{-1} (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step; held dofs must be in place
-   before, and stay there. Without a trace `vec` is a force, and its part along the rows, what holds dofs left aside, becomes zero. */
+/* vec += B^T G^{-1} (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step; held dofs must
+   be in place before, and stay there. Without a trace `vec` is a force, and its part along the rows, what holds dofs left aside, becomes
+   zero. */
 PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec)
 {
   PetscScalar *row, *target;
@@ -246,7 +248,8 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
       if (body->conditions[i] == BODY_ROBIN) row[i] -= body->robin[i] * at[i];
     PetscCall(VecRestoreArrayRead(body->row_vec[1], &at));
   }
-  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED || body->conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
+  for (PetscInt i = 0; i < body->rows.local; i++)
+    row[i] = body->conditions[i] == BODY_FORCED || body->conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
   PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
   PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], f, f));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -45,7 +45,9 @@ static PetscErrorCode GatherInputs(Body body, PetscScalar all[])
     PetscCall(TraceGetLevel(traces[kind], body->substeps, &values));
     for (PetscInt i = 0; i < rows->local; i++) mine[4 * i + kind] = values[i];
   }
-  if (rows->size > 1) PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, all, rows->counts, rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
+  if (rows->size > 1)
+    PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, all, rows->counts, rows->offsets, MPIU_SCALAR,
+                                PetscObjectComm((PetscObject)body)));
   else PetscCall(PetscArraycpy(all, mine, 4 * rows->local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

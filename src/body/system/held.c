@@ -53,8 +53,9 @@ static PetscErrorCode IsLoose(Body body, PetscInt n_fixed, const PetscInt fixed[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Errors where a body can move or turn without its matrix noticing: a static one by too few held displacements, since contact forces are found
-   from what the body does under them alone; one with a massless layer by too few nodes with mass. Factors of such a matrix need not show that it is singular. */
+/* Errors where a body can move or turn without its matrix noticing: a static one by too few held displacements, since contact forces are
+   found from what the body does under them alone; one with a massless layer by too few nodes with mass. Factors of such a matrix need not
+   show that it is singular. */
 PetscErrorCode BodyCheckHeld(Body body)
 {
   MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
@@ -65,11 +66,17 @@ PetscErrorCode BodyCheckHeld(Body body)
   PetscCall(BodyAnyRank(body, &layer));
   if (body->is_static) {
     PetscCall(IsLoose(body, body->n_held, body->held_dofs, PETSC_FALSE, &loose));
-    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT, "Body '%s' is static, but nothing holds it, or not in all directions: it can move or turn as a whole; prescribe more displacements with -%sboundary_displacement%s", body->hdr.name, prefix, body->rows.global ? ", since contact cannot hold what has no stiffness of its own" : "");
+    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT,
+               "Body '%s' is static, but nothing holds it, or not in all directions: it can move or turn as a whole; prescribe more "
+               "displacements with -%sboundary_displacement%s",
+               body->hdr.name, prefix, body->rows.global ? ", since contact cannot hold what has no stiffness of its own" : "");
   }
   if (layer) {
     PetscCall(IsLoose(body, body->n_layer_dofs, body->layer_dofs, PETSC_TRUE, &loose));
-    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT, "Body '%s' has too few nodes with mass to hold its massless contact nodes, which can turn about them; refine the mesh, or set -%smass_redistribute false", body->hdr.name, prefix);
+    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT,
+               "Body '%s' has too few nodes with mass to hold its massless contact nodes, which can turn about them; refine the mesh, or "
+               "set -%smass_redistribute false",
+               body->hdr.name, prefix);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -50,7 +50,8 @@ static PetscBool TouchesLayer(Body body, PetscInt e, const PetscInt number[])
 }
 
 /* The elements that touch the layer, their nodes numbered as they come; nodes: the rank's number of each of these, freed by the caller */
-static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerElements layer, PetscInt *count, PetscInt *n_nodes, PetscInt *nodes[])
+static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerElements layer, PetscInt *count, PetscInt *n_nodes,
+                                     PetscInt *nodes[])
 {
   const PetscInt n = body->element->nodes;
   PetscInt      *compact;

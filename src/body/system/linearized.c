@@ -38,7 +38,8 @@ PetscErrorCode BodyGetElement(Body body, Element *element)
   PetscFunctionBegin;
   *element = body->element;
   if (!body->linearized || body->linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->linearized_element, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call BodyPrepareLinearized() before its forces are linearized", body->hdr.name);
+  PetscCheck(body->linearized_element, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Body '%s': call BodyPrepareLinearized() before its forces are linearized", body->hdr.name);
   *element = body->linearized_element;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

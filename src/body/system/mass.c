@@ -170,7 +170,8 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscFunctionBegin;
   PetscCall(MatDuplicate(body->mass_matrix, MAT_COPY_VALUES, &solvable));
   PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) PetscCall(MatSetValue(solvable, rstart + body->layer_dofs[i], rstart + body->layer_dofs[i], 1, ADD_VALUES));
+  for (PetscInt i = 0; i < body->n_layer_dofs; i++)
+    PetscCall(MatSetValue(solvable, rstart + body->layer_dofs[i], rstart + body->layer_dofs[i], 1, ADD_VALUES));
   PetscCall(MatAssemblyBegin(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(BodyEliminateHeld(body, solvable));

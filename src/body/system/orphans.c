@@ -205,7 +205,10 @@ PetscErrorCode BodyRedistributeOrphans(Body body)
   PetscCall(VecDestroy(&orphans.distance));
   PetscCall(VecDestroy(&orphans.nearer));
   PetscCall(VecDestroy(&work));
-  PetscCheck(left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "Body '%s': %g kg of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false", body->hdr.name, (double)left, ((PetscObject)body)->prefix);
+  PetscCheck(left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "Body '%s': %g kg of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the "
+             "mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false",
+             body->hdr.name, (double)left, ((PetscObject)body)->prefix);
   PetscCall(CopyToComponents(body, orphans.mass));
   if (body->mass_diagonal) PetscCall(VecAXPY(body->mass_diagonal, 1, orphans.mass));
   else PetscCall(MatDiagonalSet(body->mass_matrix, orphans.mass, ADD_VALUES));

@@ -48,7 +48,9 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, PetscReal *lar
     }
   PetscCall(PetscBLASIntCast(n_kept, &m));
   PetscCallBLAS("LAPACKsygv", LAPACKsygv_(&one, "N", "L", &m, K, &m, M, &m, eigenvalues, work, &lwork, &info));
-  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "Body '%s', element %" PetscInt_FMT ": no eigenvalues (LAPACK sygv info %d); is its mass matrix singular?", body->hdr.name, e, (int)info);
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "Body '%s', element %" PetscInt_FMT ": no eigenvalues (LAPACK sygv info %d); is its mass matrix singular?", body->hdr.name, e,
+             (int)info);
   *largest = eigenvalues[n_kept - 1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -80,8 +82,8 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
         const PetscInt  i    = a * dim + d;
         const PetscReal mass = M[i * n * dim + i];
 
-        chunk->coordinates[own * dim + d]  = body->coordinates[nodes[a] * dim + d];
-        extent                             = PetscMax(extent, PetscAbsReal(body->coordinates[nodes[a] * dim + d] - body->coordinates[nodes[0] * dim + d]));
+        chunk->coordinates[own * dim + d] = body->coordinates[nodes[a] * dim + d];
+        extent = PetscMax(extent, PetscAbsReal(body->coordinates[nodes[a] * dim + d] - body->coordinates[nodes[0] * dim + d]));
         chunk->inverse_mass[own * dim + d] = mass > 0 && !IsMassless(body, nodes[a]) ? 1 / mass : 0;
         /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
         chunk->u[own * dim + d] = PetscSinReal(1 + 7.3 * i * i + 2.1 * i);
@@ -132,7 +134,8 @@ static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
   Element        element;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc6(CHUNK * n, &chunk.connectivity, CHUNK * n * dim, &chunk.coordinates, CHUNK, &chunk.size, CHUNK * n * dim, &chunk.inverse_mass, CHUNK * n * dim, &chunk.u, CHUNK * n * dim, &chunk.f));
+  PetscCall(PetscMalloc6(CHUNK * n, &chunk.connectivity, CHUNK * n * dim, &chunk.coordinates, CHUNK, &chunk.size, CHUNK * n * dim,
+                         &chunk.inverse_mass, CHUNK * n * dim, &chunk.u, CHUNK * n * dim, &chunk.f));
   for (PetscInt begin = 0; begin < body->element->count; begin += CHUNK) {
     chunk.count = PetscMin(CHUNK, body->element->count - begin);
     PetscCall(FillChunk(body, begin, &chunk));
@@ -156,7 +159,8 @@ static PetscErrorCode LargestOfLumped(Body body, PetscReal *largest)
   PetscCall(EstimateEigenvalues(body, eigenvalues));
   for (PetscInt e = 0; e < count; e++) top = PetscMax(top, eigenvalues[e]);
   /* from the top down, band by band */
-  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - 1e-9) * top; above > CLOSE * top && n_exact < MAX_EXACT; above = bound, bound -= 0.02 * top)
+  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - 1e-9) * top; above > CLOSE * top && n_exact < MAX_EXACT;
+       above = bound, bound -= 0.02 * top)
     for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
       if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
       last = eigenvalues[e];

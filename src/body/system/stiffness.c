@@ -54,7 +54,11 @@ PetscErrorCode BodyCheckInverted(Body body)
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt d = 0; d < body->dim; d++) centre[d] += body->coordinates[body->connectivity[e * n + a] * body->dim + d] / n;
   PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, comm));
-  SETERRQ(comm, PETSC_ERR_FP, "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or not a number, at time %.9g s (step %" PetscInt_FMT " of the body); is a time step too large, a load too strong, or the mesh too coarse there?", body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->time, body->step);
+  SETERRQ(comm, PETSC_ERR_FP,
+          "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or "
+          "not a number, at time %.9g s (step %" PetscInt_FMT
+          " of the body); is a time step too large, a load too strong, or the mesh too coarse there?",
+          body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->time, body->step);
 }
 
 /* The global numbers of an element's displacements, from the numbers of its nodes on this rank */
@@ -66,7 +70,9 @@ PetscErrorCode BodyGetElementDofs(Body body, PetscInt e, PetscInt dofs[])
   PetscFunctionBegin;
   PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
   for (PetscInt n = 0; n < body->element->nodes; n++)
-    for (PetscInt d = 0; d < body->dim; d++) dofs[n * body->dim + d] = nodes[n] < body->owned_nodes ? rstart + nodes[n] * body->dim + d : body->ghost_dofs[(nodes[n] - body->owned_nodes) * body->dim + d];
+    for (PetscInt d = 0; d < body->dim; d++)
+      dofs[n * body->dim + d] = nodes[n] < body->owned_nodes ? rstart + nodes[n] * body->dim + d
+                                                             : body->ghost_dofs[(nodes[n] - body->owned_nodes) * body->dim + d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

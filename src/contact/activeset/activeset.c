@@ -1,8 +1,8 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
 #include <impakt/private/contactimpl.h>
 
-/* Whether a row has been let go in this controller step, and its force is not zero all at once. Bodies of one step take it so by the force that
-   their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and momentum with it. */
+/* Whether a row has been let go in this controller step, and its force is not zero all at once. Bodies of one step take it so by the force
+   that their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and momentum with it. */
 static PetscBool RowFades(Contact contact, PetscInt i)
 {
   return (PetscBool)(contact->fades && !contact->active[i] && contact->release_intervals[i]);
@@ -32,8 +32,9 @@ static PetscReal ReleasedForce(Contact contact, PetscInt i, PetscReal part)
   return force[k] + (at - k) * (force[k + 1] - force[k]);
 }
 
-/* Sum of the forces of a row that has been let go within a controller step of that many substeps, by the trapezoidal rule of integrators, and what it
-   is to be for bodies of other substeps to get the same impulse: that of the force itself, and at least what the force at the start brings them */
+/* Sum of the forces of a row that has been let go within a controller step of that many substeps, by the trapezoidal rule of integrators,
+   and what it is to be for bodies of other substeps to get the same impulse: that of the force itself, and at least what the force at the
+   start brings them */
 static PetscErrorCode ReleasedSums(Contact contact, PetscInt i, PetscInt levels, PetscReal *sum, PetscReal *wanted)
 {
   const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
@@ -94,7 +95,8 @@ PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
     for (PetscInt i = 0; i < contact->n_rows; i++) {
       const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
 
-      if (RowFades(contact, i)) force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * ReleasedForce(contact, i, (PetscReal)level / levels);
+      if (RowFades(contact, i))
+        force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * ReleasedForce(contact, i, (PetscReal)level / levels);
     }
   }
   PetscCall(BalanceReleased(contact, b));
@@ -114,7 +116,8 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
     if (RowFades(contact, i) && (conditions == CONDITIONS_SCHWARZ || conditions == CONDITIONS_ACTIVE_FORCES)) rows[i] = BODY_FORCED;
     if (!contact->active[i]) continue;
     if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
-    if (conditions == CONDITIONS_SCHWARZ) rows[i] = pair->body[pair->dirichlet] == b && !contact->by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
+    if (conditions == CONDITIONS_SCHWARZ)
+      rows[i] = pair->body[pair->dirichlet] == b && !contact->by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
     if (conditions == CONDITIONS_ROBIN) rows[i] = BODY_ROBIN;
   }
 }
@@ -173,9 +176,9 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
 PetscErrorCode ContactGatherActive(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->mine_active[i] = contact->active[i] ? 1 : RowFades(contact, i) ? 2
-                                                                                                                         : 0;
-  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts, contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt i = 0; i < contact->n_rows; i++) contact->mine_active[i] = contact->active[i] ? 1 : RowFades(contact, i) ? 2 : 0;
+  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts,
+                              contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

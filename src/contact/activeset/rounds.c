@@ -1,17 +1,18 @@
 /*
-   Rounds of the active set in one controller step: which rows change after each of them, and what ends an alternation that comes back to where
-   it has been.
+   Rounds of the active set in one controller step: which rows change after each of them, and what ends an alternation that comes back to
+   where it has been.
 
-   At first all rows change at once that penetrate without being held, or are held and pulled. Where one end force for each row closes its gap at
-   the end of the step, this is a linear complementarity problem, whose matrix S is symmetric and positive definite, and which has one solution. All
-   changes at once may miss it and go round in a circle (Curtis, Han, Robinson 2014, section 2, has one with three rows), changes of the first row
-   alone do not (Murty 1974). So a set seen twice makes the first row alone change, until fewer rows are wrong than ever: then all of them may
-   again (Júdice, Pires 1994).
+   At first all rows change at once that penetrate without being held, or are held and pulled. Where one end force for each row closes its
+   gap at the end of the step, this is a linear complementarity problem, whose matrix S is symmetric and positive definite, and which has
+   one solution. All changes at once may miss it and go round in a circle (Curtis, Han, Robinson 2014, section 2, has one with three rows),
+   changes of the first row alone do not (Murty 1974). So a set seen twice makes the first row alone change, until fewer rows are wrong than
+   ever: then all of them may again (Júdice, Pires 1994).
 
-   A set that comes up again after two rounds is something else. Its rows d that change are pulled when held and penetrate when not: forces f and
-   gaps g of both solutions differ by values of opposite sign there, and nowhere else by both, so that (f - f')(g - g') < 0 = (f - f') S (f - f')
-   cannot be. It is no such problem: over the substeps of both bodies a row pushes at several times in the step, which its end does not tell. Such
-   rows are held to the end of the step, so that nothing penetrates, and let go at the start of the next if they are still pulled. The others go on.
+   A set that comes up again after two rounds is something else. Its rows d that change are pulled when held and penetrate when not: forces
+   f and gaps g of both solutions differ by values of opposite sign there, and nowhere else by both, so that (f - f')(g - g') < 0 = (f - f')
+   S (f - f') cannot be. It is no such problem: over the substeps of both bodies a row pushes at several times in the step, which its end
+   does not tell. Such rows are held to the end of the step, so that nothing penetrates, and let go at the start of the next if they are
+   still pulled. The others go on.
 */
 #include <contact/impls/schwarz/schwarzimpl.h>
 
@@ -38,7 +39,9 @@ PetscErrorCode SchwarzBeginRound(Contact contact)
   Rounds *rounds = &((Schwarz *)contact->data)->rounds;
 
   PetscFunctionBegin;
-  PetscCheck(rounds->n < SCHWARZ_MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", SCHWARZ_MAX_ROUNDS);
+  PetscCheck(rounds->n < SCHWARZ_MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+             "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step",
+             SCHWARZ_MAX_ROUNDS);
   PetscCall(PetscArraycpy(rounds->tried + rounds->n++ * contact->n_rows, contact->active, contact->n_rows));
   if (!rounds->cycled || rounds->n < LAST_ROUNDS) PetscFunctionReturn(PETSC_SUCCESS);
   rounds->single = PETSC_FALSE;
@@ -76,8 +79,9 @@ static PetscErrorCode FindFirstWrong(Contact contact, PetscInt *which)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row leaves with the force that holds it until it is pulled, where that is told in the course of the step; else with one that falls linearly
-   until its end. To go on with that while the row opens would be work out of nothing: with ten discs 1.4e-3 of the energy at a step of 4e-4 s. */
+/* A row leaves with the force that holds it until it is pulled, where that is told in the course of the step; else with one that falls
+   linearly until its end. To go on with that while the row opens would be work out of nothing: with ten discs 1.4e-3 of the energy at a
+   step of 4e-4 s. */
 static PetscErrorCode NoteRelease(Contact contact, PetscInt i)
 {
   Schwarz           *schwarz  = (Schwarz *)contact->data;
@@ -102,8 +106,8 @@ static PetscErrorCode NoteRelease(Contact contact, PetscInt i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the active set is another than that of the last round, after rows of shared nodes have been put in order, of which some may be let go
-   again; notes the forces of rows that leave */
+/* Whether the active set is another than that of the last round, after rows of shared nodes have been put in order, of which some may be
+   let go again; notes the forces of rows that leave */
 PetscErrorCode SchwarzTakeActiveSet(Contact contact, PetscBool *changed)
 {
   const Rounds    *rounds = &((Schwarz *)contact->data)->rounds;
@@ -155,8 +159,8 @@ static PetscErrorCode FindActiveSet(Contact contact, PetscInt *ago)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Compares the active set, which has changed, with those of the rounds before, and turns to another rule if it is one of them. `flips`: it is that of
-   the last round but one. */
+/* Compares the active set, which has changed, with those of the rounds before, and turns to another rule if it is one of them. `flips`: it
+   is that of the last round but one. */
 PetscErrorCode SchwarzBreakCycle(Contact contact, PetscBool *flips)
 {
   Rounds          *rounds = &((Schwarz *)contact->data)->rounds;

@@ -1,7 +1,8 @@
 /*
    Newton's step for contact forces that answer to the gaps. On rows that do not push it is y = F; on those that do,
 
-     (I + D S_pp) y_p = F_p - D S_pn F_n,   S = sum over bodies of t_b W_b t_b,   t_b = 1 on rows whose second body is b, -1 where it is the first,
+     (I + D S_pp) y_p = F_p - D S_pn F_n,   S = sum over bodies of t_b W_b t_b,   t_b = 1 on rows whose second body is b, -1 where it is the
+   first,
 
    with the compliance W_b that bodies have of the rows that pushed once. Beyond what a dense matrix is good for S is only multiplied with,
    by solutions with the bodies' factors, and what is left of the force comes from conjugate gradients:
@@ -26,7 +27,8 @@ static PetscErrorCode MakeRoom(ForceProblem *problem, PetscInt size)
   size              = PetscMax(size, PetscMin(2 * problem->capacity, MAX_DENSE_ROWS));
   problem->capacity = size;
   PetscCall(PetscMalloc4(size, &problem->rows, size, &problem->body_rows, size, &problem->places, size, &problem->pivots));
-  PetscCall(PetscMalloc5(size * size, &problem->compliance, size * size, &problem->factor, size, &problem->residual, size, &problem->step, size, &problem->springs));
+  PetscCall(PetscMalloc5(size * size, &problem->compliance, size * size, &problem->factor, size, &problem->residual, size, &problem->step,
+                         size, &problem->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,7 +61,8 @@ static PetscErrorCode AddBody(Contact contact, ForceProblem *problem, PetscInt b
     for (PetscInt i = 0; i < problem->n; i++) {
       const PetscInt sign_i = Sign(&contact->pairs[contact->all_row_pair[problem->rows[i]]], b);
 
-      if (sign_i) problem->compliance[j * problem->n + i] += sign_i * sign_j * W[place[problem->rows[j]] * leading + place[problem->rows[i]]];
+      if (sign_i)
+        problem->compliance[j * problem->n + i] += sign_i * sign_j * W[place[problem->rows[j]] * leading + place[problem->rows[i]]];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -70,7 +73,8 @@ static PetscErrorCode ListRows(Contact contact, ForceProblem *problem)
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->mine_active[i] = problem->listed[i] ? 1 : 0;
-  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts, contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
+  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts,
+                              contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
   problem->n = 0;
   for (PetscInt i = 0; i < contact->n_all_rows; i++) problem->n += contact->all_active[i];
   problem->dense = (PetscBool)(problem->n <= MAX_DENSE_ROWS);
@@ -93,7 +97,8 @@ static PetscErrorCode GatherListed(Contact contact, const ForceProblem *problem,
 
     all[i] = local >= 0 && local < contact->n_rows ? mine[local] : 0;
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)problem->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)problem->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,16 +114,21 @@ static PetscErrorCode Factor(Contact contact, ForceProblem *problem)
 
     problem->springs[i] = local >= 0 && local < contact->n_rows && problem->pushing[local] ? problem->stiffness[local] : 0;
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, problem->springs, (PetscMPIInt)problem->n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, problem->springs, (PetscMPIInt)problem->n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   for (PetscInt i = 0; i < problem->n; i++)
     if (problem->springs[i] > 0) problem->places[m++] = i;
   problem->n_pushing = m;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 0; j < m; j++)
-    for (PetscInt i = 0; i < m; i++) problem->factor[j * m + i] = (i == j ? 1 : 0) + problem->springs[problem->places[i]] * problem->compliance[problem->places[j] * problem->n + problem->places[i]];
+    for (PetscInt i = 0; i < m; i++)
+      problem->factor[j * m + i] = (i == j ? 1 : 0) + problem->springs[problem->places[i]] *
+                                                          problem->compliance[problem->places[j] * problem->n + problem->places[i]];
   PetscCall(PetscBLASIntCast(m, &size));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&size, &size, problem->factor, &size, problem->pivots, &info));
-  PetscCheck(info == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_MAT_LU_ZRPVT, "The matrix of the contact forces is singular (LAPACK getrf info %d): the contact rows constrain each other", (int)info);
+  PetscCheck(info == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_MAT_LU_ZRPVT,
+             "The matrix of the contact forces is singular (LAPACK getrf info %d): the contact rows constrain each other", (int)info);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,7 +175,8 @@ static PetscErrorCode SolveDense(Contact contact, ForceProblem *problem, Vec F, 
   for (PetscInt k = 0; k < m; k++) step[k] = problem->residual[problem->places[k]];
   for (PetscInt j = 0; j < n; j++) {
     if (problem->springs[j] > 0 || problem->residual[j] == 0) continue;
-    for (PetscInt k = 0; k < m; k++) step[k] -= problem->springs[problem->places[k]] * problem->compliance[j * n + problem->places[k]] * problem->residual[j];
+    for (PetscInt k = 0; k < m; k++)
+      step[k] -= problem->springs[problem->places[k]] * problem->compliance[j * n + problem->places[k]] * problem->residual[j];
   }
   PetscCall(PetscBLASIntCast(m, &size));
   if (m) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &size, &one, problem->factor, &size, problem->pivots, step, &size, &info));

@@ -76,7 +76,10 @@ PetscErrorCode ForcesDestroy(Forces *forces)
 PetscErrorCode ForcesCheckDense(Contact contact, const char type[])
 {
   PetscFunctionBegin;
-  PetscCheck(contact->n_all_rows <= MAX_DENSE_ROWS, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_type %s with these bodies solves for the forces of all contact nodes at once, and there are %" PetscInt_FMT ", more than %d; choose -contact_type schwarz or penalty, or coarser contact surfaces", type, contact->n_all_rows, MAX_DENSE_ROWS);
+  PetscCheck(contact->n_all_rows <= MAX_DENSE_ROWS, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_type %s with these bodies solves for the forces of all contact nodes at once, and there are %" PetscInt_FMT
+             ", more than %d; choose -contact_type schwarz or penalty, or coarser contact surfaces",
+             type, contact->n_all_rows, MAX_DENSE_ROWS);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,8 +102,8 @@ PetscErrorCode ForcesComputeCompliance(Contact contact, PetscScalar compliance[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Free trial, where nothing was in contact or is tied; then, if there is contact, all rows are forced. `held`: the rows that were in contact,
-   or penetrate at the end of the trial or at the start of the step. What concerns the rate of the gap concerns these alone: while
+/* Free trial, where nothing was in contact or is tied; then, if there is contact, all rows are forced. `held`: the rows that were in
+   contact, or penetrate at the end of the trial or at the start of the step. What concerns the rate of the gap concerns these alone: while
    forces are sought, a row must not switch on and off with the sign of its gap. */
 PetscErrorCode ForcesBeginStep(Contact contact, Forces *forces, PetscBool *in_contact)
 {
@@ -111,7 +114,8 @@ PetscErrorCode ForcesBeginStep(Contact contact, Forces *forces, PetscBool *in_co
   if (contact->law == CONTACT_LAW_TIED) *in_contact = PETSC_TRUE;
   if (!*in_contact) PetscCall(ContactIntegrateFree(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->n_rows; i++) forces->held[i] = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    forces->held[i] = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (forces->feels[b]) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
@@ -169,7 +173,11 @@ static PetscErrorCode CheckBeforeObstacle(Contact contact, const ContactPair *pa
 
   PetscFunctionBegin;
   PetscCall(BodyFeelsEndForce(body, &feels));
-  PetscCheck(feels, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_type %s closes the gap by the contact force at the end of the step, which does not move the explicit contact nodes with mass of '%s' before the next step; set -%s_mass_redistribute true, give it -%s_ts_type alpha2, or use -contact_type lagrange with all bodies explicit, with mass and without substeps", type, name, name, name);
+  PetscCheck(feels, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_type %s closes the gap by the contact force at the end of the step, which does not move the explicit contact nodes "
+             "with mass of '%s' before the next step; set -%s_mass_redistribute true, give it -%s_ts_type alpha2, or use -contact_type "
+             "lagrange with all bodies explicit, with mass and without substeps",
+             type, name, name, name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,7 +205,12 @@ PetscErrorCode ForcesCheckBodies(Contact contact, const char type[])
       name[side] = ((PetscObject)body)->name;
       if (!is_explicit || massless) answers = PETSC_TRUE;
     }
-    PetscCheck(answers, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_type %s closes the gap by the contact force at the end of the step, which does not move explicit contact nodes with mass before the next step, and both '%s' (%" PetscInt_FMT " substeps) and '%s' (%" PetscInt_FMT " substeps) have such; set -%s_mass_redistribute true, give one of them -%s_ts_type alpha2, or use -contact_type lagrange with one step for all bodies, explicit and with mass (-%s_ts_time_step and -%s_ts_time_step equal to -time_step)", type, name[0], substeps[0], name[1], substeps[1], name[0], name[0], name[0], name[1]);
+    PetscCheck(answers, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_type %s closes the gap by the contact force at the end of the step, which does not move explicit contact nodes "
+               "with mass before the next step, and both '%s' (%" PetscInt_FMT " substeps) and '%s' (%" PetscInt_FMT
+               " substeps) have such; set -%s_mass_redistribute true, give one of them -%s_ts_type alpha2, or use -contact_type lagrange "
+               "with one step for all bodies, explicit and with mass (-%s_ts_time_step and -%s_ts_time_step equal to -time_step)",
+               type, name[0], substeps[0], name[1], substeps[1], name[0], name[0], name[0], name[1]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,5 @@
-/* Newton's step on interfaces with more rows than a dense matrix is good for: conjugate gradients, with one solution of each body for a product. */
+/* Newton's step on interfaces with more rows than a dense matrix is good for: conjugate gradients, with one solution of each body for a
+   product. */
 #include <contact/impls/schwarz/schwarzimpl.h>
 
 /* of the residual: a step of Newton's method that leaves so much takes one more sweep at most */
@@ -77,8 +78,8 @@ static PetscErrorCode SolveLevel(Contact contact, PetscInt most, PetscInt k, Vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same by conjugate gradients, level by level: what the force at one time does later is left to the next sweep, so that with equal substeps
-   the last level is right after as many sweeps as there are levels, and to secants */
+/* The same by conjugate gradients, level by level: what the force at one time does later is left to the next sweep, so that with equal
+   substeps the last level is right after as many sweeps as there are levels, and to secants */
 PetscErrorCode SchwarzSolveIteratively(Contact contact, Vec F, Vec Y)
 {
   Schwarz          *schwarz = (Schwarz *)contact->data;

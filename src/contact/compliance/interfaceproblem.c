@@ -4,10 +4,10 @@
 
      S d = F,   S = sum over bodies of t_b W_b t_b,   t_b = 1 on rows whose Dirichlet side is b, -1 on those whose Neumann side it is,
 
-   move the Dirichlet sides by W_b t_b d: the step of Newton's method in x, whatever the order of the bodies; where x is a force it is d. With several times in the
-   controller step the matrices are those of a convolution in time. With more active rows than a dense matrix is good for, S is only
-   multiplied with, by solutions with the bodies' factors, and d comes from conjugate gradients, for one time after the other; where there are
-   several, or bodies make substeps, that is not the whole Jacobian, and secants do the rest.
+   move the Dirichlet sides by W_b t_b d: the step of Newton's method in x, whatever the order of the bodies; where x is a force it is d.
+   With several times in the controller step the matrices are those of a convolution in time. With more active rows than a dense matrix is
+   good for, S is only multiplied with, by solutions with the bodies' factors, and d comes from conjugate gradients, for one time after the
+   other; where there are several, or bodies make substeps, that is not the whole Jacobian, and secants do the rest.
 */
 #include <contact/impls/schwarz/schwarzimpl.h>
 #include <petscblaslapack.h>
@@ -20,8 +20,10 @@ static PetscErrorCode MakeRoom(InterfaceProblem *problem, PetscInt size, PetscIn
   PetscCall(PetscFree5(problem->rows, problem->body_rows, problem->residual, problem->force, problem->change));
   problem->capacity = PetscMax(size, PetscMin(2 * problem->capacity, most));
   size              = problem->capacity;
-  PetscCall(PetscMalloc4(size * size, &problem->matrices, size * size, &problem->dirichlet, size * size, &problem->factor, size, &problem->pivots));
-  PetscCall(PetscMalloc5(size, &problem->rows, size, &problem->body_rows, size, &problem->residual, size, &problem->force, size, &problem->change));
+  PetscCall(PetscMalloc4(size * size, &problem->matrices, size * size, &problem->dirichlet, size * size, &problem->factor, size,
+                         &problem->pivots));
+  PetscCall(PetscMalloc5(size, &problem->rows, size, &problem->body_rows, size, &problem->residual, size, &problem->force, size,
+                         &problem->change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,8 +52,8 @@ static PetscErrorCode AddBody(Contact contact, PetscInt b, PetscInt level, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether forces at the same times act on all bodies: all are linear over the step, since Dirichlet sides make one substep or these forces are the
-   unknowns, or all bodies of pairs make equally many substeps */
+/* Whether forces at the same times act on all bodies: all are linear over the step, since Dirichlet sides make one substep or these forces
+   are the unknowns, or all bodies of pairs make equally many substeps */
 static PetscErrorCode CountLevels(Contact contact, PetscInt *levels, PetscBool *chain)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
@@ -94,7 +96,8 @@ static PetscErrorCode Factor(Contact contact, PetscInt n)
   PetscFunctionBegin;
   PetscCall(PetscBLASIntCast(n, &size));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&size, &size, problem->factor, &size, problem->pivots, &info));
-  PetscCheck(info == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_MAT_LU_ZRPVT, "The contact rows are not independent (LAPACK getrf info %d): they constrain each other", (int)info);
+  PetscCheck(info == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_MAT_LU_ZRPVT,
+             "The contact rows are not independent (LAPACK getrf info %d): they constrain each other", (int)info);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,7 +128,8 @@ static PetscErrorCode AssembleChain(Contact contact)
     if (column >= 0) {
       const PetscInt row = problem->rows[column % problem->n], local = row - contact->row_begin;
 
-      if (local >= 0 && local < contact->n_rows && column / problem->n < schwarz->levels[contact->row_pair[local]]) PetscCall(VecSetValue(x, schwarz->all_offset[row] + column / problem->n, 1, INSERT_VALUES));
+      if (local >= 0 && local < contact->n_rows && column / problem->n < schwarz->levels[contact->row_pair[local]])
+        PetscCall(VecSetValue(x, schwarz->all_offset[row] + column / problem->n, 1, INSERT_VALUES));
       PetscCall(VecAssemblyBegin(x));
       PetscCall(VecAssemblyEnd(x));
     }
@@ -135,10 +139,13 @@ static PetscErrorCode AssembleChain(Contact contact)
       for (PetscInt i = 0; i < problem->n; i++) {
         const PetscInt local = problem->rows[i] - contact->row_begin;
 
-        out[k * problem->n + i] = local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]] ? values[schwarz->offset[local] + k] : 0;
+        out[k * problem->n + i] = local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]
+                                      ? values[schwarz->offset[local] + k]
+                                      : 0;
       }
     PetscCall(VecRestoreArrayRead(f, &values));
-    if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, out, (PetscMPIInt)size, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+    if (contact->size > 1)
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, out, (PetscMPIInt)size, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
     if (column < 0) continue;
     for (PetscInt i = 0; i < size; i++) out[i] -= problem->residual[i];
     /* pairs with fewer unknowns to a row leave the others as they are */
@@ -232,10 +239,14 @@ static PetscErrorCode GatherResidual(Contact contact, Vec F)
     for (PetscInt i = 0; i < problem->n; i++) {
       const PetscInt local = problem->rows[i] - contact->row_begin;
 
-      problem->residual[k * problem->n + i] = local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]] ? f[schwarz->offset[local] + k] : 0;
+      problem->residual[k * problem->n + i] = local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]
+                                                  ? f[schwarz->offset[local] + k]
+                                                  : 0;
     }
   PetscCall(VecRestoreArrayRead(F, &f));
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, problem->residual, (PetscMPIInt)(problem->n * problem->levels), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, problem->residual, (PetscMPIInt)(problem->n * problem->levels), MPIU_SCALAR, MPIU_SUM,
+                               PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -258,9 +269,13 @@ static PetscErrorCode SolveDense(Contact contact)
     PetscScalar *force = problem->force + k * n, *change = problem->change + k * n;
 
     PetscCall(PetscArraycpy(force, problem->residual + k * n, n));
-    for (PetscInt l = 0; l < k; l++) PetscCallBLAS("BLASgemv", BLASgemv_("N", &size, &size, &minus, problem->matrices + (k - l) * n * n, &size, problem->force + l * n, &one, &plus, force, &one));
+    for (PetscInt l = 0; l < k; l++)
+      PetscCallBLAS("BLASgemv", BLASgemv_("N", &size, &size, &minus, problem->matrices + (k - l) * n * n, &size, problem->force + l * n,
+                                          &one, &plus, force, &one));
     PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &size, &one, problem->factor, &size, problem->pivots, force, &size, &info));
-    for (PetscInt l = 0; l <= k; l++) PetscCallBLAS("BLASgemv", BLASgemv_("N", &size, &size, &plus, problem->dirichlet + (k - l) * n * n, &size, problem->force + l * n, &one, l ? &plus : &zero, change, &one));
+    for (PetscInt l = 0; l <= k; l++)
+      PetscCallBLAS("BLASgemv", BLASgemv_("N", &size, &size, &plus, problem->dirichlet + (k - l) * n * n, &size, problem->force + l * n,
+                                          &one, l ? &plus : &zero, change, &one));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -286,7 +301,10 @@ static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
     for (PetscInt i = 0; i < problem->n; i++) {
       const PetscInt local = problem->rows[i] - contact->row_begin;
 
-      if (local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]) y[schwarz->offset[local] + k] = !problem->chain && ByForce(contact, local) ? problem->force[k * problem->n + i] / ContactForceUnit(contact, local) : problem->change[k * problem->n + i];
+      if (local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]])
+        y[schwarz->offset[local] + k] = !problem->chain && ByForce(contact, local)
+                                            ? problem->force[k * problem->n + i] / ContactForceUnit(contact, local)
+                                            : problem->change[k * problem->n + i];
     }
   PetscCall(VecRestoreArray(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,7 +2,8 @@
 #include <sys/petsccompat.h>
 
 /* A SNES of `local` unknowns on this rank, with a dense Jacobian held as a sparse matrix: its size is that of the interface */
-PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *), PetscErrorCode (*jacobian)(SNES, Vec, Mat, Mat, void *), OuterSolver *solver)
+PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *),
+                                 PetscErrorCode (*jacobian)(SNES, Vec, Mat, Mat, void *), OuterSolver *solver)
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)contact);
   KSP      ksp;
@@ -28,8 +29,10 @@ PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's step by a function of the contact's own, in place of a matrix and its factors; `update` is called where these would be made again */
-PetscErrorCode OuterSolverSetNewton(Contact contact, OuterSolver *solver, PetscErrorCode (*update)(SNES, Vec, Mat, Mat, void *), PetscErrorCode (*apply)(PC, Vec, Vec))
+/* Newton's step by a function of the contact's own, in place of a matrix and its factors; `update` is called where these would be made
+   again */
+PetscErrorCode OuterSolverSetNewton(Contact contact, OuterSolver *solver, PetscErrorCode (*update)(SNES, Vec, Mat, Mat, void *),
+                                    PetscErrorCode (*apply)(PC, Vec, Vec))
 {
   PetscInt local;
   Mat      shell;
@@ -89,7 +92,8 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
   PetscCall(SNESGetOptionsPrefix(solver->snes, &prefix));
   PetscCall(PetscOptionsGetString(NULL, prefix, "-snes_type", type, sizeof(type), NULL));
   for (PetscInt i = 0; i < 5 && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
-  PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%ssnes_type '%s'; known: newtonls, anderson, nrichardson, ngmres, qn", prefix, type);
+  PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
+             "Unknown -%ssnes_type '%s'; known: newtonls, anderson, nrichardson, ngmres, qn", prefix, type);
   PetscCall(PetscStrcmp(type, SNESANDERSON, &anderson));
   PetscCall(SNESSetType(solver->snes, type));
   /* after the type, which brings a line search of its own */

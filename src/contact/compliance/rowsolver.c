@@ -1,8 +1,9 @@
 /* Conjugate gradients on the contact rows, for interfaces with too many of them for a dense matrix. */
 #include <impakt/private/contactimpl.h>
 
-/* y = S x, S = sum over bodies of t_b W_b t_b, t_b = 1 on rows whose first body is b, -1 on those whose second it is: how forces on the rows that are
-   marked (NULL: all) open their gaps; or, if `first`, W_b t_b x of the first bodies alone: how these move. One solution of each body. */
+/* y = S x, S = sum over bodies of t_b W_b t_b, t_b = 1 on rows whose first body is b, -1 on those whose second it is: how forces on the
+   rows that are marked (NULL: all) open their gaps; or, if `first`, W_b t_b x of the first bodies alone: how these move. One solution of
+   each body. */
 PetscErrorCode ContactMultiplyCompliance(Contact contact, const PetscBool marked[], PetscBool first, Vec work[2], Vec x, Vec y)
 {
   PetscFunctionBegin;
@@ -35,7 +36,8 @@ PetscErrorCode ContactMultiplyCompliance(Contact contact, const PetscBool marked
 }
 
 /* A solver with a matrix that is known by its product alone; `ctx` is what the product finds in MatShellGetContext() */
-PetscErrorCode ContactCreateRowSolver(Contact contact, const char prefix[], PetscReal tolerance, PetscErrorCode (*multiply)(Mat, Vec, Vec), void *ctx, KSP *solver)
+PetscErrorCode ContactCreateRowSolver(Contact contact, const char prefix[], PetscReal tolerance, PetscErrorCode (*multiply)(Mat, Vec, Vec),
+                                      void *ctx, KSP *solver)
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)contact);
   Mat      shell;

@@ -87,7 +87,8 @@ PetscErrorCode ContactFinalizePackage(void)
 PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
+  PetscCall(
+      PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
   (*contact)->facing      = PETSC_TRUE;
   (*contact)->slip_bound  = 0.2;
@@ -148,9 +149,11 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "The method cannot be changed after ContactSetUp()");
+  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE,
+             "The method cannot be changed after ContactSetUp()");
   PetscCall(PetscFunctionListFind(ContactList, type, &create));
-  PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange, augmented_lagrangian", type);
+  PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
+             "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange, augmented_lagrangian", type);
   PetscTryTypeMethod(contact, destroy);
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
   contact->prescribes = PETSC_FALSE;
@@ -196,8 +199,8 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the start (default);
-                                                                  false where bodies move round each other, as balls do
+. -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the start
+(default); false where bodies move round each other, as balls do
 - -contact_tolerance g                                          - depth that does not yet count as penetration [m]
 
   Level: beginner
@@ -216,15 +219,24 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   contact->tolerance = PETSC_DEFAULT;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
-  PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetFromOptions", contact->tolerance, &contact->tolerance, NULL));
-  PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
-  PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations, (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
-  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "", ContactLaws, (PetscEnum)contact->law, (PetscEnum *)&contact->law, NULL));
-  PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start", "", contact->facing, &contact->facing, NULL));
-  PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "", contact->slip_bound, &contact->slip_bound, NULL));
-  PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "", contact->angle_bound, &contact->angle_bound, NULL));
+  PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetFromOptions",
+                             contact->tolerance, &contact->tolerance, NULL));
+  PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints,
+                             (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
+  PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations,
+                             (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
+  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "", ContactLaws, (PetscEnum)contact->law,
+                             (PetscEnum *)&contact->law, NULL));
+  PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start", "",
+                             contact->facing, &contact->facing, NULL));
+  PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "",
+                             contact->slip_bound, &contact->slip_bound, NULL));
+  PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "",
+                             contact->angle_bound, &contact->angle_bound, NULL));
   PetscOptionsEnd();
-  PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound, (double)contact->angle_bound);
+  PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound,
+             (double)contact->angle_bound);
   PetscCall(ContactReadObstacles(contact));
   PetscCall(NamesRead(((PetscObject)contact)->prefix, "-contact_pairs", &n, &pairs, &set));
   if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "none", &none));
@@ -233,7 +245,8 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(NamesDestroy(n, &pairs));
   PetscCall(error);
   if (all || (!set && (contact->n_bodies == 2 || (contact->n_bodies == 1 && contact->n_obstacles)))) PetscCall(ContactAddAllPairs(contact));
-  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none", contact->n_bodies);
+  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none", contact->n_bodies);
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -264,8 +277,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscCall(ContactUpdateRows(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->n_all_rows) PetscUseTypeMethod(contact, step);
-  else { /* nothing can touch */
-    PetscBool penetrating;
+  else { /* nothing can touch */ PetscBool penetrating;
 
     PetscCall(ContactIntegrateFree(contact, &penetrating));
   }
@@ -319,11 +331,16 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(PetscViewerASCIIPrintf(viewer, " %s%s", contact->pairs[p].name, contact->pairs[p].chosen && !contact->pairs[p].obstacle ? " (sides chosen)" : ""));
-  PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->n_all_rows, contact->n_all_rows == 1 ? "" : "s"));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " %s%s", contact->pairs[p].name,
+                                     contact->pairs[p].chosen && !contact->pairs[p].obstacle ? " (sides chosen)" : ""));
+  PetscCall(
+      PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->n_all_rows, contact->n_all_rows == 1 ? "" : "s"));
   if (contact->law != CONTACT_LAW_FRICTIONLESS) PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactLaws[contact->law]));
-  if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->constraint]));
-  if (contact->stabilization != CONTACT_STABILIZATION_NONE) PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->stabilization]));
+  if (contact->constraint != CONTACT_CONSTRAINT_GAP)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->constraint]));
+  if (contact->stabilization != CONTACT_STABILIZATION_NONE)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->stabilization]));
   PetscTryTypeMethod(contact, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,7 +2,8 @@
 #include <impakt/private/contactimpl.h>
 #include <math.h>
 
-/* What the transposes of the interface rows carry to the nodes; areas weigh the rows, so that both sides of a pair have the same pressures */
+/* What the transposes of the interface rows carry to the nodes; areas weigh the rows, so that both sides of a pair have the same pressures
+ */
 typedef enum {
   CARRY_FORCE,
   CARRY_AREA,
@@ -54,14 +55,15 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
     PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
     for (PetscInt k = 0; k < N_CARRIED; k++) PetscCall(VecDuplicate(positions, &f->nodes[N_CARRIED * b + k]));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) largest = PetscMax(largest, contact->area[i] * contact->cross_section[contact->row_pair[i]]);
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    largest = PetscMax(largest, contact->area[i] * contact->cross_section[contact->row_pair[i]]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
   f->smallest = 1e-9 * largest;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `along`: component of the normal of its node along the row. Tied nodes have a row for each axis, and what they carry of areas is to point along
-   the normal as that of others does. */
+/* `along`: component of the normal of its node along the row. Tied nodes have a row for each axis, and what they carry of areas is to point
+   along the normal as that of others does. */
 static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried kind)
 {
   const PetscReal area = contact->area[i] * contact->cross_section[contact->row_pair[i]];
@@ -149,7 +151,8 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   PetscInt           dim, n;
 
   PetscFunctionBegin;
-  PetscCheck(body >= 0 && body < contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "There is no body %" PetscInt_FMT "; there are %" PetscInt_FMT, body, contact->n_bodies);
+  PetscCheck(body >= 0 && body < contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no body %" PetscInt_FMT "; there are %" PetscInt_FMT, body, contact->n_bodies);
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(VecGetLocalSize(nodes[0], &n));
   for (Carried k = 0; k < N_CARRIED; k++) {

@@ -58,8 +58,12 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
     ContactPairState   state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(!pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the body is %g m inside the obstacle at the start; move one of them", pair->name, (double)-state.gap);
-    PetscCheck(pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)", ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+    PetscCheck(!pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_pairs %s: the body is %g m inside the obstacle at the start; move one of them", pair->name, (double)-state.gap);
+    PetscCheck(pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
+               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
+               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -109,7 +113,8 @@ PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[]
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
   if (name) *name = contact->pairs[pair].name;
   if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[0]];
   if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1]];

@@ -33,7 +33,8 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
     *body     = contact->n_bodies;
     *obstacle = contact->obstacles[o];
   }
-  PetscCheck(*body >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: there is no body '%s'; -bodies has %s (obstacles stand second, without a surface)", pair, name, known);
+  PetscCheck(*body >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: there is no body '%s'; -bodies has %s (obstacles stand second, without a surface)", pair, name, known);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,7 +65,8 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
   PetscCall(PetscStrncpy(text, pair, sizeof(text)));
   PetscCall(PetscStrchr(text, ':', &colon));
-  PetscCheck(colon, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: a pair is two bodies with a colon between them, Dirichlet side first, as in left:right", pair);
+  PetscCheck(colon, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: a pair is two bodies with a colon between them, Dirichlet side first, as in left:right", pair);
   *colon = 0;
   if (contact->n_pairs == contact->max_pairs) {
     contact->max_pairs = 2 * contact->max_pairs + 4;
@@ -75,7 +77,8 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscCall(PetscStrallocpy(pair, &p->name));
   PetscCall(ParseSide(contact, pair, text, &p->body[0], &p->surface[0], NULL));
   PetscCall(ParseSide(contact, pair, colon + 1, &p->body[1], &p->surface[1], &p->obstacle));
-  PetscCheck(p->body[0] != p->body[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: a body cannot touch itself", pair);
+  PetscCheck(p->body[0] != p->body[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: a body cannot touch itself", pair);
   for (PetscInt other = 0; other < contact->n_pairs - 1; other++) {
     PetscBool same;
 
@@ -123,8 +126,8 @@ typedef struct {
   PetscReal size; /* mean edge length of its elements, of all that are alike the largest [m] */
 } Preference;
 
-/* Of all bodies. Elements of sizes that differ by less than a thousandth, from the largest of them, are alike: for two bodies on their own that
-   could go round in circles. */
+/* Of all bodies. Elements of sizes that differ by less than a thousandth, from the largest of them, are alike: for two bodies on their own
+   that could go round in circles. */
 static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
 {
   PetscReal *size, level = PETSC_MAX_REAL;
@@ -148,8 +151,8 @@ static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A pair of whole bodies whose order is not stated: an implicit one before an explicit one, then the one with the finer mesh, then the one that is
-   named first, takes displacements */
+/* A pair of whole bodies whose order is not stated: an implicit one before an explicit one, then the one with the finer mesh, then the one
+   that is named first, takes displacements */
 static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const Preference preferences[])
 {
   const Preference *a = &preferences[first], *b = &preferences[second];
@@ -157,7 +160,8 @@ static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt sec
   char              pair[256];
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[turn ? second : first])->name, ((PetscObject)contact->bodies[turn ? first : second])->name));
+  PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[turn ? second : first])->name,
+                          ((PetscObject)contact->bodies[turn ? first : second])->name));
   PetscCall(ContactAddPair(contact, pair));
   contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,6 +270,8 @@ PetscErrorCode ContactOrderBodies(Contact contact)
     }
   }
   PetscCall(PetscFree(placed));
-  PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a instead of a:b)");
+  PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a "
+             "instead of a:b)");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,22 +2,10 @@
 #include <impakt/private/contactimpl.h>
 
 /* What is summed over the rows of a pair */
-enum {
-  SUM_FORCE,
-  SUM_ACTIVE,
-  SUM_AREA,
-  SUM_VECTOR,
-  SUM_MOMENT  = SUM_VECTOR + 3,
-  SUM_IMPULSE = SUM_MOMENT + 3,
-  N_SUMS      = SUM_IMPULSE + 3
-};
+enum { SUM_FORCE, SUM_ACTIVE, SUM_AREA, SUM_VECTOR, SUM_MOMENT = SUM_VECTOR + 3, SUM_IMPULSE = SUM_MOMENT + 3, N_SUMS = SUM_IMPULSE + 3 };
 
 /* ... and what is the largest of them */
-enum {
-  MAX_PENETRATION,
-  MAX_TENSION,
-  N_MAXIMA
-};
+enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
 
 /* Memory, and what stays as it is; after the bodies have been set up */
 PetscErrorCode ContactSetUpResultants(Contact contact)
@@ -27,8 +15,10 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
 
   PetscFunctionBegin;
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc4(contact->n_pairs, &contact->cross_section, N_SUMS * contact->n_pairs, &contact->sums, N_MAXIMA * contact->n_pairs, &contact->maxima, 6 * contact->n_pairs, &contact->impulse));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->cross_section[p]));
+  PetscCall(PetscCalloc4(contact->n_pairs, &contact->cross_section, N_SUMS * contact->n_pairs, &contact->sums, N_MAXIMA * contact->n_pairs,
+                         &contact->maxima, 6 * contact->n_pairs, &contact->impulse));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->cross_section[p]));
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTimeStep(ts, &contact->step));
   PetscCall(BodyGetSubsteps(contact->bodies[0], &substeps));
@@ -88,7 +78,8 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
     PetscReal        x[3]   = {0};
 
     for (PetscInt d = 0; d < dim; d++) x[d] = PetscRealPart(reference[dof + d] + displacement[dof + d]);
-    for (PetscInt d = 0; d < 3; d++) moment[d] += contact->force[i] * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
+    for (PetscInt d = 0; d < 3; d++)
+      moment[d] += contact->force[i] * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
   }
   PetscCall(VecRestoreArrayRead(u, &displacement));
   PetscCall(VecRestoreArrayRead(positions, &reference));
@@ -135,8 +126,10 @@ static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt en
   PetscFunctionBegin;
   for (PetscInt p = begin; p < end; p++) PetscCall(SumPair(contact, p, sums + N_SUMS * (p - begin), maxima + N_MAXIMA * (p - begin)));
   if (contact->size > 1 && end > begin) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(N_SUMS * (end - begin)), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(N_SUMS * (end - begin)), MPIU_REAL, MPIU_SUM,
+                               PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX,
+                               PetscObjectComm((PetscObject)contact)));
   }
   for (PetscInt p = begin; p < end; p++, sums += N_SUMS, maxima += N_MAXIMA) {
     ContactPairState *state = &states[p - begin];

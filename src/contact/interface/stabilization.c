@@ -18,9 +18,16 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
       PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[side]], &massless));
       if (!massless) all_massless = PETSC_FALSE;
     }
-  PetscCheck(!all_massless, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization %s acts on contact nodes with mass, and all are massless here, which do not chatter; leave it at none, or set -<body>_mass_redistribute false", ContactStabilizations[contact->stabilization]);
+  PetscCheck(!all_massless, comm, PETSC_ERR_USER_INPUT,
+             "-contact_stabilization %s acts on contact nodes with mass, and all are massless here, which do not chatter; leave it at "
+             "none, or set -<body>_mass_redistribute false",
+             ContactStabilizations[contact->stabilization]);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_LAGRANGE, &lagrange));
-  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCheck(lagrange, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose these, or -contact_stabilization naive", ((PetscObject)contact)->type_name);
+  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED)
+    PetscCheck(lagrange, comm, PETSC_ERR_USER_INPUT,
+               "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose "
+               "these, or -contact_stabilization naive",
+               ((PetscObject)contact)->type_name);
   PetscCall(PetscCalloc1(contact->n_rows, &contact->stabilized));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,8 +8,8 @@
 
    with the areas A. Forces on them have the same resultant and moment on both sides, since those on each of the rows do.
 
-   The gap of such a row is a mean. Where rows may open it must not hide that one of them is closed: only rows of surfaces that are parallel there
-   are merged, and held nodes without such neighbours are left out.
+   The gap of such a row is a mean. Where rows may open it must not hide that one of them is closed: only rows of surfaces that are parallel
+   there are merged, and held nodes without such neighbours are left out.
 */
 #include <impakt/private/contactimpl.h>
 
@@ -17,11 +17,7 @@
 #define PARALLEL 0.01
 
 /* What the transfers say of a row */
-typedef enum {
-  ROW_AREA,
-  ROW_GAP,
-  ROW_NORMAL
-} RowNumber;
+typedef enum { ROW_AREA, ROW_GAP, ROW_NORMAL } RowNumber;
 
 /* One component of it, for all rows of this rank, before any are merged */
 static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec vec)
@@ -62,14 +58,16 @@ static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    if (!pair->obstacle) PetscCall(TransferSetNeighbours(pair->transfer, contact->row_begin + pair->begin, pair->components, slope, *neighbours));
+    if (!pair->obstacle)
+      PetscCall(TransferSetNeighbours(pair->transfer, contact->row_begin + pair->begin, pair->components, slope, *neighbours));
   }
   PetscCall(MatAssemblyBegin(*neighbours, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*neighbours, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Dropped rows that no heir is known of, but of neighbours: `now` becomes one on them, and `part` one over the number of these neighbours */
+/* Dropped rows that no heir is known of, but of neighbours: `now` becomes one on them, and `part` one over the number of these neighbours
+ */
 static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec now, Vec part, int *any)
 {
   const PetscScalar *has;
@@ -95,8 +93,8 @@ static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Row h: the weights w_kh. A held node with neighbours that are not shares equally among them; one without, at a corner, among the heirs of its
-   neighbours. The other rows are those of the identity, as are those of held nodes that nobody inherits from. */
+/* Row h: the weights w_kh. A held node with neighbours that are not shares equally among them; one without, at a corner, among the heirs of
+   its neighbours. The other rows are those of the identity, as are those of held nodes that nobody inherits from. */
 static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
 {
   Mat neighbours, given, inherited;
@@ -252,9 +250,10 @@ PetscErrorCode ContactMergeMatrix(Contact contact, Mat *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the moment of a pair about the origin: a force on a merged row acts where its nodes are, along their directions. `reference` and
-   `displacement` are those of the first body. */
-PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair, const PetscScalar reference[], const PetscScalar displacement[], PetscReal moment[])
+/* This rank's share of the moment of a pair about the origin: a force on a merged row acts where its nodes are, along their directions.
+   `reference` and `displacement` are those of the first body. */
+PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair, const PetscScalar reference[],
+                                       const PetscScalar displacement[], PetscReal moment[])
 {
   const PetscInt     dim = contact->dim;
   const PetscScalar *means, *own;
@@ -269,12 +268,14 @@ PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair,
       if (a == b) continue; /* x_a n_b is a part of the third component */
       PetscCall(GetRows(contact, ROW_NORMAL, b, contact->places));
       PetscCall(VecGetArray(contact->places, &levers));
-      for (PetscInt i = 0; i < contact->n_rows; i++) levers[i] *= i >= pair->begin && i < pair->end ? reference[contact->row_dof[i] + a] + displacement[contact->row_dof[i] + a] : 0;
+      for (PetscInt i = 0; i < contact->n_rows; i++)
+        levers[i] *= i >= pair->begin && i < pair->end ? reference[contact->row_dof[i] + a] + displacement[contact->row_dof[i] + a] : 0;
       PetscCall(VecRestoreArray(contact->places, &levers));
       PetscCall(MatMult(contact->merger, contact->places, contact->means));
       PetscCall(VecGetArrayRead(contact->places, &own));
       PetscCall(VecGetArrayRead(contact->means, &means));
-      for (PetscInt i = pair->begin; i < pair->end; i++) moment[third] += sign * contact->force[i] * PetscRealPart(contact->heir[i] ? means[i] : own[i]);
+      for (PetscInt i = pair->begin; i < pair->end; i++)
+        moment[third] += sign * contact->force[i] * PetscRealPart(contact->heir[i] ? means[i] : own[i]);
       PetscCall(VecRestoreArrayRead(contact->means, &means));
       PetscCall(VecRestoreArrayRead(contact->places, &own));
     }

@@ -59,10 +59,14 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCallMPI(MPI_Scan(&n, &contact->row_begin, 1, MPIU_INT, MPI_SUM, comm));
   contact->row_begin -= n;
   PetscCallMPI(MPI_Allreduce(&n, &contact->n_all_rows, 1, MPIU_INT, MPI_SUM, comm));
-  PetscCall(PetscCalloc7(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area, n, &contact->row_dof, 3 * n, &contact->row_normal, n, &contact->opposite, n, &contact->tied));
-  PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n, &contact->saved_active, n, &contact->conditions));
-  PetscCall(PetscCalloc5(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active, contact->size, &contact->counts, contact->size, &contact->offsets));
-  PetscCall(PetscCalloc6(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap, n, &contact->dropped, n, &contact->heir, n, &contact->merged_gap));
+  PetscCall(PetscCalloc7(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area, n, &contact->row_dof, 3 * n,
+                         &contact->row_normal, n, &contact->opposite, n, &contact->tied));
+  PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n,
+                         &contact->saved_active, n, &contact->conditions));
+  PetscCall(PetscCalloc5(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active,
+                         contact->size, &contact->counts, contact->size, &contact->offsets));
+  PetscCall(PetscCalloc6(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap, n, &contact->dropped, n, &contact->heir, n,
+                         &contact->merged_gap));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->size; total += contact->counts[r++]) contact->offsets[r] = total;
@@ -91,7 +95,8 @@ static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the rows of a pair are, as its transfer has them now. Tied rows keep the bodies together as they are; what is held already is not. */
+/* What the rows of a pair are, as its transfer has them now. Tied rows keep the bodies together as they are; what is held already is not.
+ */
 PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 {
   const PetscInt dim = contact->dim;
@@ -120,7 +125,8 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
       PetscCall(IsHeld(contact, pair, i, &held));
-      contact->dropped[i]    = (PetscBool)(held && (contact->law == CONTACT_LAW_TIED ? contact->tied[i] : rows.opposite[node]) && !pair->obstacle && dim > 1);
+      contact->dropped[i]    = (PetscBool)(held && (contact->law == CONTACT_LAW_TIED ? contact->tied[i] : rows.opposite[node]) &&
+                                           !pair->obstacle && dim > 1);
       contact->merged_gap[i] = 0;
       if (!held) continue;
       contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
@@ -141,7 +147,10 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
   for (PetscInt i = pair->begin; i < pair->end; i++) any[1] |= contact->opposite[i];
   PetscCall(ContactOr(contact, &any[0]));
   PetscCall(ContactOr(contact, &any[1]));
-  PetscCheck(!any[0] || any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they cannot follow the other side; name that body second, or prescribe less in -%s_boundary_displacement", pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  PetscCheck(!any[0] || any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
+             "cannot follow the other side; name that body second, or prescribe less in -%s_boundary_displacement",
+             pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,7 +175,8 @@ PetscErrorCode ContactFillMatrices(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    PetscCall(TransferSetValues(pair->transfer, contact->row_begin + pair->begin, pair->components, contact->interfaces[pair->body[0]], pair->obstacle ? NULL : contact->interfaces[pair->body[1]]));
+    PetscCall(TransferSetValues(pair->transfer, contact->row_begin + pair->begin, pair->components, contact->interfaces[pair->body[0]],
+                                pair->obstacle ? NULL : contact->interfaces[pair->body[1]]));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
@@ -218,7 +228,8 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
     PetscCall(ContactOr(contact, &any[side]));
     PetscCall(SurfaceDestroy(&surfaces[side]));
   }
-  PetscCheck(any[0] && any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
+  PetscCheck(any[0] && any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,8 +249,12 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
     PetscCall(DMGetBoundingBox(dm, lower, upper));
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }
-  PetscCheck(dims[0] == dims[1] && dims[0] == contact->dim, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT ", and another body has %" PetscInt_FMT, pair->name, dims[0], dims[1], contact->dim);
-  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)(contact->facing && !pair->surface[0]), (PetscBool)(contact->facing && !pair->surface[1])));
+  PetscCheck(dims[0] == dims[1] && dims[0] == contact->dim, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT
+             ", and another body has %" PetscInt_FMT,
+             pair->name, dims[0], dims[1], contact->dim);
+  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)(contact->facing && !pair->surface[0]),
+                              (PetscBool)(contact->facing && !pair->surface[1])));
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->slip_bound, contact->angle_bound));
@@ -255,7 +270,9 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   PetscReal extent = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc7(contact->n_bodies, &contact->speeds, contact->n_bodies + 1, &contact->traces, contact->n_bodies, &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs, contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
+  PetscCall(PetscCalloc7(contact->n_bodies, &contact->speeds, contact->n_bodies + 1, &contact->traces, contact->n_bodies,
+                         &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs,
+                         contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
   PetscCall(ContactOrderBodies(contact));
   PetscCall(ContactFindDimension(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -275,7 +292,8 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
   /* what a converged outer iteration leaves of the gap must not count as penetration in the next trial */
   if (contact->tolerance == (PetscReal)PETSC_DEFAULT) contact->tolerance = 3e-12 * extent;
-  PetscCheck(contact->tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_tolerance %g m must not be negative", (double)contact->tolerance);
+  PetscCheck(contact->tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_tolerance %g m must not be negative", (double)contact->tolerance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -326,8 +344,10 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(ContactDestroyMerger(contact));
   PetscCall(PetscFree(contact->obstacles));
   PetscCall(PetscFree(contact->pairs));
-  PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite, contact->tied));
-  PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active, contact->conditions));
+  PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite,
+                       contact->tied));
+  PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active,
+                       contact->conditions));
   PetscCall(PetscFree5(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets));
   PetscCall(PetscFree6(contact->changed, contact->gap_shift, contact->last_gap, contact->dropped, contact->heir, contact->merged_gap));
   PetscCall(PetscFree2(contact->release_intervals, contact->release));

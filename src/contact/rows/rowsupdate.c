@@ -1,8 +1,8 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include <impakt/private/contactimpl.h>
 
-/* Parts of a face by which gaps may hold surfaces apart for good. To give everything back loses energy at each rebuild, as polygons roll on each other:
-   ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost little. */
+/* Parts of a face by which gaps may hold surfaces apart for good. To give everything back loses energy at each rebuild, as polygons roll on
+   each other: ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost little. */
 #define APART    0.1
 #define RETURN   3   /* what is beyond goes back within a slip of one face: that many times */
 #define PARALLEL 0.9 /* cosine of the angle between normals beyond which two rows of a node say much the same */
@@ -30,8 +30,8 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest component on this rank. VecNorm() costs as much as all else here: it looks for what is not a number, which bodies do themselves when
-   they have been integrated. */
+/* The largest component on this rank. VecNorm() costs as much as all else here: it looks for what is not a number, which bodies do
+   themselves when they have been integrated. */
 static PetscErrorCode GetLargest(Vec vec, PetscReal *largest)
 {
   const PetscScalar *values;
@@ -52,8 +52,8 @@ static PetscErrorCode GetLargest(Vec vec, PetscReal *largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a node that guards the end of a pair's partner touches, or nearly, with another row that says much the same; of two that guard, the
-   first pair's counts */
+/* Whether a node that guards the end of a pair's partner touches, or nearly, with another row that says much the same; of two that guard,
+   the first pair's counts */
 static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const TransferRows *rows, PetscBool *shared)
 {
   const PetscInt i = contact->pairs[p].begin + node;
@@ -76,7 +76,8 @@ static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A node that another partner touches cannot guard the end of this one too: prescribed twice, it would have two displacements. Needs the gaps. */
+/* A node that another partner touches cannot guard the end of this one too: prescribed twice, it would have two displacements. Needs the
+   gaps. */
 PetscErrorCode ContactDropShared(Contact contact)
 {
   PetscFunctionBegin;
@@ -99,8 +100,8 @@ PetscErrorCode ContactDropShared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces further apart than this do not touch in the next controller step: twice the way that the fastest nodes of all bodies make towards each
-   other */
+/* Surfaces further apart than this do not touch in the next controller step: twice the way that the fastest nodes of all bodies make
+   towards each other */
 static PetscErrorCode GetReach(Contact contact, PetscReal *near)
 {
   PetscReal first = 0, second = 0;
@@ -112,7 +113,9 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
     PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
     PetscCall(GetLargest(velocity, &contact->speeds[b]));
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->speeds, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  if (contact->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->speeds, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX,
+                               PetscObjectComm((PetscObject)contact)));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     second = PetscMax(second, PetscMin(first, contact->speeds[b]));
     first  = PetscMax(first, contact->speeds[b]);
@@ -121,15 +124,17 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What remains of a shift that lets a gap go on from where it was. Where surfaces slide far without losing contact, shifts add up: between two
-   builds a row goes along the plane across its normal, from which the partner bends away, and surfaces would come to be held apart by more and more. Of what is more
-   than a small part of a face, some is given back in proportion to the slip [parts of a face], which loses energy. The opposite would gain it: surfaces that overlap. */
+/* What remains of a shift that lets a gap go on from where it was. Where surfaces slide far without losing contact, shifts add up: between
+   two builds a row goes along the plane across its normal, from which the partner bends away, and surfaces would come to be held apart by
+   more and more. Of what is more than a small part of a face, some is given back in proportion to the slip [parts of a face], which loses
+   energy. The opposite would gain it: surfaces that overlap. */
 static PetscReal GiveBack(PetscReal shift, PetscReal size, PetscReal slip)
 {
   return shift - PetscMin(shift + APART * size, 0) * PetscMin(1, RETURN * slip);
 }
 
-/* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of nothing.
+/* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of
+   nothing.
    So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, until the row is
    open again. Between bodies without inertia nothing is a blow. */
 static PetscErrorCode ShiftGaps(Contact contact)
@@ -140,7 +145,8 @@ static PetscErrorCode ShiftGaps(Contact contact)
     PetscBool          without_inertia[] = {PETSC_TRUE, PETSC_TRUE};
     TransferRows       rows;
 
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &without_inertia[side]));
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+      PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &without_inertia[side]));
     if (without_inertia[0] && without_inertia[1]) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
@@ -149,7 +155,9 @@ static PetscErrorCode ShiftGaps(Contact contact)
 
       if (!contact->changed[i]) continue;
       if (!contact->opposite[i]) contact->gap_shift[i] = 0;
-      else contact->gap_shift[i] = held ? GiveBack(contact->last_gap[i] - contact->gap[i], rows.size[node], rows.slip[node]) : PetscMax(-contact->gap[i], 0);
+      else
+        contact->gap_shift[i] = held ? GiveBack(contact->last_gap[i] - contact->gap[i], rows.size[node], rows.slip[node])
+                                     : PetscMax(-contact->gap[i], 0);
       contact->initial_gap[i] += contact->gap_shift[i];
       contact->gap[i] += contact->gap_shift[i];
       contact->saved_gap[i] = contact->gap[i];
@@ -158,7 +166,8 @@ static PetscErrorCode ShiftGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What gaps are counted from goes back to the surfaces as soon as a row is open, which costs no work: in contact it would, out of nothing */
+/* What gaps are counted from goes back to the surfaces as soon as a row is open, which costs no work: in contact it would, out of nothing
+ */
 static void DropShifts(Contact contact)
 {
   for (PetscInt i = 0; i < contact->n_rows; i++) {
@@ -172,8 +181,8 @@ static void DropShifts(Contact contact)
   }
 }
 
-/* Looks at the start of a controller step whether surfaces have slid or turned so far that their rows are to be built again, and does so. Rows in
-   contact that have nothing opposite any more are let go. */
+/* Looks at the start of a controller step whether surfaces have slid or turned so far that their rows are to be built again, and does so.
+   Rows in contact that have nothing opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
   PetscReal near = 0;
@@ -189,7 +198,8 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     Vec          u[2] = {NULL, NULL};
     PetscBool    rebuilt;
 
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+      PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
     PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, &rebuilt));
     if (!rebuilt) continue;
     any = PETSC_TRUE;
@@ -200,7 +210,8 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->changed));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->changed));
   PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactDropShared(contact));

@@ -1,16 +1,18 @@
 /*
-   Nodes with rows of several pairs, whose directions may depend on each other: a block that stands astride two others, or on two plane obstacles
-   side by side. What must hold is that of each pair on its own, whatever the method: no gap is negative, no force pulls, and a force is there
-   where the gap is closed. This defines the gaps, and the forces too if of the partners of a node all but one give way. But a body can be
-   prescribed only where its rows are independent. So, where Schwarz's method runs on the bodies' compliance, of the active rows of a node
+   Nodes with rows of several pairs, whose directions may depend on each other: a block that stands astride two others, or on two plane
+   obstacles side by side. What must hold is that of each pair on its own, whatever the method: no gap is negative, no force pulls, and a
+   force is there where the gap is closed. This defines the gaps, and the forces too if of the partners of a node all but one give way. But
+   a body can be prescribed only where its rows are independent. So, where Schwarz's method runs on the bodies' compliance, of the active
+   rows of a node
 
    - the first that are independent are prescribed;
-   - the others with a partner that answers to forces have their force for an unknown, on both sides, and the condition that their gap is closed:
-     what both partners take is then what they would take under Lagrange multipliers;
-   - the others with a partner that does not (an obstacle, or an explicit body whose contact nodes have mass) are let go: their gap is closed by
-     the rows before them, unless their partner is deeper inside, and then it comes first.
+   - the others with a partner that answers to forces have their force for an unknown, on both sides, and the condition that their gap is
+   closed: what both partners take is then what they would take under Lagrange multipliers;
+   - the others with a partner that does not (an obstacle, or an explicit body whose contact nodes have mass) are let go: their gap is
+   closed by the rows before them, unless their partner is deeper inside, and then it comes first.
 
-   Elsewhere rows that depend on each other are prescribed by least squares, weighted by the areas that the partners cover: see BodySetRowWeights().
+   Elsewhere rows that depend on each other are prescribed by least squares, weighted by the areas that the partners cover:
+   see BodySetRowWeights().
    Of obstacles with one normal at a node only the nearest counts.
 */
 #include <impakt/private/contactimpl.h>
@@ -23,7 +25,8 @@
 /* The direction of a row at a shared node, without the displacements that the user prescribes */
 static void GetDirection(Contact contact, PetscInt node, PetscInt i, PetscReal direction[3])
 {
-  for (PetscInt d = 0; d < 3; d++) direction[d] = d < contact->dim && contact->shared.free_dofs[3 * node + d] ? contact->row_normal[3 * i + d] : 0;
+  for (PetscInt d = 0; d < 3; d++)
+    direction[d] = d < contact->dim && contact->shared.free_dofs[3 * node + d] ? contact->row_normal[3 * i + d] : 0;
 }
 
 static PetscErrorCode MarkFreeDofs(Contact contact, PetscInt node)
@@ -91,7 +94,8 @@ static PetscBool IsBehind(Contact contact, PetscInt i, PetscInt j)
   const PetscReal *a = contact->row_normal + 3 * i, *b = contact->row_normal + 3 * j;
   const PetscReal  along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-  if (contact->row_pair[i] == contact->row_pair[j] || !contact->pairs[contact->row_pair[j]].obstacle || !contact->opposite[j]) return PETSC_FALSE;
+  if (contact->row_pair[i] == contact->row_pair[j] || !contact->pairs[contact->row_pair[j]].obstacle || !contact->opposite[j])
+    return PETSC_FALSE;
   if (along <= 0 || PetscSqr(along) < 1 - PARALLEL) return PETSC_FALSE;
   return (PetscBool)(contact->initial_gap[j] < contact->initial_gap[i] || (contact->initial_gap[j] == contact->initial_gap[i] && j < i));
 }
@@ -166,7 +170,8 @@ PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool arranges)
 
   PetscFunctionBegin;
   for (PetscInt node = 0; node < shared->n; node++) most = PetscMax(most, shared->offsets[node + 1] - shared->offsets[node]);
-  PetscCall(PetscCalloc4(contact->n_rows, &contact->by_force, contact->n_pairs, &shared->unit, contact->n_pairs, &shared->answers, most, &shared->sorted));
+  PetscCall(PetscCalloc4(contact->n_rows, &contact->by_force, contact->n_pairs, &shared->unit, contact->n_pairs, &shared->answers, most,
+                         &shared->sorted));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
@@ -185,8 +190,8 @@ PetscReal ContactForceUnit(Contact contact, PetscInt i)
   return contact->shared.unit[contact->row_pair[i]] * contact->area[i] * contact->cross_section[contact->row_pair[i]];
 }
 
-/* The active rows of a node in the order in which they are prescribed: of those whose partner does not answer to forces, first the ones that
-   penetrate; then the others */
+/* The active rows of a node in the order in which they are prescribed: of those whose partner does not answer to forces, first the ones
+   that penetrate; then the others */
 static PetscInt SortActive(Contact contact, PetscInt node)
 {
   SharedNodes *shared = &contact->shared;
@@ -197,13 +202,13 @@ static PetscInt SortActive(Contact contact, PetscInt node)
       const PetscInt  i     = shared->rows[k];
       const PetscBool first = (PetscBool)(contact->gap[i] < -contact->tolerance);
 
-      if (contact->active[i] && round == (shared->answers[contact->row_pair[i]] ? 2 : first ? 0
-                                                                                            : 1)) shared->sorted[count++] = i;
+      if (contact->active[i] && round == (shared->answers[contact->row_pair[i]] ? 2 : first ? 0 : 1)) shared->sorted[count++] = i;
     }
   return count;
 }
 
-/* What is left of a direction without its parts along the unit vectors of a basis, which it becomes one of if that is more than `least` of it, squared */
+/* What is left of a direction without its parts along the unit vectors of a basis, which it becomes one of if that is more than `least` of
+   it, squared */
 static PetscBool Extends(PetscReal direction[3], PetscReal least, PetscInt *n, PetscReal basis[3][3])
 {
   PetscReal before = 0, after = 0;

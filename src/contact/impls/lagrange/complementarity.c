@@ -91,10 +91,14 @@ static PetscErrorCode Factor(Contact contact, Complementarity *problem)
       if (problem->place[columns[k]] >= 0) problem->factor[problem->place[columns[k]] * n + i] = values[k];
     PetscCall(MatRestoreRow(problem->compliance, problem->rows[i], &count, &columns, &values));
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, problem->factor, (PetscMPIInt)(n * n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, problem->factor, (PetscMPIInt)(n * n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscBLASIntCast(n, &size));
   PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&size, &size, problem->factor, &size, problem->pivots, &info));
-  PetscCheck(info == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_LIB, "The matrix of the Lagrange multipliers is singular (LAPACK getrf info %d): contact constraints depend on each other", (int)info);
+  PetscCheck(info == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_LIB,
+             "The matrix of the Lagrange multipliers is singular (LAPACK getrf info %d): contact constraints depend on each other",
+             (int)info);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,7 +115,8 @@ static PetscErrorCode TakeActive(Contact contact, Complementarity *problem)
   }
   PetscCall(ContactOr(contact, &differs));
   if (!differs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts, contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
+  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts,
+                              contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
   problem->n = 0;
   for (PetscInt i = 0; i < contact->n_all_rows; i++) problem->n += contact->all_active[i];
   problem->dense   = (PetscBool)(problem->n <= MAX_DENSE_ROWS);
@@ -137,7 +142,9 @@ static PetscErrorCode SolveDense(Contact contact, Complementarity *problem)
 
     problem->rhs[k] = local >= 0 && local < contact->n_rows ? -problem->gaps[local] : 0;
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, problem->rhs, (PetscMPIInt)problem->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, problem->rhs, (PetscMPIInt)problem->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscBLASIntCast(problem->n, &size));
   PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &size, &one, problem->factor, &size, problem->pivots, problem->rhs, &size, &info));
   for (PetscInt k = 0; k < problem->n; k++) {
@@ -213,7 +220,8 @@ PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
 
   PetscFunctionBegin;
   problem->contact = contact;
-  PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->factored, contact->n_all_rows, &problem->place));
+  PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->factored,
+                         contact->n_all_rows, &problem->place));
   PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
   PetscCall(VecDuplicate(problem->force_vec, &problem->gap_vec));
   PetscCall(VecDuplicate(problem->force_vec, &problem->rhs_vec));
@@ -243,7 +251,10 @@ static PetscErrorCode SolveIteratively(Contact contact, Complementarity *problem
   contact->counts_made.inner_iterations += iterations;
   PetscCall(KSPGetResidualNorm(problem->iterative, &left));
   PetscCall(VecNorm(problem->rhs_vec, NORM_2, &all));
-  PetscCheck(left <= WORST_GAP * all, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "Conjugate gradients for the Lagrange multipliers of %" PetscInt_FMT " contact nodes leave %g of the gaps after %" PetscInt_FMT " iterations; raise -lagrange_interface_ksp_max_it, or choose -contact_type schwarz", problem->n, (double)(left / all), iterations);
+  PetscCheck(left <= WORST_GAP * all, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+             "Conjugate gradients for the Lagrange multipliers of %" PetscInt_FMT " contact nodes leave %g of the gaps after %" PetscInt_FMT
+             " iterations; raise -lagrange_interface_ksp_max_it, or choose -contact_type schwarz",
+             problem->n, (double)(left / all), iterations);
   PetscCall(VecGetArrayRead(problem->force_vec, &solution));
   PetscCall(PetscArraycpy(problem->forces, solution, contact->n_rows));
   PetscCall(VecRestoreArrayRead(problem->force_vec, &solution));
@@ -294,7 +305,8 @@ PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Comple
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->n_rows; i++) problem->active[i] = (PetscBool)(contact->tied[i] || problem->gaps[i] < 0);
   for (PetscInt round = 0; changed; round++) {
-    PetscCheck(round < MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The active set of the Lagrange multipliers has changed %d times in one step", MAX_ROUNDS);
+    PetscCheck(round < MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+               "The active set of the Lagrange multipliers has changed %d times in one step", MAX_ROUNDS);
     PetscCall(ComplementaritySolveActive(contact, problem));
     PetscCall(ChangeActive(contact, tolerance, problem, &changed));
     if (changed) contact->counts_made.set_changes++;

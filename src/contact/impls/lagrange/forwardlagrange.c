@@ -16,8 +16,8 @@ typedef struct {
   PetscBool       close_rate;
 } ForwardLagrange;
 
-/* Part of a penetration at the start of a step that is taken back in it. Where rows are built again on surfaces that have slid, gaps jump by a
-   small part of an element; to close that within one explicit step would take velocities that have nothing to do with the impact. */
+/* Part of a penetration at the start of a step that is taken back in it. Where rows are built again on surfaces that have slid, gaps jump
+   by a small part of an element; to close that within one explicit step would take velocities that have nothing to do with the impact. */
 #define RECOVERY 0.02
 
 /* What is to be closed of the gap at the end of a free step */

@@ -62,7 +62,8 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(ForcesIntegrate(contact, &lagrange->forces, x, lagrange->scale));
   PetscCall(VecGetArrayWrite(F, &f));
-  for (PetscInt i = 0; i < contact->n_rows; i++) f[i] = contact->gap[i] - (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->forces.held[i] ? contact->saved_gap[i] : 0);
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    f[i] = contact->gap[i] - (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->forces.held[i] ? contact->saved_gap[i] : 0);
   PetscCall(MeasureMismatch(contact, x, f));
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -81,13 +82,15 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   if (lagrange->have_jacobian && !lagrange->scaled_in_place) PetscFunctionReturn(PETSC_SUCCESS);
   lagrange->have_jacobian = PETSC_TRUE;
   for (PetscInt i = contact->row_begin; i < contact->row_begin + contact->n_rows; i++)
-    for (PetscInt j = 0; j < contact->n_all_rows; j++) PetscCall(MatSetValue(J, i, j, lagrange->compliance[j * contact->n_all_rows + i], INSERT_VALUES));
+    for (PetscInt j = 0; j < contact->n_all_rows; j++)
+      PetscCall(MatSetValue(J, i, j, lagrange->compliance[j * contact->n_all_rows + i], INSERT_VALUES));
   PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                      SNESConvergedReason *reason, void *ctx)
 {
   const ImplicitLagrange *lagrange = (const ImplicitLagrange *)((Contact)ctx)->data;
 
@@ -98,7 +101,8 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm) || PetscIsInfOrNanReal(lagrange->mismatch)) *reason = SNES_DIVERGED_NAN;
-  else if (lagrange->mismatch <= lagrange->atol || lagrange->mismatch <= lagrange->rtol * lagrange->magnitude) *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (lagrange->mismatch <= lagrange->atol || lagrange->mismatch <= lagrange->rtol * lagrange->magnitude)
+    *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,7 +122,8 @@ static PetscErrorCode SetUpOuter(Contact contact)
   PetscCall(PetscOptionsGetString(NULL, "lagrange_", "-snes_type", type, sizeof(type), NULL));
   PetscCall(PetscStrcmp(type, SNESVINEWTONRSLS, &reduced));
   PetscCall(PetscStrcmp(type, SNESVINEWTONSSLS, &semismooth));
-  PetscCheck(reduced || semismooth, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -lagrange_snes_type '%s'; known: vinewtonrsls, vinewtonssls", type);
+  PetscCheck(reduced || semismooth, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
+             "Unknown -lagrange_snes_type '%s'; known: vinewtonrsls, vinewtonssls", type);
   lagrange->scaled_in_place = semismooth;
   PetscCall(SNESSetType(snes, type));
   if (reduced) {
@@ -152,8 +157,14 @@ static PetscErrorCode CheckConverged(Contact contact)
   PetscCall(SNESGetConvergedReason(lagrange->outer.snes, &reason));
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcesGetTime(contact, &time));
-  PetscCheck(reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_FP, "A contact gap or force is not a number in the step that ends at time %.9g s; is a velocity or a time step too large?", (double)time);
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose a smaller -time_step", (double)time, contact->counts_made.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]);
+  PetscCheck(reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_FP,
+             "A contact gap or force is not a number in the step that ends at time %.9g s; is a velocity or a time step too large?",
+             (double)time);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+          "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+          " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose "
+          "a smaller -time_step",
+          (double)time, contact->counts_made.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]);
 }
 
 /* The solution. The semismooth iteration may leave forces that pull, within the tolerance: these are taken out. */
@@ -226,7 +237,8 @@ static PetscErrorCode ContactView_ImplicitLagrange(Contact contact, PetscViewer 
 
   PetscFunctionBegin;
   PetscCall(SNESGetType(lagrange->outer.snes, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s on the forces at the end of the step, tolerances %g m and %g relative\n", type, (double)lagrange->atol, (double)lagrange->rtol));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s on the forces at the end of the step, tolerances %g m and %g relative\n",
+                                   type, (double)lagrange->atol, (double)lagrange->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,7 +263,10 @@ static PetscErrorCode SetUpStabilized(Contact contact)
   MPI_Comm          comm     = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCheck(contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized closes the gap by a projection of its own; leave -contact_constraint at gap, not %s", ContactConstraints[contact->constraint]);
+  PetscCheck(
+      contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT,
+      "-contact_stabilization contact_stabilized closes the gap by a projection of its own; leave -contact_constraint at gap, not %s",
+      ContactConstraints[contact->constraint]);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const char *name = ((PetscObject)contact->bodies[b])->name;
     PetscBool   is_explicit, massless;
@@ -260,14 +275,26 @@ static PetscErrorCode SetUpStabilized(Contact contact)
     TS          ts;
 
     PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
-    PetscCheck(!is_explicit, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized works with implicit bodies only, and body '%s' is explicit; give it -%s_ts_type alpha2", name, name);
+    PetscCheck(
+        !is_explicit, comm, PETSC_ERR_USER_INPUT,
+        "-contact_stabilization contact_stabilized works with implicit bodies only, and body '%s' is explicit; give it -%s_ts_type alpha2",
+        name, name);
     PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    PetscCheck(!massless, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized projects in the norm of the mass, and the contact nodes of body '%s' have none, so that they do not chatter either; set -%s_mass_redistribute false, or leave the stabilization at none", name, name);
+    PetscCheck(!massless, comm, PETSC_ERR_USER_INPUT,
+               "-contact_stabilization contact_stabilized projects in the norm of the mass, and the contact nodes of body '%s' have none, "
+               "so that they do not chatter either; set -%s_mass_redistribute false, or leave the stabilization at none",
+               name, name);
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    PetscCheck(substeps == 1, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized needs one step for all bodies, and body '%s' makes %" PetscInt_FMT " substeps; set -%s_ts_time_step to -time_step", name, substeps, name);
+    PetscCheck(substeps == 1, comm, PETSC_ERR_USER_INPUT,
+               "-contact_stabilization contact_stabilized needs one step for all bodies, and body '%s' makes %" PetscInt_FMT
+               " substeps; set -%s_ts_time_step to -time_step",
+               name, substeps, name);
     PetscCall(BodyGetTS(contact->bodies[b], &ts));
     PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, &gamma, &beta));
-    PetscCheck(alpha_m == 1 && alpha_f == 1 && gamma == 0.5 && beta == 0.25, comm, PETSC_ERR_USER_INPUT, "-contact_stabilization contact_stabilized is made for the trapezoidal rule, and body '%s' has alpha_m %g, alpha_f %g, gamma %g, beta %g; leave -%s_ts_alpha_... at their defaults", name, (double)alpha_m, (double)alpha_f, (double)gamma, (double)beta, name);
+    PetscCheck(alpha_m == 1 && alpha_f == 1 && gamma == 0.5 && beta == 0.25, comm, PETSC_ERR_USER_INPUT,
+               "-contact_stabilization contact_stabilized is made for the trapezoidal rule, and body '%s' has alpha_m %g, alpha_f %g, "
+               "gamma %g, beta %g; leave -%s_ts_alpha_... at their defaults",
+               name, (double)alpha_m, (double)alpha_f, (double)gamma, (double)beta, name);
   }
   lagrange->scale      = 2;
   lagrange->stabilized = PETSC_TRUE;
@@ -291,7 +318,8 @@ static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ComputeCompliance(contact));
-  if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
+  if (lagrange->close_rate || lagrange->stabilized)
+    PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -302,7 +330,9 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, "lagrange"));
   PetscCall(ForcesCheckDense(contact, "lagrange"));
-  PetscCheck(contact->law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
+  PetscCheck(contact->law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and "
+             "without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
   PetscCall(PetscNew(&lagrange));
   contact->data             = lagrange;
   contact->ops->step        = ContactStep_ImplicitLagrange;
@@ -317,7 +347,8 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   if (contact->constraint == CONTACT_CONSTRAINT_BOTH) {
     PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
     lagrange->close_rate = PETSC_TRUE;
-  } else if (lagrange->stabilized) PetscCall(LagrangeSetUpImpulses(contact, "-contact_stabilization contact_stabilized", &lagrange->impulses));
+  } else if (lagrange->stabilized)
+    PetscCall(LagrangeSetUpImpulses(contact, "-contact_stabilization contact_stabilized", &lagrange->impulses));
   if (lagrange->close_rate || lagrange->stabilized) contact->ops->accept = ContactAccept_ImplicitLagrange;
   PetscCall(ComputeCompliance(contact));
   PetscCall(SetUpOuter(contact));

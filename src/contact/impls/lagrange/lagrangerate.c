@@ -12,7 +12,11 @@ PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Compl
 
     PetscCall(BodyIsRedistributed(first, &massless[0]));
     PetscCall(BodyIsRedistributed(second, &massless[1]));
-    PetscCheck(!massless[0] || !massless[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "%s changes velocities through the mass of the contact nodes, and those of '%s' and '%s' have none: their velocity is the change of position over the step, so that a closed gap that stays closed has no rate already. Leave the option out, or set -%s_mass_redistribute false", option, ((PetscObject)first)->name, ((PetscObject)second)->name, ((PetscObject)first)->name);
+    PetscCheck(!massless[0] || !massless[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "%s changes velocities through the mass of the contact nodes, and those of '%s' and '%s' have none: their velocity is the "
+               "change of position over the step, so that a closed gap that stays closed has no rate already. Leave the option out, or set "
+               "-%s_mass_redistribute false",
+               option, ((PetscObject)first)->name, ((PetscObject)second)->name, ((PetscObject)first)->name);
   }
   PetscCall(ComplementarityCreate(contact, impulses));
   PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, impulses));
@@ -49,7 +53,8 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetRates(contact, PETSC_TRUE, impulses->gaps));
-  for (PetscInt i = 0; i < contact->n_rows; i++) impulses->active[i] = (PetscBool)(contact->active[i] && (contact->tied[i] || !pushing_only || impulses->gaps[i] < 0));
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    impulses->active[i] = (PetscBool)(contact->active[i] && (contact->tied[i] || !pushing_only || impulses->gaps[i] < 0));
   PetscCall(ComplementaritySolveActive(contact, impulses));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));

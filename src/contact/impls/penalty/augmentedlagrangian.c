@@ -11,14 +11,20 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
   MPI_Comm comm    = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCheck(contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT, "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty", ContactConstraints[contact->constraint]);
+  PetscCheck(contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT,
+             "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty",
+             ContactConstraints[contact->constraint]);
   PetscCall(PenaltyReadParameter(contact));
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "", penalty->augmentation_tolerance, &penalty->augmentation_tolerance, NULL));
-  PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "", penalty->augmentation_max_it, &penalty->augmentation_max_it, NULL));
+  PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "", penalty->augmentation_tolerance,
+                             &penalty->augmentation_tolerance, NULL));
+  PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "", penalty->augmentation_max_it,
+                            &penalty->augmentation_max_it, NULL));
   PetscOptionsEnd();
-  PetscCheck(penalty->augmentation_tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-contact_augmentation_tolerance %g m must be positive", (double)penalty->augmentation_tolerance);
-  PetscCheck(penalty->augmentation_max_it > 0, comm, PETSC_ERR_USER_INPUT, "-contact_augmentation_max_it %" PetscInt_FMT " must be positive", penalty->augmentation_max_it);
+  PetscCheck(penalty->augmentation_tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-contact_augmentation_tolerance %g m must be positive",
+             (double)penalty->augmentation_tolerance);
+  PetscCheck(penalty->augmentation_max_it > 0, comm, PETSC_ERR_USER_INPUT,
+             "-contact_augmentation_max_it %" PetscInt_FMT " must be positive", penalty->augmentation_max_it);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,7 +42,8 @@ static PetscErrorCode GetMismatch(Contact contact, PetscReal *mismatch)
   PetscReal worst = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) worst = PetscMax(worst, contact->active[i] ? PetscAbsReal(contact->gap[i]) : -contact->gap[i]);
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    worst = PetscMax(worst, contact->active[i] ? PetscAbsReal(contact->gap[i]) : -contact->gap[i]);
   if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
   *mismatch = worst;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -59,7 +66,11 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
     if (mismatch <= penalty->augmentation_tolerance) PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ForcesGetTime(contact, &time));
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " augmentations the gap is off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or loosen -contact_augmentation_tolerance", (double)time, penalty->augmentation_max_it, (double)mismatch);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+          "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+          " augmentations the gap is off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
+          "-contact_augmentation_tolerance",
+          (double)time, penalty->augmentation_max_it, (double)mismatch);
 }
 
 static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscViewer viewer)

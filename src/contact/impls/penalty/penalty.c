@@ -5,8 +5,8 @@
 
    with a spring tau, a damper c, or both; the multiplier is zero but for the augmented Lagrangian. During the step the force goes
    linearly from its last value to this one. The outer SNES solves F(lambda) = lambda - <...> = 0 with both bodies under forces; its
-   Jacobian is I + (tau + c / dt) A S on the rows that push, with the interface compliance S of all bodies (forceproblem.c). Tied rows are held
-   by springs that pull as well.
+   Jacobian is I + (tau + c / dt) A S on the rows that push, with the interface compliance S of all bodies (forceproblem.c). Tied rows
+   are held    by springs that pull as well.
 
    With explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: the second
    evaluation, which finds this out, only adds the change of force to the end state.
@@ -23,10 +23,15 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
   if (contact->constraint != CONTACT_CONSTRAINT_GAP_RATE) PetscCall(PenaltyReadParameter(contact));
   if (contact->constraint == CONTACT_CONSTRAINT_GAP) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "", penalty->damping, &penalty->damping, &set));
+  PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "", penalty->damping,
+                             &penalty->damping, &set));
   PetscOptionsEnd();
-  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance of a bar, sqrt(E rho) times its area, is its scale", ContactConstraints[contact->constraint]);
-  PetscCheck(penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_penalty_damping %g must be positive", (double)penalty->damping);
+  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "
+             "of a bar, sqrt(E rho) times its area, is its scale",
+             ContactConstraints[contact->constraint]);
+  PetscCheck(penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_penalty_damping %g must be positive", (double)penalty->damping);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,7 +114,8 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                      SNESConvergedReason *reason, void *ctx)
 {
   const Penalty *penalty = (const Penalty *)((Contact)ctx)->data;
 
@@ -120,7 +126,9 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude || penalty->residual <= penalty->round_off) *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude ||
+           penalty->residual <= penalty->round_off)
+    *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,9 +178,16 @@ static PetscErrorCode CheckConverged(Contact contact)
     ContactPairState state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(!PetscIsInfOrNanReal(state.gap), PetscObjectComm((PetscObject)contact), PETSC_ERR_FP, "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step or -contact_penalty too large?", contact->pairs[p].name, (double)time);
+    PetscCheck(!PetscIsInfOrNanReal(state.gap), PetscObjectComm((PetscObject)contact), PETSC_ERR_FP,
+               "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step "
+               "or -contact_penalty too large?",
+               contact->pairs[p].name, (double)time);
   }
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller -contact_penalty (or -contact_penalty_scale) or -time_step", (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+          "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+          " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
+          "-contact_penalty (or -contact_penalty_scale) or -time_step",
+          (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
 }
 
 /* The forces of springs and dampers, from the forces as they are as first iterate */
@@ -212,7 +227,8 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(contact->force, contact->saved_force, contact->n_rows));
   PetscCall(PenaltySolve(contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) energy += 0.5 * penalty->spring[i] * PetscSqr(contact->tied[i] ? contact->gap[i] : PetscMin(contact->gap[i], 0));
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    energy += 0.5 * penalty->spring[i] * PetscSqr(contact->tied[i] ? contact->gap[i] : PetscMin(contact->gap[i], 0));
   if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   contact->penalty_energy = energy;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -224,7 +240,8 @@ static PetscErrorCode ContactView_Penalty(Contact contact, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(PenaltyViewParameter(contact, viewer));
-  if (penalty->damping > 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g %s\n", (double)penalty->damping, contact->dim == 1 ? "N s/m" : "N s/m^3"));
+  if (penalty->damping > 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g %s\n", (double)penalty->damping, contact->dim == 1 ? "N s/m" : "N s/m^3"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

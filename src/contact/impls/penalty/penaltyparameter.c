@@ -1,8 +1,8 @@
 /* How stiff the springs and dampers of the penalty method are, and whether explicit steps stand them. */
 #include "penaltyimpl.h"
 
-/* Penalty parameter relative to that of an element on each side, one behind the other. Two plane strain blocks that meet at 100 m/s (explicit
-   at their stable steps, lumped mass), scale: largest penetration in elements, energy gained, contact force's scatter to mean:
+/* Penalty parameter relative to that of an element on each side, one behind the other. Two plane strain blocks that meet at 100 m/s
+   (explicit at their stable steps, lumped mass), scale: largest penetration in elements, energy gained, contact force's scatter to mean:
      massless contact nodes  1: 0.25, 8e-4, 5 %   10: 0.03, 2e-4, 6 %   30: 0.01, 2e-4, 6 %
      with mass               1: 0.3, 5e-3, 6 %    2: 0.25, 7e-3, 18 %   3: chatters, gains 5 %; implicit ones chatter at 10 */
 #define MASSLESS_SCALE 10
@@ -18,11 +18,15 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
   PetscFunctionBegin;
   penalty->springs = PETSC_TRUE;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "", penalty->penalty, &penalty->penalty, &set));
-  if (!set) PetscCall(PetscOptionsReal("-contact_penalty_scale", "Penalty parameter relative to the stiffness of the elements", "", penalty->scale, &penalty->scale, &scaled));
+  PetscCall(
+      PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "", penalty->penalty, &penalty->penalty, &set));
+  if (!set)
+    PetscCall(PetscOptionsReal("-contact_penalty_scale", "Penalty parameter relative to the stiffness of the elements", "", penalty->scale,
+                               &penalty->scale, &scaled));
   PetscOptionsEnd();
   PetscCheck(!set || penalty->penalty > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive", (double)penalty->penalty);
-  PetscCheck(!scaled || penalty->scale > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty_scale %g must be positive", (double)penalty->scale);
+  PetscCheck(!scaled || penalty->scale > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty_scale %g must be positive",
+             (double)penalty->scale);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,16 +94,21 @@ static PetscErrorCode CheckStability(Contact contact)
   const Penalty  *penalty = (const Penalty *)contact->data;
   MPI_Comm        comm    = PetscObjectComm((PetscObject)contact);
   const PetscBool given   = (PetscBool)(penalty->penalty > 0);
-  const PetscReal value   = given ? penalty->penalty : penalty->scale > 0 ? penalty->scale
-                                                                          : MASS_SCALE;
+  const PetscReal value   = given ? penalty->penalty : penalty->scale > 0 ? penalty->scale : MASS_SCALE;
   PetscReal       worst[2], spring, damper;
 
   PetscFunctionBegin;
   PetscCall(GetForwardCompliance(contact, worst));
   spring = worst[0];
   damper = 2 * worst[1] / penalty->step;
-  PetscCheck(spring < 4, comm, PETSC_ERR_USER_INPUT, "-contact_penalty%s %g is too stiff for the explicit steps: above %.4g the contact springs are unstable; choose a smaller one, or smaller time steps", given ? "" : "_scale", (double)value, (double)(4 / spring * value));
-  PetscCheck(spring + damper < 4, comm, PETSC_ERR_USER_INPUT, "-contact_penalty_damping %g is too much for the explicit steps: above %.4g the contact dampers are unstable; choose a smaller one, or smaller time steps", (double)penalty->damping, (double)((4 - spring) / damper * penalty->damping));
+  PetscCheck(spring < 4, comm, PETSC_ERR_USER_INPUT,
+             "-contact_penalty%s %g is too stiff for the explicit steps: above %.4g the contact springs are unstable; choose a smaller "
+             "one, or smaller time steps",
+             given ? "" : "_scale", (double)value, (double)(4 / spring * value));
+  PetscCheck(spring + damper < 4, comm, PETSC_ERR_USER_INPUT,
+             "-contact_penalty_damping %g is too much for the explicit steps: above %.4g the contact dampers are unstable; choose a "
+             "smaller one, or smaller time steps",
+             (double)penalty->damping, (double)((4 - spring) / damper * penalty->damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,7 +149,8 @@ PetscErrorCode PenaltyViewParameter(Contact contact, PetscViewer viewer)
     PetscReal parameter, scale;
 
     PetscCall(GetPairPenalty(contact, &contact->pairs[p], &parameter, &scale));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g %s, %g times the stiffness of the elements\n", contact->pairs[p].name, (double)parameter, unit, (double)scale));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g %s, %g times the stiffness of the elements\n",
+                                     contact->pairs[p].name, (double)parameter, unit, (double)scale));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

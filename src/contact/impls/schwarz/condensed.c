@@ -13,10 +13,13 @@ PetscErrorCode SchwarzReadCondensation(Contact contact)
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEnum("-schwarz_condense", "Sweeps on the interface compliance", "", Condenses, (PetscEnum)schwarz->condense, (PetscEnum *)&schwarz->condense, NULL));
-  PetscCall(PetscOptionsInt("-schwarz_dense_limit", "Interface unknowns up to which its matrices are dense", "", schwarz->dense_limit, &schwarz->dense_limit, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_condense", "Sweeps on the interface compliance", "", Condenses, (PetscEnum)schwarz->condense,
+                             (PetscEnum *)&schwarz->condense, NULL));
+  PetscCall(PetscOptionsInt("-schwarz_dense_limit", "Interface unknowns up to which its matrices are dense", "", schwarz->dense_limit,
+                            &schwarz->dense_limit, NULL));
   PetscOptionsEnd();
-  PetscCheck(schwarz->dense_limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_dense_limit %" PetscInt_FMT " must not be negative", schwarz->dense_limit);
+  PetscCheck(schwarz->dense_limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_dense_limit %" PetscInt_FMT " must not be negative", schwarz->dense_limit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -48,7 +51,8 @@ static PetscErrorCode FindObstacle(Contact contact, const char *why[], PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the pairs whose Dirichlet side makes substeps that its partner does not share: their forces are the unknowns, see SchwarzSetUpSides() */
+/* Marks the pairs whose Dirichlet side makes substeps that its partner does not share: their forces are the unknowns, see
+   SchwarzSetUpSides() */
 static PetscErrorCode MarkUnshared(Contact contact, PetscBool *any)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
@@ -67,8 +71,8 @@ static PetscErrorCode MarkUnshared(Contact contact, PetscBool *any)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether Newton's method uses the bodies' compliance, and whether sweeps run on it. In one dimension the response to whole conditions, which
-   is there already, is as good, unless forces are unknowns: where a node has several partners, or substeps are not shared. */
+/* Whether Newton's method uses the bodies' compliance, and whether sweeps run on it. In one dimension the response to whole conditions,
+   which is there already, is as good, unless forces are unknowns: where a node has several partners, or substeps are not shared. */
 PetscErrorCode SchwarzChooseCondensation(Contact contact)
 {
   Schwarz    *schwarz = (Schwarz *)contact->data;
@@ -86,7 +90,8 @@ PetscErrorCode SchwarzChooseCondensation(Contact contact)
     PetscCall(BodyGetSubsteps(contact->bodies[b], &n));
     if (n > 1) substeps = PETSC_TRUE;
   }
-  PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_condense 1: %s; leave it at auto", why);
+  PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_condense 1: %s; leave it at auto", why);
   schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || shared || unshared || schwarz->condense == CONDENSE_ALWAYS));
   schwarz->exact         = (PetscBool)!why;
   schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
@@ -126,7 +131,8 @@ static PetscErrorCode MakeBase(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What changes are counted from in this controller step, and the part that each row plays now. Call with the active set known to the bodies. */
+/* What changes are counted from in this controller step, and the part that each row plays now. Call with the active set known to the
+   bodies. */
 PetscErrorCode SchwarzPrepareCondensed(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;

@@ -44,7 +44,8 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   PetscFunctionBegin;
   *lag = 0;
   PetscCall(BodyIsRedistributed(body, &massless));
-  if (massless || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN || schwarz->kinematic[SideIndex(schwarz, contact->row_pair[i])]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (massless || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN || schwarz->kinematic[SideIndex(schwarz, contact->row_pair[i])])
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetSizes(given, NULL, &given_levels));
   PetscCall(TraceGetSizes(has, NULL, &has_levels));
   PetscCall(TraceGetLevel(given, given_levels, &to));
@@ -83,8 +84,9 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
 {
   Schwarz       *schwarz  = (Schwarz *)contact->data;
-  const PetscInt measures = schwarz->convergence == CONVERGENCE_MISMATCH ? 1 : schwarz->convergence == CONVERGENCE_CONTACT_POSITION ? 2
-                                                                                                                                    : contact->n_bodies;
+  const PetscInt measures = schwarz->convergence == CONVERGENCE_MISMATCH           ? 1
+                            : schwarz->convergence == CONVERGENCE_CONTACT_POSITION ? 2
+                                                                                   : contact->n_bodies;
   PetscReal      worst    = -1;
 
   PetscFunctionBegin;
@@ -106,7 +108,8 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
 }
 
 /* Stops on the change of position that the last sweep brought, as the paper does; the norm of F serves for NaN only */
-PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                      SNESConvergedReason *reason, void *ctx)
 {
   const Schwarz *schwarz = (const Schwarz *)((Contact)ctx)->data;
 
@@ -134,7 +137,13 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTime(ts, &time));
-  PetscCheck(schwarz->unconverged == UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen -schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept", (double)time, contact->counts_made.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol, (double)schwarz->rtol);
+  PetscCheck(schwarz->unconverged == UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact),
+             PETSC_ERR_NOT_CONVERGED,
+             "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+             " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen "
+             "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
+             (double)time, contact->counts_made.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
+             (double)schwarz->rtol);
   contact->counts_made.unconverged_steps++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,7 +11,8 @@ PetscErrorCode SchwarzSetUpNewton(Contact contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc5(contact->n_bodies, &schwarz->responses, contact->n_bodies, &schwarz->body_in, contact->n_bodies, &schwarz->body_out, contact->n_bodies, &schwarz->body_exchange, 2 * contact->n_pairs, &schwarz->unit));
+  PetscCall(PetscCalloc5(contact->n_bodies, &schwarz->responses, contact->n_bodies, &schwarz->body_in, contact->n_bodies,
+                         &schwarz->body_out, contact->n_bodies, &schwarz->body_exchange, 2 * contact->n_pairs, &schwarz->unit));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt substeps;
 
@@ -21,7 +22,8 @@ PetscErrorCode SchwarzSetUpNewton(Contact contact)
     PetscCall(TraceCreate(contact->n_all_rows, substeps, &schwarz->body_exchange[b]));
   }
   for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)
-    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(TraceCreate(contact->n_all_rows, schwarz->side_levels[side][p], &schwarz->unit[2 * p + side]));
+    for (PetscInt p = 0; p < contact->n_pairs; p++)
+      PetscCall(TraceCreate(contact->n_all_rows, schwarz->side_levels[side][p], &schwarz->unit[2 * p + side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,7 +81,8 @@ static PetscErrorCode Respond(Contact contact, PetscInt b)
 
         PetscCall(TraceGetLevel(schwarz->body_out[b], k, &out));
         for (PetscInt i = 0; i < n; i++) out[i] += in[row] * matrix[row * n + i];
-        if (DirichletBody(&contact->pairs[p]) == b && schwarz->kinematic[SideIndex(schwarz, p)]) PetscCall(AddKinematics(contact, b, row, in[row], out));
+        if (DirichletBody(&contact->pairs[p]) == b && schwarz->kinematic[SideIndex(schwarz, p)])
+          PetscCall(AddKinematics(contact, b, row, in[row], out));
       }
     }
   }
@@ -126,13 +129,15 @@ static PetscErrorCode LinearSweep(Contact contact, PetscInt j, PetscInt level)
 
       if (!contact->all_active[row]) continue;
       if (DirichletBody(pair) == b) PetscCall(TraceResample(schwarz->unit[SideIndex(schwarz, p)], row, row + 1, 1, schwarz->body_in[b]));
-      if (NeumannBody(pair) == b) PetscCall(SchwarzResampleForce(schwarz, schwarz->body_exchange[DirichletBody(pair)], row, row + 1, 1, schwarz->body_in[b]));
+      if (NeumannBody(pair) == b)
+        PetscCall(SchwarzResampleForce(schwarz, schwarz->body_exchange[DirichletBody(pair)], row, row + 1, 1, schwarz->body_in[b]));
     }
     PetscCall(Respond(contact, b));
     for (PetscInt row = 0; row < n; row++) {
       const ContactPair *pair = &contact->pairs[contact->all_row_pair[row]];
 
-      if (contact->all_active[row] && (pair->body[0] == b || pair->body[1] == b)) PetscCall(Exchange(contact, b, row, DirichletBody(pair) == b ? -1 : 1));
+      if (contact->all_active[row] && (pair->body[0] == b || pair->body[1] == b))
+        PetscCall(Exchange(contact, b, row, DirichletBody(pair) == b ? -1 : 1));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -158,7 +163,8 @@ static PetscErrorCode SetColumn(Contact contact, PetscInt j, PetscInt level, Mat
       const PetscBool both = (PetscBool)(k <= levels && level <= used && contact->all_active[i] && contact->all_active[j]);
 
       PetscCall(TraceGetLevel(from, levels == 1 || k > from_levels ? from_levels : k, &out));
-      PetscCall(MatSetValue(J, schwarz->all_offset[i] + k - 1, column, (i == j && k == level ? 1 : 0) - (both ? out[at] : 0), INSERT_VALUES));
+      PetscCall(
+          MatSetValue(J, schwarz->all_offset[i] + k - 1, column, (i == j && k == level ? 1 : 0) - (both ? out[at] : 0), INSERT_VALUES));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -15,22 +15,33 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "", Transmissions, (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "", Transmissions,
+                             (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
   /* only where it has an effect, so that it is an unused option elsewhere */
   if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) {
-    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "BodySetTractionType", BodyTractionTypes, (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
-    PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course", "", Waveforms, (PetscEnum)schwarz->waveform, (PetscEnum *)&schwarz->waveform, NULL));
+    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "BodySetTractionType", BodyTractionTypes,
+                               (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
+    PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course", "", Waveforms,
+                               (PetscEnum)schwarz->waveform, (PetscEnum *)&schwarz->waveform, NULL));
   }
-  if (schwarz->transmission == TRANSMISSION_ROBIN) PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]", "", schwarz->robin_parameter, &schwarz->robin_parameter, &set));
-  PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "", Predictors, (PetscEnum)schwarz->predictor, (PetscEnum *)&schwarz->predictor, NULL));
+  if (schwarz->transmission == TRANSMISSION_ROBIN)
+    PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]", "",
+                               schwarz->robin_parameter, &schwarz->robin_parameter, &set));
+  PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "", Predictors, (PetscEnum)schwarz->predictor,
+                             (PetscEnum *)&schwarz->predictor, NULL));
   PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "", schwarz->swap, &schwarz->swap, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "", Relaxations, (PetscEnum)schwarz->relaxation, (PetscEnum *)&schwarz->relaxation, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "", ConvergenceTests, (PetscEnum)schwarz->convergence, (PetscEnum *)&schwarz->convergence, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "", Unconvergeds, (PetscEnum)schwarz->unconverged, (PetscEnum *)&schwarz->unconverged, NULL));
-  PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "", schwarz->recheck, &schwarz->recheck, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "", Relaxations, (PetscEnum)schwarz->relaxation,
+                             (PetscEnum *)&schwarz->relaxation, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "", ConvergenceTests,
+                             (PetscEnum)schwarz->convergence, (PetscEnum *)&schwarz->convergence, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "", Unconvergeds,
+                             (PetscEnum)schwarz->unconverged, (PetscEnum *)&schwarz->unconverged, NULL));
+  PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "", schwarz->recheck, &schwarz->recheck,
+                             NULL));
   PetscOptionsEnd();
   PetscCall(SchwarzReadCondensation(contact));
-  PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
+  PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -41,7 +52,8 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscInt begin, *mine;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->exchange, contact->n_rows, &schwarz->offset, contact->n_all_rows, &schwarz->all_offset, contact->n_rows, &schwarz->jacobian_active));
+  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->exchange, contact->n_rows, &schwarz->offset, contact->n_all_rows,
+                         &schwarz->all_offset, contact->n_rows, &schwarz->jacobian_active));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal dt;
     PetscInt  substeps;
@@ -62,9 +74,11 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   begin -= *unknowns;
   PetscCall(PetscMalloc1(contact->n_rows, &mine));
   for (PetscInt i = 0; i < contact->n_rows; i++) mine[i] = begin + schwarz->offset[i];
-  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
+  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets,
+                              MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->rounds.tried, contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
+  PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->rounds.tried, contact->n_rows, &schwarz->kept_force,
+                         2 * contact->n_rows, &schwarz->previous));
   PetscCall(PetscCalloc2(contact->n_rows, &schwarz->known, contact->n_rows, &schwarz->rounds.kept));
   PetscCall(PetscCalloc1(contact->n_rows, &schwarz->interpolated));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,7 +103,8 @@ static PetscErrorCode PrepareContact(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's method by the bodies' compliance, or by probing them under each set of conditions; the latter is only for interfaces of a few rows */
+/* Newton's method by the bodies' compliance, or by probing them under each set of conditions; the latter is only for interfaces of a few
+   rows */
 static PetscErrorCode SetUpNewton(Contact contact)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
@@ -115,7 +130,9 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscBool richardson, damping_set;
 
   PetscFunctionBegin;
-  PetscCheck(contact->constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
+  PetscCheck(contact->constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take "
+             "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
   PetscCall(SchwarzChooseCondensation(contact));
   PetscCall(SchwarzSetUpSides(contact));
@@ -132,14 +149,17 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   if (schwarz->relaxation == RELAXATION_AITKEN) {
     SNESLineSearch line_search;
 
-    PetscCheck(richardson, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
+    PetscCheck(richardson, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
     PetscCall(PetscOptionsHasName(NULL, "schwarz_", "-snes_linesearch_damping", &damping_set));
     PetscCall(SchwarzSetUpAitken(contact));
     PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
   /* on the compliance alone bodies stay where they are from sweep to sweep, whatever the rows do */
-  if (schwarz->convergence == CONVERGENCE_AUTO) schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED && !schwarz->condensed ? CONVERGENCE_POSITION : CONVERGENCE_MISMATCH;
+  if (schwarz->convergence == CONVERGENCE_AUTO)
+    schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED && !schwarz->condensed ? CONVERGENCE_POSITION
+                                                                                                        : CONVERGENCE_MISMATCH;
   PetscCall(SetUpNewton(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -163,7 +183,11 @@ static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(SNESGetType(schwarz->outer.snes, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g m and %g relative\n", type, schwarz->relaxation == RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[schwarz->transmission], schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole", Predictors[schwarz->predictor], (double)schwarz->atol, (double)schwarz->rtol));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g m and %g relative\n",
+                                   type, schwarz->relaxation == RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[schwarz->transmission],
+                                   schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole",
+                                   Predictors[schwarz->predictor], (double)schwarz->atol, (double)schwarz->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -205,24 +229,23 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
                                                                   Neumann side's contact elements
 .  -schwarz_predictor (last|trial|extrapolate|inelastic)        - where the first sweep starts from, inelastic
 .  -schwarz_traction_waveform (linear|constant)                 - traction of a partner with longer substeps in the course of them
-.  -contact_constraint (gap|gap_rate)                           - close the gap in the first step in contact, or keep it as it is at its start
-.  -contact_swap_sides (true|false)                             - whether the sides change with every controller step
-.  -schwarz_convergence (auto|position|contact_position|mismatch) - change of all positions from sweep to sweep (the paper's), of those
-                                                                  of the contact nodes, or the change of the contact nodes that a plain
-                                                                  sweep would bring
-.  -schwarz_condense (0|1|auto)                                 - whether sweeps run on the interface compliance of the bodies
-.  -schwarz_dense_limit n                                       - interface unknowns up to which its matrices are dense, 2000
-.  -schwarz_recheck (true|false)                                - whether tensile nodes leave contact within the step
+.  -contact_constraint (gap|gap_rate)                           - close the gap in the first step in contact, or keep it as it is at its
+start .  -contact_swap_sides (true|false)                             - whether the sides change with every controller step .
+-schwarz_convergence (auto|position|contact_position|mismatch) - change of all positions from sweep to sweep (the paper's), of those of the
+contact nodes, or the change of the contact nodes that a plain sweep would bring .  -schwarz_condense (0|1|auto) - whether sweeps run on the
+interface compliance of the bodies .  -schwarz_dense_limit n                                       - interface unknowns up to which its
+matrices are dense, 2000 .  -schwarz_recheck (true|false)                                - whether tensile nodes leave contact within the
+step
 -  -schwarz_unconverged (error|accept)                          - what to do with a step that does not converge
 
    Level: beginner
 
    Note:
-   A node may belong to several pairs: in a corner, or over the joint of two bodies side by side. The gap to each partner is closed by a force of
-   its own, as under Lagrange multipliers, momentum and energy being kept; of the rows of a node that depend on each other the first are
-   prescribed, and the others have their force for an unknown. Where partners do not answer to forces, as obstacles and explicit bodies with mass
-   on their contact nodes, the nearest ones count. Where the Dirichlet side has mass on its contact nodes, partners side by side share
-   displacement and force by the areas that they cover, and the mean of their gaps is closed.
+   A node may belong to several pairs: in a corner, or over the joint of two bodies side by side. The gap to each partner is closed by a
+force of its own, as under Lagrange multipliers, momentum and energy being kept; of the rows of a node that depend on each other the first
+are prescribed, and the others have their force for an unknown. Where partners do not answer to forces, as obstacles and explicit bodies
+with mass on their contact nodes, the nearest ones count. Where the Dirichlet side has mass on its contact nodes, partners side by side
+share displacement and force by the areas that they cover, and the mean of their gaps is closed.
 
    Reference:
 .  * - J. Hoy, I. Tezaur, A. Mota, The Schwarz alternating method for multiscale contact mechanics, 2021

@@ -12,15 +12,9 @@ typedef enum {
   CONVERGENCE_MISMATCH          /* of the contact nodes, that one more plain sweep would bring: |x - G(x)| */
 } ConvergenceTest;
 
-typedef enum {
-  RELAXATION_FIXED,
-  RELAXATION_AITKEN
-} Relaxation;
+typedef enum { RELAXATION_FIXED, RELAXATION_AITKEN } Relaxation;
 
-typedef enum {
-  UNCONVERGED_ERROR,
-  UNCONVERGED_ACCEPT
-} Unconverged;
+typedef enum { UNCONVERGED_ERROR, UNCONVERGED_ACCEPT } Unconverged;
 
 /* What is prescribed on both sides of the contact boundary */
 typedef enum {
@@ -38,10 +32,7 @@ typedef enum {
 } Predictor;
 
 /* How the traction of a partner with longer substeps varies in the course of them */
-typedef enum {
-  WAVEFORM_LINEAR,
-  WAVEFORM_CONSTANT
-} TractionWaveform;
+typedef enum { WAVEFORM_LINEAR, WAVEFORM_CONSTANT } TractionWaveform;
 
 /* Whether the sweeps of a controller step run on the interface compliance of the bodies */
 typedef enum {
@@ -110,27 +101,27 @@ typedef struct {
   PetscBool           exact;        /* the compliance is */
   PetscBool           uses_secants; /* it is not, or not all of it is used where conjugate gradients are */
   Secants             secants;
-  PetscBool           recheck;            /* tensile reactions leave the active set within the step */
-  PetscBool           swap;               /* sides change with every controller step */
-  PetscInt            side;               /* 0, or 1 while they are swapped */
-  PetscBool           started;            /* a step has been made */
-  PetscInt           *levels;             /* per pair: times in the controller step at which its trace is an unknown */
-  PetscInt           *side_levels[2];     /* the same for each choice of sides */
-  PetscInt           *offset;             /* per row: its first unknown on this rank */
-  PetscInt           *room;               /* per pair: unknowns that each of its rows has room for */
-  Trace              *trace;              /* per pair and side: what its unknowns put on the Dirichlet side */
-  Trace              *exchange;           /* per body: what it hands to its partners */
-  Trace               rate[2];            /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
-  PetscBool          *kinematic;          /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
-  PetscReal          *weight;             /* per row: Robin stiffness [N/m] */
-  PetscReal          *mass[2];            /* per row: of the contact element of its body and of the partner's [kg] */
-  PetscScalar        *interpolated;       /* work space: per row */
-  PetscScalar        *previous;           /* displacements of the rows of both bodies of each pair in the last sweep */
-  PetscBool           swept;              /* they are of this step */
-  PetscBool           stale;              /* the Jacobian belongs to another active set */
-  PetscBool          *jacobian_active;    /* per row: the set that it belongs to */
-  PetscInt           *all_offset;         /* per row, all ranks: its first unknown */
-  const PetscScalar **responses;          /* per body: its waveform response */
+  PetscBool           recheck;         /* tensile reactions leave the active set within the step */
+  PetscBool           swap;            /* sides change with every controller step */
+  PetscInt            side;            /* 0, or 1 while they are swapped */
+  PetscBool           started;         /* a step has been made */
+  PetscInt           *levels;          /* per pair: times in the controller step at which its trace is an unknown */
+  PetscInt           *side_levels[2];  /* the same for each choice of sides */
+  PetscInt           *offset;          /* per row: its first unknown on this rank */
+  PetscInt           *room;            /* per pair: unknowns that each of its rows has room for */
+  Trace              *trace;           /* per pair and side: what its unknowns put on the Dirichlet side */
+  Trace              *exchange;        /* per body: what it hands to its partners */
+  Trace               rate[2];         /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
+  PetscBool          *kinematic;       /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
+  PetscReal          *weight;          /* per row: Robin stiffness [N/m] */
+  PetscReal          *mass[2];         /* per row: of the contact element of its body and of the partner's [kg] */
+  PetscScalar        *interpolated;    /* work space: per row */
+  PetscScalar        *previous;        /* displacements of the rows of both bodies of each pair in the last sweep */
+  PetscBool           swept;           /* they are of this step */
+  PetscBool           stale;           /* the Jacobian belongs to another active set */
+  PetscBool          *jacobian_active; /* per row: the set that it belongs to */
+  PetscInt           *all_offset;      /* per row, all ranks: its first unknown */
+  const PetscScalar **responses;       /* per body: its waveform response */
   Trace              *body_in, *body_out; /* per body: waveforms of all rows, on every rank */
   Trace              *body_exchange;
   Trace              *unit;             /* per pair and side: a unit at one of its unknowns */

@@ -1,11 +1,12 @@
 /*
-   What sweeps have shown of the Jacobian of F, on top of the bodies' compliance, for bodies that are not linear. Pairs of changes dx and df = J dx
-   of successive sweeps, of this controller step and of those before as long as the active set stays, correct the inverse of the Jacobian,
+   What sweeps have shown of the Jacobian of F, on top of the bodies' compliance, for bodies that are not linear. Pairs of changes dx and df
+   = J dx of successive sweeps, of this controller step and of those before as long as the active set stays, correct the inverse of the
+   Jacobian,
 
      J^{-1} F ~ J_0^{-1} (F - Y c) + X c,   c = argmin |F - Y c|,   X = (dx_1, dx_2, ...), Y = (df_1, df_2, ...),
 
-   which is the interface quasi-Newton method with reuse (Degroote, Bathe, Vierendeels 2009), with the compliance in place of the identity. The
-   newest pairs come first; those that add little to them are left out.
+   which is the interface quasi-Newton method with reuse (Degroote, Bathe, Vierendeels 2009), with the compliance in place of the identity.
+   The newest pairs come first; those that add little to them are left out.
 */
 #include "schwarzimpl.h"
 
@@ -106,7 +107,8 @@ static PetscErrorCode Fit(Secants *secants, Vec F, PetscInt *used, PetscInt whic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes what the pairs say of F out of it: the rest is for the compliance. `n` pairs `which` with factors `c` are to be added to its answer. */
+/* Takes what the pairs say of F out of it: the rest is for the compliance. `n` pairs `which` with factors `c` are to be added to its
+   answer. */
 PetscErrorCode SchwarzApplySecants(Contact contact, Vec F, Vec *rest, PetscInt *n, PetscInt which[], PetscScalar c[])
 {
   Schwarz *schwarz = (Schwarz *)contact->data;

@@ -12,10 +12,10 @@ static PetscInt CommonDivisor(PetscInt a, PetscInt b)
   return a;
 }
 
-/* Times in the controller step at which the trace of a pair is an unknown: one for each substep of the Neumann side, but the Dirichlet side sees
-   nothing of the interior ones if it makes one substep. Where a Dirichlet side holds its reaction at times that the Neumann side does not have, the
-   force that this takes would bring another impulse. There the force itself is the unknown, at the times that both have, and linear between them
-   for both; the gap is closed at these times. */
+/* Times in the controller step at which the trace of a pair is an unknown: one for each substep of the Neumann side, but the Dirichlet side
+   sees nothing of the interior ones if it makes one substep. Where a Dirichlet side holds its reaction at times that the Neumann side does
+   not have, the force that this takes would bring another impulse. There the force itself is the unknown, at the times that both have, and
+   linear between them for both; the gap is closed at these times. */
 static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichlet, PetscInt *levels)
 {
   const ContactPair *pair = &contact->pairs[p];
@@ -53,7 +53,10 @@ static PetscErrorCode CheckSwappable(Contact contact, Vec row, Vec displacement)
     }
     PetscCall(VecAXPY(displacement, -1, row));
     PetscCall(VecNorm(displacement, NORM_INFINITY, &off));
-    PetscCheck(off < 1e-9, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_swap_sides: in pair %s the nodes of the two bodies do not lie opposite each other, and only one side can take displacements; leave the option out", pair->name);
+    PetscCheck(off < 1e-9, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_swap_sides: in pair %s the nodes of the two bodies do not lie opposite each other, and only one side can take "
+               "displacements; leave the option out",
+               pair->name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -69,12 +72,16 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
   PetscInt           substeps;
 
   PetscFunctionBegin;
-  if (pair->obstacle || schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->obstacle || schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN)
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIsRedistributed(dirichlet, &massless));
   if (massless) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIsExplicit(neumann, &is_explicit));
   PetscCall(BodyGetSubsteps(neumann, &substeps));
-  PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true", ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
+  PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the "
+             "controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true",
+             ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
   schwarz->kinematic[2 * p + side] = PETSC_TRUE;
   for (PetscInt k = 0; k < 2; k++)
     if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->n_rows, 1, &schwarz->rate[k]));
@@ -87,8 +94,14 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCheck(!contact->pairs[p].obstacle || (!schwarz->swap && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs %s: an obstacle has no other side, neither for -contact_swap_sides nor for -schwarz_transmission robin or impedance", contact->pairs[p].name);
-  PetscCall(PetscCalloc5(contact->n_pairs, &schwarz->side_levels[0], contact->n_pairs, &schwarz->side_levels[1], 2 * contact->n_pairs, &schwarz->trace, contact->n_pairs, &schwarz->room, 2 * contact->n_pairs, &schwarz->kinematic));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    PetscCheck(!contact->pairs[p].obstacle || (!schwarz->swap && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN),
+               PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_pairs %s: an obstacle has no other side, neither for -contact_swap_sides nor for -schwarz_transmission robin or "
+               "impedance",
+               contact->pairs[p].name);
+  PetscCall(PetscCalloc5(contact->n_pairs, &schwarz->side_levels[0], contact->n_pairs, &schwarz->side_levels[1], 2 * contact->n_pairs,
+                         &schwarz->trace, contact->n_pairs, &schwarz->room, 2 * contact->n_pairs, &schwarz->kinematic));
   for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)
     for (PetscInt p = 0; p < contact->n_pairs; p++) {
       PetscInt *levels = &schwarz->side_levels[side][p];

@@ -102,8 +102,8 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the sweeps on the compliance have ended with, put on the whole bodies: then all rows have gaps, and one that the compliance did not know
-   may penetrate */
+/* What the sweeps on the compliance have ended with, put on the whole bodies: then all rows have gaps, and one that the compliance did not
+   know may penetrate */
 static PetscErrorCode Finish(Contact contact, PetscBool *changed)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
@@ -132,7 +132,8 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || (contact->saved_active[i] && contact->saved_force[i] > 0));
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    contact->active[i] = (PetscBool)(contact->tied[i] || (contact->saved_active[i] && contact->saved_force[i] > 0));
   ContactArrangeShared(contact);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));

@@ -119,8 +119,9 @@ static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces over the substeps of a body that makes others than its partner. Held at F' where the partner takes the trapezium of F and F', they bring
-   more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that part of the present force, they give it back as it falls. */
+/* Forces over the substeps of a body that makes others than its partner. Held at F' where the partner takes the trapezium of F and F', they
+   bring more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that part of the present force, they give it back as
+   it falls. */
 PetscErrorCode SchwarzResampleForce(const Schwarz *schwarz, Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
 {
   PetscFunctionBegin;
@@ -164,7 +165,8 @@ static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
     PetscCall(TraceGetLevel(from->force_in, level, &r));
     PetscCall(TraceGetLevel(from->reaction, level, &f));
     PetscCall(TraceGetLevel(to, level, &values));
-    for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = r[i] - 2 * f[i] - NeumannSign(pair) * schwarz->weight[i] * SchwarzOffset(contact, i, (PetscReal)level / levels);
+    for (PetscInt i = pair->begin; i < pair->end; i++)
+      values[i] = r[i] - 2 * f[i] - NeumannSign(pair) * schwarz->weight[i] * SchwarzOffset(contact, i, (PetscReal)level / levels);
   }
   PetscCall(TraceResample(to, pair->begin, pair->end, 1, contact->traces[NeumannBody(pair)].force_in));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -185,7 +187,9 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
         if (contact->shared.n || pair->by_force) PetscCall(LoadByForce(contact, p, x));
       }
       /* the reaction holds the Dirichlet side; the Neumann side gets its opposite */
-      if (NeumannBody(pair) == b) PetscCall(SchwarzResampleForce(schwarz, contact->traces[DirichletBody(pair)].reaction, pair->begin, pair->end, -1, contact->traces[b].force_in));
+      if (NeumannBody(pair) == b)
+        PetscCall(SchwarzResampleForce(schwarz, contact->traces[DirichletBody(pair)].reaction, pair->begin, pair->end, -1,
+                                       contact->traces[b].force_in));
     } else {
       if (DirichletBody(pair) == b) PetscCall(LoadDirichlet(contact, p, x));
       if (NeumannBody(pair) == b) PetscCall(LoadNeumann(contact, p));
@@ -195,9 +199,10 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the Dirichlet side of a row has got at a part of the controller step, as far as it answers to its unknown there. One that makes fewer
-   substeps than there are unknowns feels the force at the end alone, and the others are on the way there. */
-static PetscErrorCode GetAnswer(Contact contact, PetscInt i, PetscReal part, const PetscScalar x[], PetscBool *answers, PetscScalar *position)
+/* Where the Dirichlet side of a row has got at a part of the controller step, as far as it answers to its unknown there. One that makes
+   fewer substeps than there are unknowns feels the force at the end alone, and the others are on the way there. */
+static PetscErrorCode GetAnswer(Contact contact, PetscInt i, PetscReal part, const PetscScalar x[], PetscBool *answers,
+                                PetscScalar *position)
 {
   const Schwarz     *schwarz = (const Schwarz *)contact->data;
   const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];

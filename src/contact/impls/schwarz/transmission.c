@@ -71,7 +71,11 @@ static PetscErrorCode CheckBodies(Contact contact)
 
     PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
     PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    PetscCheck(!is_explicit || massless, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-schwarz_transmission robin and impedance put springs on the contact nodes, and those of the explicit body '%s' have mass, so that they do not feel them in the step in which they act; give it -%s_mass_redistribute true, or choose -schwarz_transmission dirichlet_neumann", name, name);
+    PetscCheck(!is_explicit || massless, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-schwarz_transmission robin and impedance put springs on the contact nodes, and those of the explicit body '%s' have mass, "
+               "so that they do not feel them in the step in which they act; give it -%s_mass_redistribute true, or choose "
+               "-schwarz_transmission dirichlet_neumann",
+               name, name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,7 +87,8 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc3(contact->n_rows, &schwarz->weight, contact->n_rows, &schwarz->mass[0], contact->n_rows, &schwarz->mass[1]));
-  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->predictor != PREDICTOR_INELASTIC) PetscFunctionReturn(PETSC_SUCCESS);
+  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->predictor != PREDICTOR_INELASTIC)
+    PetscFunctionReturn(PETSC_SUCCESS);
   if (schwarz->by_compliance) {
     PetscCall(WeighByImpedance(contact));
     PetscFunctionReturn(PETSC_SUCCESS);
