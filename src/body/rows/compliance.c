@@ -87,8 +87,7 @@ static PetscErrorCode Grow(Body body, PetscInt n)
 
   Notes:
   Each new row costs one solution with factored matrices: of the whole body, if it is implicit, of its massless layer, if it is explicit;
-  for each
-  substep, and of explicit bodies with substeps these themselves.
+  for each substep, and of explicit bodies with substeps these themselves.
 
 .seealso: `Body`, `BodyGetCompliance()`, `BodyRespond()`
 @*/

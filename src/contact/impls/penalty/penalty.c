@@ -6,7 +6,7 @@
    with a spring tau, a damper c, or both; the multiplier is zero but for the augmented Lagrangian. During the step the force goes
    linearly from its last value to this one. The outer SNES solves F(lambda) = lambda - <...> = 0 with both bodies under forces; its
    Jacobian is I + (tau + c / dt) A S on the rows that push, with the interface compliance S of all bodies (forceproblem.c). Tied rows
-   are held    by springs that pull as well.
+   are held by springs that pull as well.
 
    With explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: the second
    evaluation, which finds this out, only adds the change of force to the end state.
