@@ -1,16 +1,17 @@
 /*
-   A x = b subject to B_m x = 0 for the constrained rows m, with the factors of the unconstrained A: the constraint forces s
+   A x = b subject to B_m x = t for the constrained rows m, with the factors of the unconstrained A: the constraint forces s
    follow from the compliance W = B A^{-1} B^T,
 
-     z = A^{-1} b,   W_mm s = B_m z,   x = z - A^{-1} B_m^T s.
+     z = A^{-1} b,   W_mm s = B_m z - t,   x = z - A^{-1} B_m^T s.
 
-   A row on a spring, rather than held, gives (A + B_m^T k B_m) x = b: the same with the flexibility 1 / k added to its entry on the
-   diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C = A^{-1} B^T are
-   made once each, when their row is constrained for the first time; with more constrained rows than would fit, the constraint forces are
-   found by conjugate gradients, which need W only as a product.
+   A row on a spring, rather than prescribed, gives (A + B_m^T k B_m) x = b: the same with t = 0 and the flexibility 1 / k added to its
+   entry on the diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C =
+   A^{-1} B^T are made once each, when their row is constrained for the first time; W is kept in a Compliance, which may be one that others
+   read too. With more constrained rows than would fit, and until iterations have cost as much as columns and factors would, the constraint
+   forces are found by conjugate gradients, which need W only as a product.
 */
 #include "constrainedsolver.h"
-#include <petscblaslapack.h>
+#include "densefactor.h"
 #include <sys/petsccompat.h>
 
 struct _n_ConstrainedSolver {
@@ -19,22 +20,29 @@ struct _n_ConstrainedSolver {
   Mat         B;
   PetscInt    local, global, begin; /* rows of B */
   PetscMPIInt size, *counts, *offsets;
+  Compliance  compliance; /* W at its first level */
+  PetscBool   shares;     /* that is another's, who destroys it */
   PetscReal  *mine,
-      *constrained;         /* flexibility of a row, 0 where it is held, less than 0 where it is free: this rank's rows, and all rows */
-  PetscInt      n, n_most;  /* how many of them; for how many there is room */
-  PetscInt     *rows;       /* which */
-  PetscBool    *stale;      /* per row: its column was made with an earlier A or B */
-  Vec          *columns;    /* per row: A^{-1} B^T e, or NULL until needed */
-  PetscScalar **compliance; /* per row: B times its column, this rank's rows */
-  PetscScalar  *factor;     /* n x n, LU of the constrained part */
-  PetscBLASInt *pivots;
-  PetscScalar  *gathered, *force;
-  Vec          *active_columns; /* those of the constrained rows */
-  Vec           row, rhs;
-  PetscBool     dense; /* the factor is there */
-  PetscInt      dense_limit;
-  KSP           iterative; /* for the constraint forces, where they are many */
-  Vec           force_vec, gap_vec, product;
+      *constrained;   /* flexibility of a row, 0 where it is prescribed, less than 0 where it is free: this rank's rows, all rows */
+  PetscInt   n;       /* how many rows are constrained */
+  PetscInt  *rows;    /* which */
+  Vec       *columns; /* per row: A^{-1} B^T e, or NULL until needed */
+  PetscBool *fresh;   /* per row: its column is there, and that of W, both with A and B as they are */
+  /* a dense matrix for the constraint forces */
+  PetscBool    dense; /* its factors are there */
+  PetscInt     dense_limit;
+  DenseFactor  factor;
+  PetscInt     room;             /* of the following */
+  PetscScalar *gathered, *force; /* of constrained rows, on every rank */
+  Vec         *used;             /* columns */
+  Vec          row, rhs;
+  /* conjugate gradients */
+  KSP            iterative;
+  Vec            force_vec, gap_vec, product;
+  PetscLogDouble solve_flops, spent; /* of one solution with A; of all iterations so far */
+  /* corrections by stored columns, on interfaces of few rows: their changes, all rows on every rank */
+  PetscScalar *changes, *coefficients;
+  PetscScalar *column; /* work space: of this rank's rows */
 };
 
 /* Bodies up to this size are factored whole on every rank; larger ones by MUMPS */
@@ -46,9 +54,19 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
 #define MAX_DIRECT_SIZE_3D 150000
 /* of multigrid: what is left of the residual must not show in energies and momenta */
 #define ITERATIVE_TOLERANCE 1e-12
-/* Constraint forces up to this number by a dense matrix; and of columns up to so many numbers in all, 800 MB */
+/* Constraint forces up to this number by a dense matrix, whose factors take 64 MB then; and of columns up to so many numbers in all, 800 MB
+ */
 #define MAX_DENSE_CONSTRAINTS 2000
 #define MAX_COLUMN_NUMBERS    1e8
+/* Up to so many constraints the dense matrix is made at once: factoring it costs less than a few solutions of a body with such a surface */
+#define FEW_CONSTRAINTS 256
+/* Interfaces of so few rows in all keep the column of each row that is asked for: a correction adds them up in place of a solution */
+#define FEW_ROWS 16
+/* Operations of one solution, in parts of the entries of the factors: a multiplication and an addition each, in both triangles */
+#define FLOPS_OF_ENTRY 4
+/* The same where PETSc does not tell how many entries there are, as with multigrid: in parts of the unknowns, of the order of what 20
+   iterations of conjugate gradients with a matrix of 81 entries in a row take */
+#define FLOPS_OF_UNKNOWN 4000
 /* of the constraint forces by conjugate gradients: contact gaps are closed to about 1e-12 of the displacements */
 #define FORCE_TOLERANCE 1e-13
 
@@ -91,12 +109,35 @@ static PetscErrorCode ChooseSolver(KSP ksp, Mat A, PetscInt dim)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A is the matrix of a body in `dim` dimensions */
-PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], ConstrainedSolver *solver)
+/* What one solution costs, to compare iterations with columns; counted, so that a run repeats */
+static PetscErrorCode CountFlops(ConstrainedSolver s, Mat A)
+{
+  MatInfo  info;
+  PetscInt n;
+  Mat      factors = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetSize(A, &n, NULL));
+  s->solve_flops = (PetscLogDouble)FLOPS_OF_UNKNOWN * n;
+  if (s->direct) {
+    PetscBool lu, cholesky;
+
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCLU, &lu));
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCCHOLESKY, &cholesky));
+    if (lu || cholesky) PetscCall(PCFactorGetMatrix(s->direct, &factors));
+  }
+  if (!factors) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetInfo(factors, MAT_GLOBAL_SUM, &info));
+  if (info.nz_used > 0) s->solve_flops = FLOPS_OF_ENTRY * info.nz_used;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A is the matrix of a body in `dim` dimensions; `compliance`: where W is kept, or NULL for one of the solver's own */
+PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
 {
   ConstrainedSolver s;
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
-  PetscMPIInt       size;
+  PetscMPIInt       local, total = 0;
   PetscBool         direct;
 
   PetscFunctionBegin;
@@ -104,8 +145,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(KSPCreate(comm, &s->ksp));
   PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
   PetscCall(KSPSetOperators(s->ksp, A, A));
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  s->size        = size;
+  PetscCallMPI(MPI_Comm_size(comm, &s->size));
   s->dense_limit = MAX_DENSE_CONSTRAINTS;
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
   PetscCall(ChooseSolver(s->ksp, A, dim));
@@ -113,25 +153,29 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(KSPSetUp(s->ksp));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));
   if (direct) PetscCall(KSPGetPC(s->ksp, &s->direct));
+  PetscCall(CountFlops(s, A));
 
   PetscCall(PetscObjectReference((PetscObject)B));
   s->B = B;
   PetscCall(MatCreateVecs(B, NULL, &s->row));
   PetscCall(MatCreateVecs(A, NULL, &s->rhs));
+  PetscCall(VecDuplicate(s->rhs, &s->product));
   PetscCall(MatGetLocalSize(B, &s->local, NULL));
   PetscCall(MatGetSize(B, &s->global, NULL));
   PetscCall(MatGetOwnershipRange(B, &s->begin, NULL));
-  PetscCall(PetscMalloc2(size, &s->counts, size, &s->offsets));
-  {
-    PetscMPIInt local, total = 0;
-
-    PetscCall(PetscMPIIntCast(s->local, &local));
-    PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
-    for (PetscMPIInt r = 0; r < size; total += s->counts[r++]) s->offsets[r] = total;
-  }
-  PetscCall(PetscCalloc6(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->stale,
-                         s->global, &s->compliance));
+  PetscCall(PetscMalloc2(s->size, &s->counts, s->size, &s->offsets));
+  PetscCall(PetscMPIIntCast(s->local, &local));
+  PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < s->size; total += s->counts[r++]) s->offsets[r] = total;
+  PetscCall(
+      PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
+  PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));
+  s->room = PetscMin(s->global, FEW_ROWS);
+  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
+  s->shares     = (PetscBool)(compliance != NULL);
+  s->compliance = compliance;
+  if (!compliance) PetscCall(ComplianceCreate(comm, s->local, s->begin, s->global, 1, &s->compliance));
   *solver = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -142,13 +186,13 @@ PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *solver)
 
   PetscFunctionBegin;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt j = 0; j < s->global; j++) {
-    PetscCall(VecDestroy(&s->columns[j]));
-    PetscCall(PetscFree(s->compliance[j]));
-  }
-  PetscCall(PetscFree6(s->mine, s->constrained, s->rows, s->columns, s->stale, s->compliance));
-  PetscCall(PetscFree5(s->factor, s->pivots, s->gathered, s->force, s->active_columns));
+  if (!s->shares) PetscCall(ComplianceDestroy(&s->compliance));
+  for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
+  PetscCall(PetscFree5(s->mine, s->constrained, s->rows, s->columns, s->fresh));
+  PetscCall(PetscFree3(s->changes, s->coefficients, s->column));
+  PetscCall(PetscFree3(s->gathered, s->force, s->used));
   PetscCall(PetscFree2(s->counts, s->offsets));
+  PetscCall(DenseFactorDestroy(&s->factor));
   PetscCall(KSPDestroy(&s->iterative));
   PetscCall(VecDestroy(&s->force_vec));
   PetscCall(VecDestroy(&s->gap_vec));
@@ -168,6 +212,12 @@ PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver solver, KSP *ksp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Operations of one solution */
+PetscLogDouble ConstrainedSolverGetFlops(ConstrainedSolver s)
+{
+  return s->solve_flops;
+}
+
 /* How many constraint forces are found by a dense matrix; more come from conjugate gradients */
 PetscErrorCode ConstrainedSolverSetDenseLimit(ConstrainedSolver s, PetscInt limit)
 {
@@ -185,32 +235,17 @@ PetscErrorCode ConstrainedSolverSolveFree(ConstrainedSolver s, Vec b, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows have new entries, as many as before: some of them, or (NULL) all */
-PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscBool changed[])
+/* The rows have new entries, as many as before; `changed`: for each row of all ranks, whether it is one of them. A compliance of the
+   solver's own forgets these; of a shared one its owner does. */
+PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscMPIInt changed[])
 {
-  PetscMPIInt *all, *mine;
-
   PetscFunctionBegin;
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&s->B));
   s->B = B;
-  PetscCall(PetscMalloc2(s->global, &all, s->local, &mine));
-  for (PetscInt i = 0; i < s->local; i++) mine[i] = !changed || changed[i];
-  PetscCallMPI(
-      MPI_Allgatherv(mine, (PetscMPIInt)s->local, MPI_INT, all, s->counts, s->offsets, MPI_INT, PetscObjectComm((PetscObject)s->ksp)));
-  for (PetscInt j = 0; j < s->global; j++) {
-    if (all[j]) s->stale[j] = PETSC_TRUE;
-    else if (s->columns[j] && !s->stale[j]) {
-      /* what this column does to the rows that have changed */
-      const PetscScalar *row;
-
-      PetscCall(MatMult(s->B, s->columns[j], s->row));
-      PetscCall(VecGetArrayRead(s->row, &row));
-      PetscCall(PetscArraycpy(s->compliance[j], row, s->local));
-      PetscCall(VecRestoreArrayRead(s->row, &row));
-    }
-  }
-  PetscCall(PetscFree2(all, mine));
+  for (PetscInt j = 0; j < s->global; j++)
+    if (changed[j]) s->fresh[j] = PETSC_FALSE;
+  if (!s->shares) PetscCall(ComplianceForget(s->compliance, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -237,7 +272,6 @@ PetscErrorCode ConstrainedSolverApplyUnit(ConstrainedSolver s, PetscInt j, Vec x
 PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver s, Vec f, Vec w)
 {
   PetscFunctionBegin;
-  if (!s->product) PetscCall(VecDuplicate(s->rhs, &s->product));
   PetscCall(MatMultTranspose(s->B, f, s->rhs));
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->product));
   PetscCall(MatMult(s->B, s->product, w));
@@ -289,72 +323,79 @@ static PetscErrorCode CreateIterative(ConstrainedSolver s)
 static PetscErrorCode MakeColumn(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
-  if (!s->columns[j]) {
-    PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
-    PetscCall(PetscMalloc1(s->local, &s->compliance[j]));
-  }
-  s->stale[j] = PETSC_FALSE;
-  PetscCall(ConstrainedSolverApplyUnit(s, j, s->columns[j], s->compliance[j]));
+  if (s->fresh[j]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+  PetscCall(ConstrainedSolverApplyUnit(s, j, s->columns[j], s->column));
+  PetscCall(ComplianceSetColumn(s->compliance, j, 1, s->column));
+  s->fresh[j] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MakeRoom(ConstrainedSolver s, PetscInt n)
+/* Makes a row known to the compliance, at its first level */
+PetscErrorCode ConstrainedSolverExtend(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
-  if (n <= s->n_most) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(s->factor, s->pivots, s->gathered, s->force, s->active_columns));
-  s->n_most = PetscMin(s->global, PetscMax(n, 2 * s->n_most));
-  PetscCall(PetscMalloc5(s->n_most * s->n_most, &s->factor, s->n_most, &s->pivots, s->n_most, &s->gathered, s->n_most, &s->force, s->n_most,
-                         &s->active_columns));
+  if (s->global <= FEW_ROWS) {
+    PetscCall(MakeColumn(s, j));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ConstrainedSolverApplyUnit(s, j, s->product, s->column));
+  PetscCall(ComplianceSetColumn(s->compliance, j, 1, s->column));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the constraint forces are worth a dense matrix: few of them, or iterations have cost as much as it would */
+static PetscErrorCode ChooseDense(ConstrainedSolver s, PetscBool *dense)
+{
+  PetscInt size, missing = 0;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetSize(s->rhs, &size));
+  for (PetscInt k = 0; k < s->n; k++) missing += !s->fresh[s->rows[k]];
+  *dense = (PetscBool)(s->n <= s->dense_limit && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS);
+  if (s->n > FEW_CONSTRAINTS && s->spent < missing * s->solve_flops + DenseFactorFlops(s->n)) *dense = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The constraint forces' matrix, for the rows that are constrained now */
 static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 {
-  PetscBLASInt n, info;
-  PetscInt     size;
+  const PetscScalar *W;
+  const PetscInt    *place;
+  PetscInt           leading;
+  PetscBool          singular;
 
   PetscFunctionBegin;
   s->n = 0;
   for (PetscInt j = 0; j < s->global; j++)
     if (s->constrained[j] >= 0) s->rows[s->n++] = j;
+  s->dense = PETSC_TRUE;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetSize(s->rhs, &size));
-  if (s->n > s->dense_limit || (PetscReal)s->n * size > MAX_COLUMN_NUMBERS) {
+  PetscCall(ChooseDense(s, &s->dense));
+  if (!s->dense) {
     if (!s->iterative) PetscCall(CreateIterative(s));
     PetscCall(VecZeroEntries(s->force_vec));
-    s->dense = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  s->dense = PETSC_TRUE;
-  PetscCall(MakeRoom(s, s->n));
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscInt j = s->rows[k];
-
-    if (!s->columns[j] || s->stale[j]) PetscCall(MakeColumn(s, j));
-    s->active_columns[k] = s->columns[j];
+  PetscCall(DenseFactorResize(&s->factor, s->n, s->global));
+  if (s->factor.room > s->room) {
+    PetscCall(PetscFree3(s->gathered, s->force, s->used));
+    s->room = s->factor.room;
+    PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
   }
-  PetscCall(PetscArrayzero(s->factor, s->n * s->n));
+  for (PetscInt k = 0; k < s->n; k++) PetscCall(MakeColumn(s, s->rows[k]));
+  ComplianceGetRows(s->compliance, NULL, NULL, &place);
+  ComplianceGetMatrix(s->compliance, 0, &leading, &W);
   for (PetscInt k = 0; k < s->n; k++)
-    for (PetscInt l = 0; l < s->n; l++) {
-      const PetscInt local = s->rows[l] - s->begin;
-
-      if (local >= 0 && local < s->local)
-        s->factor[k * s->n + l] = s->compliance[s->rows[k]][local] + (k == l ? s->constrained[s->rows[k]] : 0);
-    }
-  if (s->size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, s->factor, (PetscMPIInt)(s->n * s->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
-  PetscCall(PetscBLASIntCast(s->n, &n));
-  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, s->factor, &n, s->pivots, &info));
-  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
-             "The prescribed contact rows of a body are not independent (LAPACK getrf info %d); is a node in two contact pairs?",
-             (int)info);
+    for (PetscInt l = 0; l < s->n; l++)
+      s->factor.values[k * s->n + l] = W[place[s->rows[k]] * leading + place[s->rows[l]]] + (k == l ? s->constrained[s->rows[k]] : 0);
+  PetscCall(DenseFactorCompute(&s->factor, &singular));
+  PetscCheck(!singular, PetscObjectComm((PetscObject)s->ksp), PETSC_ERR_MAT_LU_ZRPVT,
+             "The prescribed contact rows of a body are not independent: their compliance is singular; is a node in two contact pairs?");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of this rank's rows are held from now on, or on springs with those flexibilities (NULL: all held). Collective. */
+/* Which of this rank's rows are prescribed from now on, or on springs with those flexibilities (NULL: all prescribed). Collective. */
 PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[], const PetscReal flexibility[])
 {
   PetscFunctionBegin;
@@ -369,32 +410,38 @@ PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscB
 PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
 {
   PetscFunctionBegin;
+  PetscCheck(!s->shares, PetscObjectComm((PetscObject)s->ksp), PETSC_ERR_PLIB, "A compliance that others read belongs to one matrix");
   PetscCall(KSPSetUp(s->ksp));
-  for (PetscInt j = 0; j < s->global; j++) s->stale[j] = PETSC_TRUE;
+  PetscCall(PetscArrayzero(s->fresh, s->global));
   PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* x -= A^{-1} B_m^T s with the constraint forces s by conjugate gradients, from those of the last solve on */
-static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, Vec x)
+static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
   PetscScalar *gap;
+  PetscInt     iterations;
 
   PetscFunctionBegin;
   PetscCall(MatMult(s->B, x, s->gap_vec));
   PetscCall(VecGetArray(s->gap_vec, &gap));
-  for (PetscInt i = 0; i < s->local; i++)
+  for (PetscInt i = 0; i < s->local; i++) {
+    if (target) gap[i] -= target[i];
     if (s->mine[i] < 0) gap[i] = 0;
+  }
   PetscCall(VecRestoreArray(s->gap_vec, &gap));
   PetscCall(KSPSolve(s->iterative, s->gap_vec, s->force_vec));
+  PetscCall(KSPGetIterationNumber(s->iterative, &iterations));
+  s->spent += (iterations + 2) * s->solve_flops; /* one more for the first residual, one for x */
   PetscCall(MatMultTranspose(s->B, s->force_vec, s->rhs));
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->product));
   PetscCall(VecAXPY(x, -1, s->product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* B x on the constrained rows, on every rank, in solver->gathered */
-static PetscErrorCode GatherRows(ConstrainedSolver s, Vec x)
+/* gathered = B x - target on the constrained rows, on every rank */
+static PetscErrorCode GatherGaps(ConstrainedSolver s, Vec x, const PetscScalar target[])
 {
   const PetscScalar *row;
 
@@ -404,7 +451,7 @@ static PetscErrorCode GatherRows(ConstrainedSolver s, Vec x)
   for (PetscInt k = 0; k < s->n; k++) {
     const PetscInt local = s->rows[k] - s->begin;
 
-    s->gathered[k] = local >= 0 && local < s->local ? row[local] : 0;
+    s->gathered[k] = local >= 0 && local < s->local ? row[local] - (target ? target[local] : 0) : 0;
   }
   PetscCall(VecRestoreArrayRead(s->row, &row));
   if (s->size > 1)
@@ -412,22 +459,92 @@ static PetscErrorCode GatherRows(ConstrainedSolver s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
+/* x, a solution without constraints, becomes that with B_m x = target (this rank's rows; NULL: 0) */
+static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
-  PetscBLASInt n, one = 1, info;
-
   PetscFunctionBegin;
-  PetscCall(ConstrainedSolverSolveFree(s, b, x));
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
   if (!s->dense) {
-    PetscCall(ConstrainIteratively(s, x));
+    PetscCall(ConstrainIteratively(s, target, x));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(GatherRows(s, x));
-  for (PetscInt k = 0; k < s->n; k++) s->force[k] = -s->gathered[k];
-  PetscCall(PetscBLASIntCast(s->n, &n));
-  if (n == 1) s->force[0] /= s->factor[0];
-  else PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &n, &one, s->factor, &n, s->pivots, s->force, &n, &info));
-  PetscCall(VecMAXPY(x, s->n, s->force, s->active_columns));
+  PetscCall(GatherGaps(s, x, target));
+  for (PetscInt k = 0; k < s->n; k++) {
+    s->force[k] = -s->gathered[k];
+    s->used[k]  = s->columns[s->rows[k]];
+  }
+  PetscCall(DenseFactorSolve(&s->factor, s->force));
+  PetscCall(VecMAXPY(x, s->n, s->force, s->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverSolveFree(s, b, x));
+  PetscCall(Constrain(s, NULL, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = sum of C_j (f_j - s_j), with columns that are all there */
+static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
+{
+  const PetscScalar *f = s->changes, *t = s->changes + s->global, *W;
+  PetscScalar       *c = s->coefficients;
+  const PetscInt    *place;
+  PetscInt           leading, used = 0;
+
+  PetscFunctionBegin;
+  ComplianceGetRows(s->compliance, NULL, NULL, &place);
+  ComplianceGetMatrix(s->compliance, 0, &leading, &W);
+  PetscCall(PetscArraycpy(c, f, s->global));
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscInt i = s->rows[k];
+
+    s->force[k] = -t[i];
+    for (PetscInt j = 0; j < s->global; j++)
+      if (f[j] != 0) s->force[k] += W[place[j] * leading + place[i]] * f[j];
+  }
+  PetscCall(DenseFactorSolve(&s->factor, s->force));
+  for (PetscInt k = 0; k < s->n; k++) c[s->rows[k]] -= s->force[k];
+  for (PetscInt j = 0; j < s->global; j++) {
+    if (c[j] == 0) continue;
+    c[used]         = c[j];
+    s->used[used++] = s->columns[j];
+  }
+  PetscCall(VecZeroEntries(x));
+  PetscCall(VecMAXPY(x, used, c, s->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x with A x = B^T (force - s) and B_m x = target, for forces and targets of this rank's rows: what a change of both changes. By the
+   columns where the interface has few rows, else by a solution. */
+PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], Vec x)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  if (s->global <= FEW_ROWS && s->dense) {
+    MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
+
+    if (s->size > 1) {
+      PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR, comm));
+      PetscCallMPI(
+          MPI_Allgatherv(target, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes + s->global, s->counts, s->offsets, MPIU_SCALAR, comm));
+    } else {
+      PetscCall(PetscArraycpy(s->changes, force, s->local));
+      PetscCall(PetscArraycpy(s->changes + s->global, target, s->local));
+    }
+    for (PetscInt j = 0; j < s->global; j++)
+      if (s->changes[j] != 0) PetscCall(MakeColumn(s, j));
+    PetscCall(AddColumns(s, x));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayWrite(s->row, &row));
+  PetscCall(PetscArraycpy(row, force, s->local));
+  PetscCall(VecRestoreArrayWrite(s->row, &row));
+  PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
+  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, x));
+  PetscCall(Constrain(s, target, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

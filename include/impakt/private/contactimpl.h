@@ -136,8 +136,6 @@ PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
-PETSC_INTERN PetscErrorCode ContactMultiplyCompliance(Contact, const PetscBool[], PetscBool, Vec[2], Vec, Vec);
-PETSC_INTERN PetscErrorCode ContactCreateRowSolver(Contact, const char[], PetscReal, PetscErrorCode (*)(Mat, Vec, Vec), void *, KSP *);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
@@ -145,9 +143,7 @@ PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactOr(Contact, int *);
-PETSC_INTERN PetscErrorCode ContactAddCompliance(Contact, PetscInt, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
-PETSC_INTERN PetscErrorCode ContactGatherActive(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);

@@ -182,7 +182,7 @@ static PetscErrorCode SetUpLayerBalance(Body body)
   PetscCall(BodyCreateLayerMatrix(body, &K));
   PetscCall(BodySetUpLayerRows(body, &B));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, &body->solver));
+  PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, BodyGetSharedCompliance(body), &body->solver));
   PetscCall(VecNorm(body->positions, NORM_2, &body->layer_reach));
   PetscCall(VecScatterCreate(body->state.u, body->layer_is, body->layer_rhs, NULL, &body->layer_scatter));
   PetscCall(MatDestroy(&K));
@@ -200,6 +200,20 @@ PetscErrorCode BodySetUpExplicit(Body body)
   if (body->mass_matrix) PetscCall(BodySetUpMassSolver(body));
   PetscCall(TSCentralDifferenceSetAcceleration(body->ts, ComputeAcceleration, body));
   PetscCall(TSCentralDifferenceSetAccelerationVec(body->ts, body->state.a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The end of the one substep of a linear body, with other inputs than it was made with: see repeat.c */
+PetscErrorCode BodyRepeatExplicit(Body body)
+{
+  const PetscReal half = 0.5 * body->time_step;
+
+  PetscFunctionBegin;
+  body->substep = 0;
+  PetscCall(VecAXPY(body->state.v, -half, body->state.a));
+  PetscCall(ComputeAcceleration(body->ts, body->time, body->state.u, body->state.v, body->state.a, body));
+  PetscCall(VecAXPY(body->state.v, half, body->state.a));
+  PetscCall(BodyFinishSubstepExplicit(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -205,7 +205,7 @@ PetscErrorCode BodySetUpImplicit(Body body)
   PetscCall(BodyCreateMatrix(body, &body->shifted));
   PetscCall(AssembleShifted(body, NULL));
   PetscCall(SetNearNullSpace(body));
-  PetscCall(ConstrainedSolverCreate(body->shifted, body->free_rows, body->dim, prefix, &body->solver));
+  PetscCall(ConstrainedSolverCreate(body->shifted, body->free_rows, body->dim, prefix, BodyGetSharedCompliance(body), &body->solver));
 
   PetscCall(BodyCreateVec(body, &residual));
   PetscCall(TSSetI2Function(body->ts, residual, ComputeResidual, body));

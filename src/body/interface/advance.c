@@ -44,7 +44,7 @@ PetscErrorCode BodySave(Body body)
   /* the TS adds its substeps up, with another round-off in the time that loads see than where the window is done again */
   PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
   body->swept = PETSC_FALSE;
-  PetscCall(BodyInvalidateWindow(body));
+  BodyInvalidateRepeat(body);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,6 +67,7 @@ PetscErrorCode BodyRestore(Body body)
   PetscCall(VecCopy(body->saved.u, body->state.u));
   PetscCall(VecCopy(body->saved.v, body->state.v));
   PetscCall(VecCopy(body->saved.a, body->state.a));
+  BodyInvalidateRepeat(body);
   body->time = body->saved_time;
   body->step = body->saved_step;
   if (body->loads) {
@@ -139,7 +140,7 @@ PetscErrorCode BodyReinstate(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(body->kept[i], to[i]));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
-  PetscCall(BodyInvalidateWindow(body));
+  BodyInvalidateRepeat(body);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,8 +173,6 @@ PetscErrorCode BodyResetTraces(Body body)
       PetscCall(PetscArraycpy(values, start, body->rows.local));
     }
   }
-  /* the traces do not belong to the present state any more, so nothing can be added to them */
-  PetscCall(BodyInvalidateWindow(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -249,8 +248,8 @@ PetscErrorCode BodyIntegrateWindow(Body body)
   Notes:
   May be called any number of times for the same controller step: each call begins at the saved state.
 
-  Where the body is linear and makes one substep, a repeated call with other input traces adds the response to their change
-  instead of solving again; the result is the same up to round-off.
+  Where the body is linear and makes one substep, a repeated call with other input traces adds what their change brings about
+  instead of making the step again; the result is the same up to round-off.
 
 .seealso: `Body`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
 @*/
@@ -263,10 +262,10 @@ PetscErrorCode BodyIntegrate(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
   PetscCall(PetscTime(&begin));
-  PetscCall(BodyIntegrateByResponse(body, &done));
+  PetscCall(BodyRepeat(body, &done));
   if (!done) {
     PetscCall(BodyIntegrateWindow(body));
-    PetscCall(BodyNoteWindow(body));
+    PetscCall(BodyNoteInputs(body));
   }
   PetscCall(PetscTime(&end));
   body->seconds += end - begin;

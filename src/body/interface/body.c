@@ -2,7 +2,7 @@
 #include <body/layout/bodyimpl.h>
 
 PetscClassId  BODY_CLASSID = 0;
-PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
+PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
 
 /*@
   BodyRegisterAll - registers the class, its materials and elements
@@ -18,7 +18,7 @@ PetscErrorCode BodyRegisterAll(void)
   PetscFunctionBegin;
   PetscCall(PetscClassIdRegister("Body", &BODY_CLASSID));
   PetscCall(PetscLogEventRegister("BodyIntegrate", BODY_CLASSID, &BODY_Integrate));
-  PetscCall(PetscLogEventRegister("BodyResponse", BODY_CLASSID, &BODY_Response));
+  PetscCall(PetscLogEventRegister("BodyCompliance", BODY_CLASSID, &BODY_Compliance));
   PetscCall(PetscLogEventRegister("BodyForce", BODY_CLASSID, &BODY_InternalForce));
   PetscCall(PetscLogEventRegister("BodyLayerForce", BODY_CLASSID, &BODY_LayerForce));
   PetscCall(PetscLogEventRegister("BodyTangent", BODY_CLASSID, &BODY_Tangent));
@@ -225,7 +225,9 @@ PetscErrorCode BodySetUp(Body body)
     PetscCall(BodyCreateVec(body, &body->substep_start.v));
   }
   PetscCall(CreateTraces(body));
+  PetscCall(BodyCreateCompliance(body));
   PetscCall(BodySetUpTime(body));
+  PetscCall(BodySetUpRepeat(body));
   PetscCall(TSViewFromOptions(body->ts, NULL, "-ts_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
@@ -264,7 +266,7 @@ PetscErrorCode BodyDestroy(Body *body)
     Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
                        &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
 
-    PetscCall(BodyDestroyResponse(b));
+    PetscCall(BodyDestroyRepeat(b));
     PetscCall(BodyDestroyCompliance(b));
     PetscCall(BodyDestroyProbe(b));
     PetscCall(BodyLoadsDestroy(b));

@@ -56,14 +56,14 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
   PetscCall(PetscMalloc1(body->rows.global, &all));
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
-  PetscCall(PetscFree(all));
   if (body->solver && body->is_explicit) {
     PetscCall(BodySetUpLayerRows(body, &layer_rows));
-    PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, changed));
+    PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, all));
     PetscCall(MatDestroy(&layer_rows));
-  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, changed));
-  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, body->free_rows, changed));
-  if (body->response) PetscCall(BodyDestroyResponse(body));
+  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, all));
+  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, body->free_rows, all));
+  PetscCall(PetscFree(all));
+  BodyInvalidateRepeat(body);
   PetscCall(BodySetConstraints(body));
   PetscCall(RewriteStart(body));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -74,6 +74,7 @@ struct _p_Body {
   /* interface rows */
   Mat               interface;
   Mat               free_rows;   /* without held dofs; the same matrix where none is held */
+  PetscBool         any_oblique; /* on any rank there are rows of one node that are not orthonormal */
   BodyGram          gram;        /* of prescribed rows that are not orthonormal */
   const PetscReal  *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
   BodyRows          rows;
@@ -98,8 +99,8 @@ struct _p_Body {
   PetscBool         layer_slow;  /* its last balance took many rounds: the body has turned or changed shape since its matrix was factored */
   VecScatter        layer_scatter;
   LayerElements     layer_elements; /* those that touch the massless layer; NULL: no layer on any rank */
-  struct _BodyResponse   *response;
   struct _BodyCompliance *compliance;
+  struct _BodyRepeat     *repeat;
   struct _BodyProbe      *probe; /* room for the state while unit inputs are tried; NULL until then */
   /* loads */
   struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
@@ -114,7 +115,7 @@ struct _p_Body {
   PetscBool          setup;
 };
 
-PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
+PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
 
 PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
 PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
@@ -163,13 +164,15 @@ PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Ve
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyIntegrateWindow(Body);
-PETSC_INTERN PetscErrorCode BodyIntegrateByResponse(Body, PetscBool *);
-PETSC_INTERN PetscErrorCode BodyNoteWindow(Body);
-PETSC_INTERN PetscErrorCode BodyInvalidateWindow(Body);
-PETSC_INTERN PetscBool      BodyMatchResponse(Body);
-PETSC_INTERN PetscErrorCode BodyValidateResponse(Body, PetscBool);
-PETSC_INTERN PetscErrorCode BodyDestroyResponse(Body);
+PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
+PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
+PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
+PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyRepeatExplicit(Body);
+PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
+PETSC_INTERN void           BodyInvalidateRepeat(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
 PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);

@@ -15,62 +15,39 @@ PetscErrorCode BodyDestroyCompliance(Body body)
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&c->work[k]));
-  PetscCall(PetscFree6(c->place, c->roles, c->mine, c->base_displacement, c->base_force, c->all_roles));
-  PetscCall(PetscFree3(c->rows, c->prescribed, c->pivots));
-  PetscCall(PetscFree3(c->levels, c->ramp, c->factor));
+  PetscCall(PetscFree6(c->roles, c->mine, c->base_displacement, c->base_force, c->all_roles, c->all_flexibility));
+  PetscCall(PetscFree(c->solved));
   PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
+  PetscCall(DenseFactorDestroy(&c->factor));
+  PetscCall(ComplianceDestroy(&c->matrices));
   PetscCall(PetscFree(body->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Before the solvers of the body are made, since that of a linear body keeps the compliance of prescribed rows in the same place */
 PetscErrorCode BodyCreateCompliance(Body body)
 {
-  const BodyRows         *rows = &body->rows;
+  const BodyRows         *rows   = &body->rows;
+  const PetscInt          levels = body->substeps * rows->local;
   struct _BodyCompliance *c;
 
   PetscFunctionBegin;
-  if (body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&body->compliance));
   c = body->compliance;
-  PetscCall(PetscCalloc6(rows->global, &c->place, rows->local, &c->roles, body->substeps * rows->local, &c->mine,
-                         body->substeps * rows->local, &c->base_displacement, body->substeps * rows->local, &c->base_force, rows->global,
-                         &c->all_roles));
-  for (PetscInt i = 0; i < rows->global; i++) c->place[i] = -1;
-  if (!body->is_explicit)
+  PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->substeps, &c->matrices));
+  PetscCall(PetscCalloc6(rows->local, &c->roles, levels, &c->mine, levels, &c->base_displacement, levels, &c->base_force, rows->global,
+                         &c->all_roles, rows->global, &c->all_flexibility));
+  PetscCall(PetscMalloc1(rows->global, &c->solved));
+  if (!body->is_explicit && body->substeps > 1)
     for (PetscInt k = 0; k < 4; k++) PetscCall(VecDuplicate(body->state.u, &c->work[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for more known rows; what is known stays */
-static PetscErrorCode Grow(Body body, PetscInt n)
+/* Where a solver of the body keeps the compliance of rows that it constrains: with the others while its matrix is constant, else apart,
+   since the outer iteration wants one that stays as it is from sweep to sweep */
+Compliance BodyGetSharedCompliance(Body body)
 {
-  struct _BodyCompliance *c   = body->compliance;
-  const PetscInt          old = c->capacity, s = body->substeps;
-  PetscInt                capacity = PetscMin(body->rows.global, PetscMax(n, 2 * old)), *rows, *prescribed;
-  PetscScalar            *levels, *ramp, *factor;
-  PetscBLASInt           *pivots;
-
-  PetscFunctionBegin;
-  if (n <= old) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc3(capacity, &rows, capacity, &prescribed, capacity, &pivots));
-  PetscCall(PetscMalloc3(s * capacity * capacity, &levels, capacity * capacity, &ramp, capacity * capacity, &factor));
-  PetscCall(PetscArraycpy(rows, c->rows, c->n));
-  for (PetscInt k = 0; k < s; k++)
-    for (PetscInt j = 0; j < c->n; j++)
-      PetscCall(PetscArraycpy(levels + (k * capacity + j) * capacity, c->levels + (k * old + j) * old, c->n));
-  PetscCall(PetscFree3(c->rows, c->prescribed, c->pivots));
-  PetscCall(PetscFree3(c->levels, c->ramp, c->factor));
-  PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
-  PetscCall(PetscMalloc6(s * capacity, &c->known_displacement, s * capacity, &c->known_force, s * capacity, &c->input, s * capacity,
-                         &c->force, s * capacity, &c->displacement, capacity, &c->rhs));
-  c->rows       = rows;
-  c->prescribed = prescribed;
-  c->pivots     = pivots;
-  c->levels     = levels;
-  c->ramp       = ramp;
-  c->factor     = factor;
-  c->capacity   = capacity;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return body->linear ? body->compliance->matrices : NULL;
 }
 
 /*@
@@ -93,26 +70,17 @@ static PetscErrorCode Grow(Body body, PetscInt n)
 @*/
 PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[])
 {
-  struct _BodyCompliance *c;
-  PetscInt                first, count = 0;
+  PetscInt count = 0;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyCreateCompliance(body));
-  c = body->compliance;
-  for (PetscInt i = 0; i < n; i++) count += c->place[rows[i]] < 0;
+  PetscCheck(body->compliance, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  for (PetscInt i = 0; i < n; i++) count += !ComplianceKnows(body->compliance->matrices, rows[i]);
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
-  PetscCall(Grow(body, c->n + count));
-  first = c->n;
-  for (PetscInt i = 0; i < n; i++) {
-    if (c->place[rows[i]] >= 0) continue;
-    c->place[rows[i]] = c->n;
-    c->rows[c->n++]   = rows[i];
-  }
-  PetscCall(BodyProbeCompliance(body, first));
-  c->ramp_valid = c->base_gathered = c->factored = PETSC_FALSE;
-  PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
+  PetscCall(ComplianceReserve(body->compliance->matrices, count));
+  PetscCall(BodyProbeCompliance(body, n, rows));
+  PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,48 +99,9 @@ PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[]
 @*/
 PetscErrorCode BodyForgetCompliance(Body body, const PetscMPIInt changed[])
 {
-  struct _BodyCompliance *c = body->compliance;
-  PetscInt                n = 0, *from;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(c->n, &from));
-  for (PetscInt j = 0; j < c->n; j++) {
-    if (changed[c->rows[j]]) c->place[c->rows[j]] = -1;
-    else from[n++] = j;
-  }
-  for (PetscInt k = 0; k < body->substeps; k++) {
-    PetscScalar *matrix = c->levels + k * c->capacity * c->capacity;
-
-    for (PetscInt j = 0; j < n; j++)
-      for (PetscInt i = 0; i < n; i++) matrix[j * c->capacity + i] = matrix[from[j] * c->capacity + from[i]];
-  }
-  for (PetscInt j = 0; j < n; j++) {
-    c->rows[j]           = c->rows[from[j]];
-    c->place[c->rows[j]] = j;
-  }
-  c->n          = n;
-  c->ramp_valid = c->base_gathered = c->factored = PETSC_FALSE;
-  PetscCall(PetscFree(from));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Sums of hats that rise linearly over the controller step */
-static PetscErrorCode ComputeRamp(Body body)
-{
-  struct _BodyCompliance *c = body->compliance;
-
-  PetscFunctionBegin;
-  for (PetscInt j = 0; j < c->n; j++)
-    for (PetscInt i = 0; i < c->n; i++) {
-      PetscScalar sum = 0;
-
-      for (PetscInt l = 1; l <= body->substeps; l++)
-        sum += (PetscReal)l / body->substeps * c->levels[((body->substeps - l) * c->capacity + j) * c->capacity + i];
-      c->ramp[j * c->capacity + i] = sum;
-    }
-  c->ramp_valid = PETSC_TRUE;
+  if (body->compliance) PetscCall(ComplianceForget(body->compliance->matrices, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -204,10 +133,9 @@ PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *plac
   PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyExtendCompliance() first");
   PetscCheck(level >= -1 && level < body->substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->substeps);
-  if (level < 0 && !c->ramp_valid) PetscCall(ComputeRamp(body));
-  *place   = c->place;
-  *leading = c->capacity;
-  *matrix  = level < 0 ? c->ramp : c->levels + level * c->capacity * c->capacity;
+  ComplianceGetRows(c->matrices, NULL, NULL, place);
+  if (level < 0) PetscCall(ComplianceGetRamp(c->matrices, leading, matrix));
+  else ComplianceGetMatrix(c->matrices, level, leading, matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -257,9 +185,58 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
   if (body->solver) PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
   else PetscCall(VecZeroEntries(displacement));
-  PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
+  PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyCountUnknown - how many of some rows its compliance does not know yet
+
+  Not Collective
+
+  Input Parameters:
++ body - the `Body`, set up
+. n    - number of rows
+- rows - rows of any rank
+
+  Output Parameter:
+. unknown - how many of them `BodyExtendCompliance()` would have to make known
+
+  Level: developer
+
+.seealso: `Body`, `BodyExtendCompliance()`, `BodyGetComplianceFlops()`
+@*/
+PetscErrorCode BodyCountUnknown(Body body, PetscInt n, const PetscInt rows[], PetscInt *unknown)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *unknown = 0;
+  for (PetscInt i = 0; i < n; i++) *unknown += !ComplianceKnows(body->compliance->matrices, rows[i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetComplianceFlops - operations of one `BodyApplyCompliance()`
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. flops - floating-point operations of a solution with the factors, counted from their entries, not measured: the same in every run
+
+  Level: developer
+
+.seealso: `Body`, `BodyApplyCompliance()`, `BodyCountUnknown()`
+@*/
+PetscErrorCode BodyGetComplianceFlops(Body body, PetscLogDouble *flops)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *flops = body->solver ? ConstrainedSolverGetFlops(body->solver) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

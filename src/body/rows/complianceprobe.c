@@ -7,7 +7,7 @@ static PetscErrorCode ProbeImplicit(Body body, PetscInt row)
   struct _BodyCompliance *c  = body->compliance;
   const PetscReal         dt = body->time_step, c2 = 1 / (body->beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * body->beta) / (2 * body->beta);
   const PetscInt          n = body->owned_nodes * body->dim, local = body->rows.local;
-  const Vec               u = c->work[0], v = c->work[1], a = c->work[2], next = c->work[3];
+  const Vec               u = c->work[0], v = c->work[1], a = c->work[2], next = body->substeps > 1 ? c->work[3] : body->work[0];
 
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverApplyUnit(body->solver, row, next, c->mine));
@@ -71,7 +71,7 @@ static PetscErrorCode ProbeExplicit(Body body, PetscInt row)
     else PetscCall(PetscArrayzero(c->mine, body->rows.local));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodySetUnitInput(body, row, INPUT_FORCE));
+  PetscCall(BodySetUnitForce(body, row));
   if (local >= 0 && local < body->rows.local) body->conditions[local] = BODY_FORCED;
   PetscCall(BodyRestore(body));
   PetscCall(BodyIntegrateWindow(body));
@@ -84,65 +84,59 @@ static PetscErrorCode ProbeExplicit(Body body, PetscInt row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Explicit bodies with substeps are probed by integrating them: at rest, with all rows free but the one in hand */
-PetscErrorCode BodyProbeCompliance(Body body, PetscInt first)
+/* Column of a row at all levels, into the work space `mine` */
+static PetscErrorCode ProbeRow(Body body, PetscInt row)
 {
-  struct _BodyCompliance *c          = body->compliance;
-  const PetscBool         integrates = (PetscBool)(body->is_explicit && body->substeps > 1);
-  const PetscInt          counts[3]  = {body->n_prescribed, body->n_forced, body->n_robin};
-  BodyCondition          *kept       = NULL;
-
   PetscFunctionBegin;
-  if (integrates) {
-    PetscCall(BodyBeginProbe(body));
-    PetscCall(PetscMalloc1(body->rows.local, &kept));
-    PetscCall(PetscArraycpy(kept, body->conditions, body->rows.local));
-    PetscCall(PetscArrayzero(body->conditions, body->rows.local));
-    body->n_prescribed = body->n_robin = 0;
-    body->n_forced                     = 1;
-    PetscCall(BodySetConstraints(body));
-    PetscCall(BodyPrepareLinearized(body));
-    body->linearized = (PetscBool)!body->linear;
-  }
-  for (PetscInt j = first; j < c->n; j++) {
-    if (body->is_explicit) PetscCall(ProbeExplicit(body, c->rows[j]));
-    else PetscCall(ProbeImplicit(body, c->rows[j]));
-    PetscCall(BodyGatherKnown(body, c->mine, c->displacement));
-    for (PetscInt k = 0; k < body->substeps; k++) {
-      PetscScalar *matrix = c->levels + k * c->capacity * c->capacity;
-
-      for (PetscInt i = 0; i < c->n; i++) matrix[j * c->capacity + i] = c->displacement[k * c->n + i];
-      for (PetscInt i = 0; i < first; i++) matrix[i * c->capacity + j] = c->displacement[k * c->n + i];
-    }
-  }
-  if (integrates) {
-    body->linearized = PETSC_FALSE;
-    PetscCall(BodyEndProbe(body));
-    PetscCall(PetscArraycpy(body->conditions, kept, body->rows.local));
-    body->n_prescribed = counts[0];
-    body->n_forced     = counts[1];
-    body->n_robin      = counts[2];
-    PetscCall(BodySetConstraints(body));
-    PetscCall(PetscFree(kept));
-  }
+  if (body->is_explicit) PetscCall(ProbeExplicit(body, row));
+  else PetscCall(ProbeImplicit(body, row));
+  PetscCall(ComplianceSetColumn(body->compliance->matrices, row, body->substeps, body->compliance->mine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Values of this rank's rows, for each substep, on the known rows of every rank */
-PetscErrorCode BodyGatherKnown(Body body, const PetscScalar mine[], PetscScalar all[])
+/* By integrating the body at rest, with all rows free but the one in hand */
+static PetscErrorCode ProbeByIntegrating(Body body, PetscInt n, const PetscInt rows[])
 {
-  const struct _BodyCompliance *c    = body->compliance;
-  const BodyRows               *rows = &body->rows;
+  const PetscInt counts[3] = {body->n_prescribed, body->n_forced, body->n_robin};
+  BodyCondition *kept;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < body->substeps; k++)
-    for (PetscInt i = 0; i < c->n; i++) {
-      const PetscInt local = c->rows[i] - rows->begin;
+  PetscCall(BodyBeginProbe(body));
+  PetscCall(PetscMalloc1(body->rows.local, &kept));
+  PetscCall(PetscArraycpy(kept, body->conditions, body->rows.local));
+  PetscCall(PetscArrayzero(body->conditions, body->rows.local));
+  body->n_prescribed = body->n_robin = 0;
+  body->n_forced                     = 1;
+  PetscCall(BodySetConstraints(body));
+  PetscCall(BodyPrepareLinearized(body));
+  body->linearized = (PetscBool)!body->linear;
+  for (PetscInt i = 0; i < n; i++)
+    if (!ComplianceKnows(body->compliance->matrices, rows[i])) PetscCall(ProbeRow(body, rows[i]));
+  body->linearized = PETSC_FALSE;
+  PetscCall(BodyEndProbe(body));
+  PetscCall(PetscArraycpy(body->conditions, kept, body->rows.local));
+  body->n_prescribed = counts[0];
+  body->n_forced     = counts[1];
+  body->n_robin      = counts[2];
+  PetscCall(BodySetConstraints(body));
+  PetscCall(PetscFree(kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-      all[k * c->n + i] = local >= 0 && local < rows->local ? mine[k * rows->local + local] : 0;
-    }
-  if (rows->size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(body->substeps * c->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+/* Columns of the rows that are not known yet. With one substep the body's solver has them, where its compliance is this one. */
+PetscErrorCode BodyProbeCompliance(Body body, PetscInt n, const PetscInt rows[])
+{
+  const PetscBool shares = (PetscBool)(body->substeps == 1 && body->solver && BodyGetSharedCompliance(body));
+
+  PetscFunctionBegin;
+  if (body->is_explicit && body->substeps > 1) {
+    PetscCall(ProbeByIntegrating(body, n, rows));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    if (ComplianceKnows(body->compliance->matrices, rows[i])) continue;
+    if (shares) PetscCall(ConstrainedSolverExtend(body->solver, rows[i]));
+    else PetscCall(ProbeRow(body, rows[i]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

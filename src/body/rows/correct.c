@@ -10,7 +10,7 @@ static PetscErrorCode WriteEnd(Body body, Vec vec, Trace trace)
 {
   PetscFunctionBegin;
   PetscCall(BodyWriteTrace(body, body->interface, vec, trace, body->substeps));
-  PetscCall(BodyInvalidateWindow(body));
+  BodyInvalidateRepeat(body);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,6 +147,6 @@ PetscErrorCode BodyShiftStart(Body body, const PetscScalar shift[])
   PetscCall(BodySolveMassOfRows(body, shift));
   PetscCall(VecAXPY(body->state.u, 1, body->work[2]));
   PetscCall(VecCopy(body->state.u, body->saved.u));
-  PetscCall(BodyInvalidateWindow(body));
+  BodyInvalidateRepeat(body);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,7 +15,7 @@
 
   Level: developer
 
-.seealso: `Body`, `BodyAddEndForce()`
+.seealso: `Body`, `BodyIntegrate()`
 @*/
 PetscErrorCode BodyFeelsEndForce(Body body, PetscBool *feels)
 {
@@ -23,34 +23,5 @@ PetscErrorCode BodyFeelsEndForce(Body body, PetscBool *feels)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   *feels = (PetscBool)(!body->is_explicit || body->substeps > 1 || body->n_layer_dofs > 0);
   PetscCall(BodyAnyRank(body, feels));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyAddEndForce - changes the state at the end of the controller step by that of a force on the rows at its end
-
-  Collective
-
-  Input Parameters:
-+ body  - a `Body` that does not feel such forces before its next step, integrated
-- force - one for each row of this rank [N], to be added to that in its input trace
-
-  Level: developer
-
-  Note:
-  The same as to integrate it once more, up to round-off, at the cost of a product with the rows: a += M^{-1} B^T force, v += dt / 2 of
-  that.
-
-.seealso: `Body`, `BodyFeelsEndForce()`, `BodyIntegrate()`
-@*/
-PetscErrorCode BodyAddEndForce(Body body, const PetscScalar force[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, force));
-  PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
-  PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, body->work[2]));
-  PetscCall(BodyWriteTraces(body, body->substeps));
-  body->total_substeps += body->substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

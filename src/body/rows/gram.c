@@ -123,6 +123,8 @@ PetscErrorCode BodySetUpGram(Body body)
   PetscCall(PetscSortIntWithArray(n, nodes, order));
   PetscCall(PetscCalloc3(n + 1, &gram->run_offsets, n, &gram->candidates, 3 * n, &gram->directions));
   PetscCall(FindCandidates(body, nodes, order, directions, &size, &most));
+  body->any_oblique = (PetscBool)(gram->n_runs > 0);
+  PetscCall(BodyAnyRank(body, &body->any_oblique));
   PetscCall(PetscMalloc1(most * (most + 5), &gram->work));
   PetscCall(PetscFree3(nodes, order, directions));
   PetscCall(PetscCalloc5(gram->n_runs + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, gram->n_runs, &gram->starts, size,

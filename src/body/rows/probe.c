@@ -1,4 +1,4 @@
-/* A body is put to rest, without loads, to see what unit inputs at its rows bring about; afterwards it is as it was. */
+/* A body is put to rest, without loads, to see what a unit force on a row brings about; afterwards it is as it was. */
 #include "probe.h"
 
 #define N_BACKUP 7
@@ -67,8 +67,8 @@ PetscErrorCode BodyBeginProbe(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A unit at the end of the first substep, on one row alone; zero at the start and from the second substep on */
-PetscErrorCode BodySetUnitInput(Body body, PetscInt row, InputKind kind)
+/* A force of 1 N at the end of the first substep, on one row alone; zero at the start and from the second substep on */
+PetscErrorCode BodySetUnitForce(Body body, PetscInt row)
 {
   const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
   const PetscInt local    = row - body->rows.begin;
@@ -77,7 +77,7 @@ PetscErrorCode BodySetUnitInput(Body body, PetscInt row, InputKind kind)
   PetscFunctionBegin;
   for (PetscInt t = 0; t < 4; t++) PetscCall(TraceZero(traces[t]));
   if (local < 0 || local >= body->rows.local) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TraceGetLevel(traces[kind], 1, &values));
+  PetscCall(TraceGetLevel(body->traces.force_in, 1, &values));
   values[local] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

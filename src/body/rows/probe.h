@@ -1,9 +1,7 @@
-/* Putting unit inputs into a body at rest. Private to src/body. */
+/* A unit force on a row of a body at rest. Private to src/body/rows. */
 #pragma once
 #include <body/layout/bodyimpl.h>
 
-typedef enum { INPUT_DISPLACEMENT, INPUT_VELOCITY, INPUT_ACCELERATION, INPUT_FORCE } InputKind;
-
 PETSC_INTERN PetscErrorCode BodyBeginProbe(Body);
-PETSC_INTERN PetscErrorCode BodySetUnitInput(Body, PetscInt, InputKind);
+PETSC_INTERN PetscErrorCode BodySetUnitForce(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyEndProbe(Body);

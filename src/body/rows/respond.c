@@ -3,12 +3,15 @@
 
      u_k = base u_k + sum_{l <= k} W_{k - l} (f_l - base f_l),
 
-   with the base from a whole integration. Forces of forced rows are given; those of prescribed ones follow, substep by substep, from the
-   displacement that they are to have. So the sweeps of a controller step need no solution with the body's matrices but for the base, and
-   for the state at the end.
+   with the base from a whole integration. Forces of forced rows are given. Those of prescribed rows follow, substep by substep, from the
+   displacement x that they are to have, and those of Robin rows from f + alpha u = r:
+
+     u = x,   u + f / alpha = r / alpha,
+
+   so that 1 / alpha is added to the diagonal of W_0. So the sweeps of a controller step need no solution with the body's matrices but for
+   the base, and for the state at the end.
 */
 #include "complianceimpl.h"
-#include <petscblaslapack.h>
 
 /*@
   BodySetBase - takes the integration just made, under forces only, as what `BodyRespond()` counts changes from
@@ -29,7 +32,6 @@ PetscErrorCode BodySetBase(Body body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyCreateCompliance(body));
   c = body->compliance;
   for (PetscInt k = 0; k < body->substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &displacement));
@@ -40,6 +42,7 @@ PetscErrorCode BodySetBase(Body body)
     }
   }
   c->base_gathered = PETSC_FALSE;
+  c->has_base      = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,30 +62,35 @@ PetscErrorCode BodySetFreeBase(Body body)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyCreateCompliance(body));
   PetscCall(BodyComputeFreeRows(body, body->compliance->base_displacement));
   PetscCall(PetscArrayzero(body->compliance->base_force, body->rows.local));
   body->compliance->base_gathered = PETSC_FALSE;
+  body->compliance->has_base      = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For substeps: the force on each prescribed row by the displacement that it is to have at the end */
-static PetscErrorCode FactorPrescribed(Body body)
+/* The force on each prescribed or Robin row by what its displacement is to be at the end of a substep */
+static PetscErrorCode FactorSolved(Body body)
 {
   struct _BodyCompliance *c = body->compliance;
-  PetscBLASInt            n, info;
+  const PetscScalar      *W;
+  const PetscInt         *place;
+  PetscInt                leading;
+  PetscBool               singular;
 
   PetscFunctionBegin;
-  if (!c->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt j = 0; j < c->n_prescribed; j++)
-    for (PetscInt i = 0; i < c->n_prescribed; i++)
-      c->factor[j * c->n_prescribed + i] = c->levels[c->prescribed[j] * c->capacity + c->prescribed[i]];
-  PetscCall(PetscBLASIntCast(c->n_prescribed, &n));
-  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, c->factor, &n, c->pivots, &info));
-  PetscCheck(info == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT,
-             "The prescribed contact rows of body '%s' are not independent (LAPACK getrf info %d); is a node in two contact pairs?",
-             body->hdr.name, (int)info);
-  c->factored = PETSC_TRUE;
+  PetscCall(DenseFactorResize(&c->factor, c->n_solved, body->rows.global));
+  ComplianceGetRows(c->matrices, NULL, NULL, &place);
+  ComplianceGetMatrix(c->matrices, 0, &leading, &W);
+  for (PetscInt j = 0; j < c->n_solved; j++)
+    for (PetscInt i = 0; i < c->n_solved; i++)
+      c->factor.values[j * c->n_solved + i] = W[place[c->solved[j]] * leading + place[c->solved[i]]] +
+                                              (i == j ? c->all_flexibility[c->solved[i]] : 0);
+  PetscCall(DenseFactorCompute(&c->factor, &singular));
+  PetscCheck(!singular, PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT,
+             "The prescribed contact rows of body '%s' are not independent: their compliance is singular; is a node in two contact pairs?",
+             body->hdr.name);
+  c->factored_state = ComplianceGetState(c->matrices);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,65 +101,98 @@ static PetscErrorCode FactorPrescribed(Body body)
 
   Input Parameters:
 + body  - the `Body`, all rows with a role being known to its compliance
-- roles - `BODY_FREE`, `BODY_PRESCRIBED` or `BODY_FORCED` for each row of this rank
+- roles - for each row of this rank; Robin rows have the springs of `BodySetRobin()`
 
   Level: developer
 
   Note:
-  Factors the compliance of the prescribed rows, if they are others than in the last call or have changed. The conditions under which
-  `BodyIntegrate()` integrates stay as they are.
+  Factors the compliance of the prescribed and Robin rows, if they are others than in the last call or have changed. The conditions under
+which `BodyIntegrate()` integrates stay as they are.
 
 .seealso: `Body`, `BodyRespond()`, `BodyExtendCompliance()`
 @*/
 PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
 {
-  struct _BodyCompliance *c;
-  const BodyRows         *rows  = &body->rows;
+  struct _BodyCompliance *c    = body->compliance;
+  const BodyRows         *rows = &body->rows;
+  const PetscInt         *place;
   PetscInt                count = 0;
+  PetscBool               same = PETSC_TRUE, robin = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyCreateCompliance(body));
-  c = body->compliance;
   PetscCall(PetscArraycpy(c->roles, roles, rows->local));
   PetscCall(PetscArrayzero(c->all_roles, rows->global));
   for (PetscInt i = 0; i < rows->local; i++) c->all_roles[rows->begin + i] = (PetscMPIInt)roles[i];
   if (rows->size > 1)
     PetscCallMPI(
         MPI_Allreduce(MPI_IN_PLACE, c->all_roles, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  ComplianceGetRows(c->matrices, NULL, NULL, &place);
   for (PetscInt i = 0; i < rows->global; i++) {
     if (c->all_roles[i] == BODY_FREE) continue;
-    PetscCheck(c->place[i] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+    PetscCheck(ComplianceKnows(c->matrices, i), PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
                "Row %" PetscInt_FMT " of body '%s' is not known to its compliance; call BodyExtendCompliance() first", i, body->hdr.name);
-    if (c->all_roles[i] != BODY_PRESCRIBED) continue;
-    if (count >= c->n_prescribed || c->prescribed[count] != c->place[i]) c->factored = PETSC_FALSE;
-    c->prescribed[count++] = c->place[i];
+    if (c->all_roles[i] == BODY_FORCED) continue;
+    if (c->all_roles[i] == BODY_ROBIN) robin = PETSC_TRUE;
+    if (count >= c->n_solved || c->solved[count] != i) same = PETSC_FALSE;
+    c->solved[count++] = i;
   }
-  if (count != c->n_prescribed) c->factored = PETSC_FALSE;
-  c->n_prescribed = count;
-  if (!c->factored) PetscCall(FactorPrescribed(body));
+  if (count != c->n_solved || robin) same = PETSC_FALSE;
+  c->n_solved = count;
+  if (same && c->factored_state == ComplianceGetState(c->matrices)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(c->all_flexibility, rows->global));
+  if (robin) {
+    for (PetscInt i = 0; i < rows->local; i++)
+      if (roles[i] == BODY_ROBIN) c->all_flexibility[rows->begin + i] = 1 / body->robin[i];
+    if (rows->size > 1)
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->all_flexibility, (PetscMPIInt)rows->global, MPIU_REAL, MPIU_SUM,
+                                 PetscObjectComm((PetscObject)body)));
+  }
+  PetscCall(FactorSolved(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What comes in, on the known rows of every rank: displacements of prescribed rows, forces of others */
-static PetscErrorCode GatherInputs(Body body)
+/* Room for values of the rows that are known now, at each substep */
+static PetscErrorCode MakeRoom(Body body)
 {
   struct _BodyCompliance *c = body->compliance;
+  PetscInt                n, size;
+
+  PetscFunctionBegin;
+  ComplianceGetRows(c->matrices, &n, NULL, NULL);
+  if (n <= c->room) PetscFunctionReturn(PETSC_SUCCESS);
+  c->room = PetscMin(body->rows.global, PetscMax(n, 2 * c->room));
+  size    = body->substeps * c->room;
+  PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
+  PetscCall(PetscMalloc6(size, &c->known_displacement, size, &c->known_force, size, &c->input, size, &c->force, size, &c->displacement,
+                         c->room, &c->rhs));
+  c->base_gathered = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What comes in, on the known rows of every rank: displacements of prescribed rows, forces of forced ones, right-hand sides of Robin rows
+ */
+static PetscErrorCode GatherInputs(Body body)
+{
+  struct _BodyCompliance *c     = body->compliance;
+  const PetscInt          local = body->rows.local;
   PetscScalar            *displacement, *force;
 
   PetscFunctionBegin;
-  if (!c->base_gathered) {
-    PetscCall(BodyGatherKnown(body, c->base_displacement, c->known_displacement));
-    PetscCall(BodyGatherKnown(body, c->base_force, c->known_force));
-    c->base_gathered = PETSC_TRUE;
+  PetscCall(MakeRoom(body));
+  if (!c->base_gathered || c->gathered_state != ComplianceGetState(c->matrices)) {
+    PetscCall(ComplianceGather(c->matrices, body->substeps, c->base_displacement, c->known_displacement));
+    PetscCall(ComplianceGather(c->matrices, body->substeps, c->base_force, c->known_force));
+    c->base_gathered  = PETSC_TRUE;
+    c->gathered_state = ComplianceGetState(c->matrices);
   }
   for (PetscInt k = 0; k < body->substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement_in, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.force_in, k + 1, &force));
-    for (PetscInt i = 0; i < body->rows.local; i++)
-      c->mine[k * body->rows.local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FORCED ? force[i] : 0;
+    for (PetscInt i = 0; i < local; i++)
+      c->mine[k * local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FREE ? 0 : force[i];
   }
-  PetscCall(BodyGatherKnown(body, c->mine, c->input));
+  PetscCall(ComplianceGather(c->matrices, body->substeps, c->mine, c->input));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -159,32 +200,40 @@ static PetscErrorCode GatherInputs(Body body)
 static PetscErrorCode RespondSubstep(Body body, PetscInt k)
 {
   struct _BodyCompliance *c = body->compliance;
-  PetscScalar            *u = c->displacement + k * c->n, *f = c->force + k * c->n, plus = 1;
-  PetscBLASInt            n, leading, one                                                = 1, m, info;
+  const PetscInt         *place;
+  const PetscScalar      *W, *base;
+  PetscScalar            *u, *f, *input;
+  PetscInt                n, leading;
 
   PetscFunctionBegin;
-  if (!c->n) PetscFunctionReturn(PETSC_SUCCESS); /* BLAS refuses matrices without rows */
-  PetscCall(PetscBLASIntCast(c->n, &n));
-  PetscCall(PetscBLASIntCast(c->capacity, &leading));
-  PetscCall(PetscBLASIntCast(c->n_prescribed, &m));
-  PetscCall(PetscArraycpy(u, c->known_displacement + k * c->n, c->n));
-  PetscCall(PetscArraycpy(f, c->input + k * c->n, c->n));
-  for (PetscInt i = 0; i < c->n_prescribed; i++) f[c->prescribed[i]] = c->known_force[k * c->n + c->prescribed[i]];
-  /* f holds changes from here on, of prescribed rows none yet */
-  for (PetscInt i = 0; i < c->n; i++) f[i] -= c->known_force[k * c->n + i];
-  for (PetscInt l = 0; l <= k; l++)
-    PetscCallBLAS("BLASgemv", BLASgemv_("N", &n, &n, &plus, c->levels + (k - l) * c->capacity * c->capacity, &leading, c->force + l * c->n,
-                                        &one, &plus, u, &one));
-  if (!c->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < c->n_prescribed; i++) c->rhs[i] = c->input[k * c->n + c->prescribed[i]] - u[c->prescribed[i]];
-  PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &m, &one, c->factor, &m, c->pivots, c->rhs, &m, &info));
-  for (PetscInt i = 0; i < c->n_prescribed; i++) {
-    const PetscInt place = c->prescribed[i];
-
-    f[place] += c->rhs[i];
-    PetscCallBLAS("BLASaxpy", BLASaxpy_(&n, &c->rhs[i], c->levels + place * c->capacity, &one, u, &one));
+  ComplianceGetRows(c->matrices, &n, NULL, &place);
+  u     = c->displacement + k * n;
+  f     = c->force + k * n; /* changes from the base: of prescribed and Robin rows none yet */
+  input = c->input + k * n;
+  base  = c->known_force + k * n;
+  PetscCall(PetscArraycpy(u, c->known_displacement + k * n, n));
+  for (PetscInt i = 0; i < n; i++) f[i] = input[i] - base[i];
+  for (PetscInt i = 0; i < c->n_solved; i++) f[place[c->solved[i]]] = 0;
+  for (PetscInt l = 0; l <= k; l++) {
+    ComplianceGetMatrix(c->matrices, k - l, &leading, &W);
+    PetscCall(DenseMultiplyAdd(n, leading, W, 1, c->force + l * n, u));
   }
-  for (PetscInt i = 0; i < c->n_prescribed; i++) u[c->prescribed[i]] = c->input[k * c->n + c->prescribed[i]];
+  if (!c->n_solved) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < c->n_solved; i++) {
+    const PetscInt  row = c->solved[i], at = place[row];
+    const PetscReal flexibility = c->all_flexibility[row];
+
+    c->rhs[i] = (c->all_roles[row] == BODY_ROBIN ? flexibility * (input[at] - base[at]) : input[at]) - u[at];
+  }
+  PetscCall(DenseFactorSolve(&c->factor, c->rhs));
+  for (PetscInt j = 0; j < c->n_solved; j++) {
+    const PetscInt at = place[c->solved[j]];
+
+    f[at] = c->rhs[j];
+    for (PetscInt i = 0; i < n; i++) u[i] += c->rhs[j] * W[at * leading + i];
+  }
+  for (PetscInt i = 0; i < c->n_solved; i++)
+    if (c->all_roles[c->solved[i]] == BODY_PRESCRIBED) u[place[c->solved[i]]] = input[place[c->solved[i]]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,8 +248,9 @@ static PetscErrorCode RespondSubstep(Body body, PetscInt k)
   Level: developer
 
   Notes:
-  Reads `displacement_in` of prescribed and `force_in` of forced rows, writes `displacement` of known rows and `reaction` of prescribed
-ones; the state of the body stays as it is. For linear bodies with massless contact nodes the same as `BodyIntegrate()`, up to round-off.
+  Reads `displacement_in` of prescribed rows and `force_in` of forced and Robin rows, writes `displacement` of known rows and `reaction` of
+  prescribed and Robin ones; the state of the body stays as it is. For linear bodies with massless contact nodes the same as
+`BodyIntegrate()`, up to round-off.
 
 .seealso: `Body`, `BodySetBase()`, `BodyIntegrate()`
 @*/
@@ -208,24 +258,27 @@ PetscErrorCode BodyRespond(Body body)
 {
   struct _BodyCompliance *c    = body->compliance;
   const BodyRows         *rows = &body->rows;
+  const PetscInt         *place;
+  PetscInt                n;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetBase() first");
+  PetscCheck(c && c->has_base, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetBase() first");
   PetscCall(GatherInputs(body));
   for (PetscInt k = 0; k < body->substeps; k++) PetscCall(RespondSubstep(body, k));
+  ComplianceGetRows(c->matrices, &n, NULL, &place);
   for (PetscInt k = 0; k < body->substeps; k++) {
     PetscScalar *displacement, *reaction;
 
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.reaction, k + 1, &reaction));
     for (PetscInt i = 0; i < rows->local; i++) {
-      const PetscInt place = c->place[rows->begin + i];
+      const PetscInt at = place[rows->begin + i];
 
       reaction[i] = 0;
-      if (place < 0) continue;
-      displacement[i] = c->displacement[k * c->n + place];
-      if (c->roles[i] == BODY_PRESCRIBED) reaction[i] = c->known_force[k * c->n + place] + c->force[k * c->n + place];
+      if (at < 0) continue;
+      displacement[i] = c->displacement[k * n + at];
+      if (c->roles[i] == BODY_PRESCRIBED || c->roles[i] == BODY_ROBIN) reaction[i] = c->known_force[k * n + at] + c->force[k * n + at];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

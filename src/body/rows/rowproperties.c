@@ -15,36 +15,35 @@
 
   Level: developer
 
-  Note:
-  Costs two products with sparse matrices for each row of the interface.
-
 .seealso: `Body`, `BodyGetImpedance()`, `BodySetRobin()`
 @*/
 PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
 {
-  const BodyRows    *rows = &body->rows;
-  const PetscScalar *row;
-  Mat                K;
+  const BodyRows *rows = &body->rows;
+  Mat             K, forces;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   if (!rows->global) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetStiffness(body, &K));
-  for (PetscInt j = 0; j < rows->global; j++) {
-    const PetscInt local = j - rows->begin;
+  PetscCall(MatMatMult(body->interface, K, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &forces));
+  for (PetscInt i = 0; i < rows->local; i++) {
+    const PetscInt    *of_forces, *of_row;
+    const PetscScalar *force, *row;
+    PetscInt           n_forces, n_row;
 
-    PetscCall(VecZeroEntries(body->row_vec[0]));
-    if (local >= 0 && local < rows->local) PetscCall(VecSetValue(body->row_vec[0], j, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(body->row_vec[0]));
-    PetscCall(VecAssemblyEnd(body->row_vec[0]));
-    PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
-    PetscCall(MatMult(K, body->work[0], body->work[2]));
-    PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
-    PetscCall(VecGetArrayRead(body->row_vec[0], &row));
-    if (local >= 0 && local < rows->local) stiffness[local] = PetscRealPart(row[local]);
-    PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
+    stiffness[i] = 0;
+    PetscCall(MatGetRow(body->interface, rows->begin + i, &n_row, &of_row, &row));
+    PetscCall(MatGetRow(forces, rows->begin + i, &n_forces, &of_forces, &force));
+    for (PetscInt k = 0, l = 0; k < n_row; k++) {
+      while (l < n_forces && of_forces[l] < of_row[k]) l++;
+      if (l < n_forces && of_forces[l] == of_row[k]) stiffness[i] += PetscRealPart(force[l] * row[k]);
+    }
+    PetscCall(MatRestoreRow(forces, rows->begin + i, &n_forces, &of_forces, &force));
+    PetscCall(MatRestoreRow(body->interface, rows->begin + i, &n_row, &of_row, &row));
   }
+  PetscCall(MatDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -155,7 +155,7 @@ PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
 PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 {
   PetscInt  counts[3] = {0, 0, 0};
-  PetscBool changed   = PETSC_FALSE, known;
+  PetscBool changed   = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -166,22 +166,20 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
     counts[1] += conditions[i] == BODY_FORCED || conditions[i] == BODY_ROBIN;
     counts[2] += conditions[i] == BODY_ROBIN;
   }
-  known = BodyMatchResponse(body);
   if (body->rows.size > 1) {
-    PetscInt all[5] = {counts[0], counts[1], changed ? 1 : 0, known ? 0 : 1, counts[2]};
+    PetscInt all[4] = {counts[0], counts[1], counts[2], changed ? 1 : 0};
 
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 5, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
     counts[0] = all[0];
     counts[1] = all[1];
-    counts[2] = all[4];
-    changed   = (PetscBool)(all[2] > 0);
-    known     = (PetscBool)(all[3] == 0);
+    counts[2] = all[2];
+    changed   = (PetscBool)(all[3] > 0);
   }
   if (!changed) PetscFunctionReturn(PETSC_SUCCESS);
   body->n_prescribed = counts[0];
   body->n_forced     = counts[1];
   body->n_robin      = counts[2];
-  PetscCall(BodyValidateResponse(body, known));
+  BodyInvalidateRepeat(body);
   PetscCall(BodySetConstraints(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -176,7 +176,7 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(BodyEliminateHeld(body, solvable));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(solvable, body->free_rows, body->dim, prefix, &body->mass_solver));
+  PetscCall(ConstrainedSolverCreate(solvable, body->free_rows, body->dim, prefix, NULL, &body->mass_solver));
   PetscCall(BodySetConstraints(body)); /* rows may be prescribed already */
   PetscCall(MatDestroy(&solvable));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,5 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
-#include <impakt/private/contactimpl.h>
+#include <contact/compliance/interfaceoperator.h>
 
 /* Whether a row has been let go in this controller step, and its force is not zero all at once. Bodies of one step take it so by the force
    that their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and momentum with it. */
@@ -113,7 +113,7 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
     rows[i] = BODY_FREE;
     if (!takes || conditions == CONDITIONS_FREE) continue;
     if (conditions == CONDITIONS_FORCES) rows[i] = BODY_FORCED;
-    if (RowFades(contact, i) && (conditions == CONDITIONS_SCHWARZ || conditions == CONDITIONS_ACTIVE_FORCES)) rows[i] = BODY_FORCED;
+    if (RowFades(contact, i)) rows[i] = BODY_FORCED;
     if (!contact->active[i]) continue;
     if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
     if (conditions == CONDITIONS_SCHWARZ)
@@ -141,24 +141,6 @@ PetscErrorCode ContactOr(Contact contact, int *flag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what a body does to all gaps under unit contact forces; `displacement` is its rows' displacement under unit forces on
-   them, all rows by all rows. A contact force pushes Neumann sides along the rows and Dirichlet sides against them, and so their
-   displacements open and close the gap. */
-PetscErrorCode ContactAddCompliance(Contact contact, PetscInt b, const PetscScalar displacement[], PetscScalar compliance[])
-{
-  const PetscInt n = contact->n_all_rows;
-
-  PetscFunctionBegin;
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) {
-      const ContactPair *pair_i = &contact->pairs[contact->all_row_pair[i]], *pair_j = &contact->pairs[contact->all_row_pair[j]];
-      const PetscInt     sign_i = (pair_i->body[1] == b) - (pair_i->body[0] == b), sign_j = (pair_j->body[1] == b) - (pair_j->body[0] == b);
-
-      compliance[j * n + i] += sign_i * sign_j * displacement[j * n + i];
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether any row on any rank is active (penetrating = false), or penetrates without being active (true) */
 PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any)
 {
@@ -172,14 +154,12 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The active set on every rank: 1; rows that have been let go in this controller step with a force that fades: 2 */
-PetscErrorCode ContactGatherActive(Contact contact)
+/* Whether forces are sought for each row of this rank: active rows; or known beside them: rows that have been let go in this controller
+   step with a force that fades */
+void ContactMarkActive(Contact contact, InterfaceMark marks[])
 {
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->mine_active[i] = contact->active[i] ? 1 : RowFades(contact, i) ? 2 : 0;
-  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts,
-                              contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    marks[i] = contact->active[i] ? INTERFACE_SOLVED : RowFades(contact, i) ? INTERFACE_KNOWN : INTERFACE_LEFT_OUT;
 }
 
 /* Gaps at the end of the controller step, from the bodies' traces */

@@ -55,7 +55,7 @@ static PetscBool RowIsWrong(Contact contact, PetscInt i)
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
   if (contact->active[i]) return (PetscBool)(schwarz->recheck && contact->force[i] < 0 && !contact->tied[i] && !schwarz->rounds.kept[i]);
-  return (PetscBool)(contact->gap[i] < -contact->tolerance && (!schwarz->responding || schwarz->known[i]));
+  return (PetscBool)(contact->gap[i] < -contact->tolerance && (schwarz->step != STEP_CONDENSED || schwarz->known[i]));
 }
 
 /* The first of all ranks' rows that are wrong, by its number on this rank, or -1; and whether all rows may change at once again */

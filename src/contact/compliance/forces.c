@@ -1,27 +1,19 @@
-/* One sweep under given contact forces, the interface compliance of all bodies, and the set of rows that a step holds. */
+/* One sweep under given contact forces, and the rows whose gap rate counts in a step. */
 #include "forces.h"
 
-/* of dense matrices of all rows */
+/* of dense matrices of all rows, 32 MB */
 #define MAX_DENSE_ROWS 2000
 
-/* The force that pushes the rows of a body, from `force`, into its input trace; how much more than before at the end of the step */
-static PetscErrorCode SetBodyForces(Contact contact, PetscInt b, Trace force, PetscScalar change[])
+/* The force that pushes the rows of a body, from `force`, into its input trace */
+static PetscErrorCode SetBodyForces(Contact contact, PetscInt b, Trace force)
 {
-  const BodyTraces *traces = &contact->traces[b];
-  PetscScalar      *end;
-  PetscInt          levels;
-
   PetscFunctionBegin;
-  PetscCall(TraceGetSizes(traces->force_in, NULL, &levels));
-  PetscCall(TraceGetLevel(traces->force_in, levels, &end));
-  for (PetscInt i = 0; i < contact->n_rows; i++) change[i] = -end[i];
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt side = 0; side < 2; side++)
-      if (pair->body[side] == b) PetscCall(TraceResample(force, pair->begin, pair->end, side ? 1 : -1, traces->force_in));
+      if (pair->body[side] == b) PetscCall(TraceResample(force, pair->begin, pair->end, side ? 1 : -1, contact->traces[b].force_in));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) change[i] += end[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,11 +34,9 @@ PetscErrorCode ForcesIntegrate(Contact contact, Forces *forces, const PetscScala
     to[i]   = factor * end[i];
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(SetBodyForces(contact, b, forces->trace, forces->change));
-    if (forces->feels[b] || !forces->integrated) PetscCall(BodyIntegrate(contact->bodies[b]));
-    else PetscCall(BodyAddEndForce(contact->bodies[b], forces->change));
+    PetscCall(SetBodyForces(contact, b, forces->trace));
+    PetscCall(BodyIntegrate(contact->bodies[b]));
   }
-  forces->integrated = PETSC_TRUE;
   PetscCall(ContactComputeGaps(contact));
   contact->counts_made.sweeps++;
   PetscCall(PetscTime(&finish));
@@ -59,8 +49,7 @@ PetscErrorCode ForcesCreate(Contact contact, Forces *forces)
 {
   PetscFunctionBegin;
   PetscCall(TraceCreate(contact->n_rows, 1, &forces->trace));
-  PetscCall(PetscCalloc3(contact->n_rows, &forces->held, contact->n_rows, &forces->change, contact->n_bodies, &forces->feels));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &forces->feels[b]));
+  PetscCall(PetscCalloc1(contact->n_rows, &forces->touching));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -68,7 +57,7 @@ PetscErrorCode ForcesDestroy(Forces *forces)
 {
   PetscFunctionBegin;
   PetscCall(TraceDestroy(&forces->trace));
-  PetscCall(PetscFree3(forces->held, forces->change, forces->feels));
+  PetscCall(PetscFree(forces->touching));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,56 +72,34 @@ PetscErrorCode ForcesCheckDense(Contact contact, const char type[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Change of all gaps at the end of the step for unit forces there: the sum of what the bodies of each pair do; all rows by all
-   rows, by columns [m/N]. Also makes what repeated sweeps profit from. */
-PetscErrorCode ForcesComputeCompliance(Contact contact, PetscScalar compliance[])
-{
-  const PetscInt n = contact->n_all_rows;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(compliance, n * n));
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscScalar *response;
-
-    PetscCall(BodyComputeResponse(contact->bodies[b], &response));
-    PetscCall(ContactAddCompliance(contact, b, response, compliance));
-  }
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Free trial, where nothing was in contact or is tied; then, if there is contact, all rows are forced. `held`: the rows that were in
+/* Free trial, where nothing was in contact or is tied; then, if there is contact, all rows are forced. `touching`: the rows that were in
    contact, or penetrate at the end of the trial or at the start of the step. What concerns the rate of the gap concerns these alone: while
    forces are sought, a row must not switch on and off with the sign of its gap. */
 PetscErrorCode ForcesBeginStep(Contact contact, Forces *forces, PetscBool *in_contact)
 {
   PetscFunctionBegin;
-  forces->integrated = PETSC_FALSE;
   PetscCall(PetscArraycpy(contact->active, contact->saved_active, contact->n_rows));
   PetscCall(ContactAny(contact, PETSC_FALSE, in_contact));
   if (contact->law == CONTACT_LAW_TIED) *in_contact = PETSC_TRUE;
   if (!*in_contact) PetscCall(ContactIntegrateFree(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->n_rows; i++)
-    forces->held[i] = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
+    forces->touching[i] = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (forces->feels[b]) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows with a force, and those that penetrate, are held from now on; whether any was not before */
-PetscErrorCode ForcesHold(Contact contact, Forces *forces, const PetscScalar force[], PetscBool *changed)
+/* The gap rate of rows with a force, and of those that penetrate, counts from now on; `changed`: that of any did not before */
+PetscErrorCode ForcesTouch(Contact contact, Forces *forces, const PetscScalar force[], PetscBool *changed)
 {
-  PetscBool *held = forces->held;
-  int        any  = 0;
+  PetscBool *touching = forces->touching;
+  int        any      = 0;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->n_rows; i++) {
-    if (held[i] || !(force[i] > 0 || contact->gap[i] < -contact->tolerance)) continue;
-    held[i] = PETSC_TRUE;
-    any     = 1;
+    if (touching[i] || !(force[i] > 0 || contact->gap[i] < -contact->tolerance)) continue;
+    touching[i] = PETSC_TRUE;
+    any         = 1;
   }
   PetscCall(ContactOr(contact, &any));
   *changed = (PetscBool)(any > 0);

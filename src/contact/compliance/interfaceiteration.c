@@ -1,95 +1,176 @@
-/* Newton's step on interfaces with more rows than a dense matrix is good for: conjugate gradients, with one solution of each body for a
-   product. */
-#include <contact/impls/schwarz/schwarzimpl.h>
+/* S where it is only multiplied with: one solution with the factors of each body for a product, and conjugate gradients. */
+#include "interfaceimpl.h"
 
-/* of the residual: a step of Newton's method that leaves so much takes one more sweep at most */
-#define FORCE_TOLERANCE 1e-9
+/* Iterations after which conjugate gradients are said not to converge; surfaces of 10^4 facets take 20 to 30 */
+#define MAX_ITERATIONS 1000
 
-/* How forces on active rows open their gaps or, if `dirichlet`, move the Dirichlet sides; sides are never swapped here */
-static PetscErrorCode MultiplyBodies(Contact contact, PetscBool dirichlet, Vec x, Vec y)
+PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator op)
 {
   PetscFunctionBegin;
-  PetscCall(ContactMultiplyCompliance(contact, contact->active, dirichlet, ((Schwarz *)contact->data)->problem.work, x, y));
+  PetscCall(MatCreateVecs(op->contact->interfaces[0], NULL, &op->unknown));
+  PetscCall(VecDuplicate(op->unknown, &op->rhs));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDuplicate(op->unknown, &op->work[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator op)
+{
+  PetscFunctionBegin;
+  PetscCall(KSPDestroy(&op->iterative));
+  PetscCall(VecDestroy(&op->unknown));
+  PetscCall(VecDestroy(&op->rhs));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDestroy(&op->work[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a row of this rank is solved for at present */
+static PetscBool IsIn(InterfaceOperator op, PetscInt i)
+{
+  return (PetscBool)(PetscRealPart(op->diagonal[i]) >= 0);
+}
+
+/* What one body adds to y = M x on the rows that are solved for */
+static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt b, Vec x, Vec y)
+{
+  const Contact      contact = op->contact;
+  const PetscScalar *in, *moved;
+  PetscScalar       *force, *out;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(x, &in));
+  PetscCall(VecGetArrayWrite(op->work[0], &force));
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    force[i] = op->marks[i] == INTERFACE_SOLVED ? InterfaceSideIn(map, &contact->pairs[contact->row_pair[i]], b) * in[i] : 0;
+  PetscCall(VecRestoreArrayWrite(op->work[0], &force));
+  PetscCall(VecRestoreArrayRead(x, &in));
+  PetscCall(BodyApplyCompliance(contact->bodies[b], op->work[0], op->work[1]));
+  PetscCall(VecGetArrayRead(op->work[1], &moved));
+  PetscCall(VecGetArray(y, &out));
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    if (op->marks[i] == INTERFACE_SOLVED) out[i] += InterfaceSideOut(map, &contact->pairs[contact->row_pair[i]], b) * moved[i];
+  PetscCall(VecRestoreArray(y, &out));
+  PetscCall(VecRestoreArrayRead(op->work[1], &moved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = M x on the rows that are solved for, zero on the others; x counts on the former alone, and is not `work` of the operator */
+PetscErrorCode InterfaceOperatorApply(InterfaceOperator op, InterfaceMap map, Vec x, Vec y)
+{
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(y));
+  for (PetscInt b = 0; b < op->contact->n_bodies; b++)
+    if (op->feels[b]) PetscCall(ApplyBody(op, map, b, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = (S + diagonal) x on the rows that are in, y = x on the others, where x is zero */
 static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
 {
-  Contact contact;
+  InterfaceOperator  op;
+  const PetscScalar *in;
+  PetscScalar       *out;
 
   PetscFunctionBegin;
-  PetscCall(MatShellGetContext(shell, &contact));
-  PetscCall(MultiplyBodies(contact, PETSC_FALSE, x, y));
+  PetscCall(MatShellGetContext(shell, &op));
+  if (op->matrix) PetscCall(MatMult(op->matrix, x, y));
+  else PetscCall(InterfaceOperatorApply(op, INTERFACE_GAP, x, y));
+  PetscCall(VecGetArrayRead(x, &in));
+  PetscCall(VecGetArray(y, &out));
+  for (PetscInt i = 0; i < op->contact->n_rows; i++) {
+    if (IsIn(op, i)) out[i] += op->diagonal[i] * in[i];
+    else out[i] = in[i];
+  }
+  PetscCall(VecRestoreArray(y, &out));
+  PetscCall(VecRestoreArrayRead(x, &in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateIterative(Contact contact)
+/* What Jacobi's preconditioner divides by: the diagonal of a sparse S; else what is added to S, which outweighs it where springs are soft.
+   One where there is neither, as between bodies without mass. */
+static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
 {
-  InterfaceProblem *problem = &((Schwarz *)contact->data)->problem;
+  InterfaceOperator op;
+  PetscScalar      *values;
 
   PetscFunctionBegin;
-  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
-  PetscCall(VecDuplicate(problem->force_vec, &problem->residual_vec));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDuplicate(problem->force_vec, &problem->work[k]));
-  PetscCall(ContactCreateRowSolver(contact, "schwarz_interface_", FORCE_TOLERANCE, Multiply, contact, &problem->iterative));
+  PetscCall(MatShellGetContext(shell, &op));
+  if (op->matrix) PetscCall(MatGetDiagonal(op->matrix, diagonal));
+  else PetscCall(VecZeroEntries(diagonal));
+  PetscCall(VecGetArray(diagonal, &values));
+  for (PetscInt i = 0; i < op->contact->n_rows; i++) {
+    values[i] += op->diagonal[i];
+    if (!IsIn(op, i) || !(PetscRealPart(values[i]) > 0)) values[i] = 1;
+  }
+  PetscCall(VecRestoreArray(diagonal, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The level of a pair's unknowns that belongs to level `k` of those of the pair with most, or less than 0: they end together */
-static PetscInt LevelOfPair(const Schwarz *schwarz, PetscInt p, PetscInt most, PetscInt k)
+static PetscErrorCode CreateIterative(InterfaceOperator op)
 {
-  return k - (most - schwarz->levels[p]);
+  const Contact contact = op->contact;
+  MPI_Comm      comm    = PetscObjectComm((PetscObject)contact);
+  Mat           shell;
+  PC            pc;
+
+  PetscFunctionBegin;
+  if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
+  PetscCall(MatCreateShell(comm, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, op, &shell));
+  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))Multiply));
+  PetscCall(MatShellSetOperation(shell, MATOP_GET_DIAGONAL, (void (*)(void))GetDiagonal));
+  PetscCall(KSPCreate(comm, &op->iterative));
+  PetscCall(KSPSetOptionsPrefix(op->iterative, op->settings.prefix));
+  PetscCall(KSPSetOperators(op->iterative, shell, shell));
+  PetscCall(KSPSetType(op->iterative, KSPCG));
+  PetscCall(KSPGetPC(op->iterative, &pc));
+  PetscCall(PCSetType(pc, PCJACOBI));
+  PetscCall(KSPSetNormType(op->iterative, KSP_NORM_UNPRECONDITIONED));
+  PetscCall(KSPSetInitialGuessNonzero(op->iterative, op->settings.warm));
+  PetscCall(KSPSetTolerances(op->iterative, op->settings.tolerance, 0, PETSC_CURRENT, MAX_ITERATIONS));
+  PetscCall(KSPSetFromOptions(op->iterative));
+  PetscCall(MatDestroy(&shell));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Level `k` of Y from that of F: the forces that close it, then what they do to the Dirichlet sides */
-static PetscErrorCode SolveLevel(Contact contact, PetscInt most, PetscInt k, Vec F, Vec Y)
+/* Not to converge is an error, but where round-off alone keeps the residual from the tolerance */
+static PetscErrorCode CheckConverged(InterfaceOperator op)
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  InterfaceProblem  *problem = &schwarz->problem;
+  KSPConvergedReason reason;
+  PetscReal          left, all;
   PetscInt           iterations;
-  const PetscScalar *f, *moved, *force;
-  PetscScalar       *residual, *y;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(F, &f));
-  PetscCall(VecGetArrayWrite(problem->residual_vec, &residual));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt level = LevelOfPair(schwarz, contact->row_pair[i], most, k);
-
-    residual[i] = contact->active[i] && level >= 0 ? f[schwarz->offset[i] + level] : 0;
-  }
-  PetscCall(VecRestoreArrayWrite(problem->residual_vec, &residual));
-  PetscCall(VecRestoreArrayRead(F, &f));
-  PetscCall(KSPSolve(problem->iterative, problem->residual_vec, problem->force_vec));
-  PetscCall(KSPGetIterationNumber(problem->iterative, &iterations));
-  contact->counts_made.inner_iterations += iterations;
-  PetscCall(MultiplyBodies(contact, PETSC_TRUE, problem->force_vec, problem->residual_vec));
-  PetscCall(VecGetArrayRead(problem->residual_vec, &moved));
-  PetscCall(VecGetArrayRead(problem->force_vec, &force));
-  PetscCall(VecGetArray(Y, &y));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt level = LevelOfPair(schwarz, contact->row_pair[i], most, k);
-
-    if (level >= 0) y[schwarz->offset[i] + level] = ByForce(contact, i) ? force[i] / ContactForceUnit(contact, i) : moved[i];
-  }
-  PetscCall(VecRestoreArray(Y, &y));
-  PetscCall(VecRestoreArrayRead(problem->force_vec, &force));
-  PetscCall(VecRestoreArrayRead(problem->residual_vec, &moved));
+  PetscCall(KSPGetIterationNumber(op->iterative, &iterations));
+  op->contact->counts_made.inner_iterations += iterations;
+  op->spent += (iterations + (op->settings.warm ? 1 : 0)) * op->product_flops; /* a first iterate takes a product for its residual */
+  PetscCall(KSPGetConvergedReason(op->iterative, &reason));
+  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetResidualNorm(op->iterative, &left));
+  PetscCall(VecNorm(op->rhs, NORM_2, &all));
+  PetscCheck(left <= op->settings.worst * all, PetscObjectComm((PetscObject)op->contact), PETSC_ERR_NOT_CONVERGED,
+             "Conjugate gradients for the contact forces of %" PetscInt_FMT " rows leave %g of their gaps after %" PetscInt_FMT
+             " iterations (%s); raise -%sksp_max_it, or look with -%sksp_monitor",
+             op->n, (double)(left / all), iterations, KSPConvergedReasons[reason], op->settings.prefix, op->settings.prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same by conjugate gradients, level by level: what the force at one time does later is left to the next sweep, so that with equal
-   substeps the last level is right after as many sweeps as there are levels, and to secants */
-PetscErrorCode SchwarzSolveIteratively(Contact contact, Vec F, Vec Y)
+/* y = (S + diagonal)^{-1} x on this rank's rows that are in, zero on the others */
+PetscErrorCode InterfaceOperatorIterate(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
 {
-  Schwarz          *schwarz = (Schwarz *)contact->data;
-  InterfaceProblem *problem = &schwarz->problem;
-  PetscInt          most    = 1;
+  const PetscScalar *solution;
+  PetscScalar       *values;
 
   PetscFunctionBegin;
-  if (!problem->iterative) PetscCall(CreateIterative(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) most = PetscMax(most, schwarz->levels[p]);
-  PetscCall(VecZeroEntries(Y));
-  for (PetscInt k = 0; k < most; k++) PetscCall(SolveLevel(contact, most, k, F, Y));
+  if (!op->iterative) PetscCall(CreateIterative(op));
+  PetscCall(VecGetArrayWrite(op->rhs, &values));
+  for (PetscInt i = 0; i < op->contact->n_rows; i++) values[i] = IsIn(op, i) ? x[i] : 0;
+  PetscCall(VecRestoreArrayWrite(op->rhs, &values));
+  PetscCall(VecGetArrayWrite(op->unknown, &values));
+  for (PetscInt i = 0; i < op->contact->n_rows; i++) values[i] = IsIn(op, i) && op->settings.warm ? y[i] : 0;
+  PetscCall(VecRestoreArrayWrite(op->unknown, &values));
+  PetscCall(KSPSolve(op->iterative, op->rhs, op->unknown));
+  PetscCall(CheckConverged(op));
+  PetscCall(VecGetArrayRead(op->unknown, &solution));
+  PetscCall(PetscArraycpy(y, solution, op->contact->n_rows));
+  PetscCall(VecRestoreArrayRead(op->unknown, &solution));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,25 +2,18 @@
    src/contact/impls. */
 #pragma once
 #include <impakt/private/contactimpl.h>
-#include <petscblaslapack.h>
+#include <contact/compliance/interfaceoperator.h>
 
 typedef struct {
-  Contact contact; /* borrowed */
-  Mat     compliance;
+  InterfaceOperator S;          /* C, with the active rows as those that are solved for */
+  Mat               compliance; /* C */
   /* of the rows of this rank */
-  PetscScalar *gaps, *forces;
-  PetscBool   *active; /* rows with a force */
-  PetscScalar *mine;   /* work space */
-  Vec          force_vec, gap_vec, rhs_vec;
-  /* active rows of all ranks, on every rank, where there are not too many */
-  PetscBool     dense, current; /* whether rows and factor are those of the active rows */
-  PetscBool    *factored;       /* rows of this rank that are in the factor */
-  PetscInt      n, capacity;
-  PetscInt     *rows, *place; /* place: of each row of all ranks among them, or -1 */
-  PetscScalar  *factor, *rhs;
-  PetscBLASInt *pivots;
-  /* with more of them */
-  KSP iterative;
+  PetscScalar   *gaps, *forces;
+  PetscBool     *active; /* rows with a force */
+  PetscScalar   *mine;   /* work space */
+  InterfaceMark *marks;
+  PetscBool      current; /* those of C with S as it is */
+  Vec            force_vec, gap_vec;
 } Complementarity;
 
 PETSC_INTERN PetscErrorCode ComplementarityCreate(Contact, Complementarity *);

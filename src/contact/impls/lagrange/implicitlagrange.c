@@ -9,16 +9,19 @@
 */
 #include "lagrangeimpl.h"
 #include <contact/compliance/forces.h>
+#include <contact/compliance/interfaceoperator.h>
 #include <contact/compliance/outersolver.h>
 #include <sys/petsccompat.h>
 
 typedef struct {
-  OuterSolver  outer;
-  PetscReal    atol, rtol; /* on the gap [m], and relative to the displacement of the contact nodes */
-  Forces       forces;
-  PetscScalar *compliance; /* all rows by all rows, by columns [m/N] */
-  PetscBool    have_jacobian, scaled_in_place;
-  PetscReal    scale; /* of the forces at the end of the step, as the integrator takes them */
+  OuterSolver       outer;
+  PetscReal         atol, rtol; /* on the gap [m], and relative to the displacement of the contact nodes */
+  Forces            forces;
+  InterfaceOperator S;
+  InterfaceMark    *marks;      /* all rows are solved for */
+  PetscScalar      *compliance; /* S, all rows by all rows, by columns [m/N], times `scale` */
+  PetscBool         have_jacobian, scaled_in_place;
+  PetscReal         scale; /* of the forces at the end of the step, as the integrator takes them */
   /* for the rate beside the gap, and for the contact-stabilised prediction */
   Complementarity impulses;
   PetscBool       close_rate, stabilized;
@@ -63,7 +66,8 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(ForcesIntegrate(contact, &lagrange->forces, x, lagrange->scale));
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt i = 0; i < contact->n_rows; i++)
-    f[i] = contact->gap[i] - (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->forces.held[i] ? contact->saved_gap[i] : 0);
+    f[i] = contact->gap[i] -
+           (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->forces.touching[i] ? contact->saved_gap[i] : 0);
   PetscCall(MeasureMismatch(contact, x, f));
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -204,7 +208,7 @@ static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
     PetscCall(CheckConverged(contact));
     PetscCall(TakeForces(contact));
     changed = PETSC_FALSE;
-    if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) PetscCall(ForcesHold(contact, &lagrange->forces, contact->force, &changed));
+    if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) PetscCall(ForcesTouch(contact, &lagrange->forces, contact->force, &changed));
   }
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->force[i] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -250,7 +254,8 @@ static PetscErrorCode ContactDestroy_ImplicitLagrange(Contact contact)
   PetscCall(OuterSolverDestroy(&lagrange->outer));
   PetscCall(ForcesDestroy(&lagrange->forces));
   if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementarityDestroy(&lagrange->impulses));
-  PetscCall(PetscFree(lagrange->compliance));
+  PetscCall(InterfaceOperatorDestroy(&lagrange->S));
+  PetscCall(PetscFree2(lagrange->compliance, lagrange->marks));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -306,7 +311,8 @@ static PetscErrorCode ComputeCompliance(Contact contact)
   ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(ForcesComputeCompliance(contact, lagrange->compliance));
+  PetscCall(InterfaceOperatorSetRows(lagrange->S, lagrange->marks, 1));
+  PetscCall(InterfaceOperatorAssemble(lagrange->S, INTERFACE_GAP, -1, lagrange->compliance));
   for (PetscInt i = 0; i < contact->n_all_rows * contact->n_all_rows; i++) lagrange->compliance[i] *= lagrange->scale;
   lagrange->have_jacobian = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -325,7 +331,9 @@ static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
 
 PetscErrorCode LagrangeSetUpImplicit(Contact contact)
 {
-  ImplicitLagrange *lagrange;
+  /* SNESVI wants all of S as a matrix: dense whatever its size, which ForcesCheckDense() bounds; nothing is iterated for */
+  const InterfaceSettings settings = {.prefix = "lagrange_", .dense_limit = contact->n_all_rows, .few = contact->n_all_rows};
+  ImplicitLagrange       *lagrange;
 
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, "lagrange"));
@@ -342,7 +350,9 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   lagrange->scale           = 1;
   PetscCall(ForcesGetStep(contact, &lagrange->step));
   PetscCall(ForcesCreate(contact, &lagrange->forces));
-  PetscCall(PetscCalloc1(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance));
+  PetscCall(InterfaceOperatorCreate(contact, &settings, &lagrange->S));
+  PetscCall(PetscCalloc2(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance, contact->n_rows, &lagrange->marks));
+  for (PetscInt i = 0; i < contact->n_rows; i++) lagrange->marks[i] = INTERFACE_SOLVED;
   if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(SetUpStabilized(contact));
   if (contact->constraint == CONTACT_CONSTRAINT_BOTH) {
     PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));

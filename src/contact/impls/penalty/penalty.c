@@ -42,7 +42,7 @@ static PetscReal WantedForce(Contact contact, PetscInt i)
   const PetscReal spring  = penalty->multiplier[i] - penalty->spring[i] * contact->gap[i];
 
   if (contact->constraint == CONTACT_CONSTRAINT_GAP) return spring;
-  if (!penalty->forces.held[i]) return 0;
+  if (!penalty->forces.touching[i]) return 0;
   return spring - penalty->damper[i] * (contact->gap[i] - contact->saved_gap[i]) / penalty->step;
 }
 
@@ -209,7 +209,7 @@ PetscErrorCode PenaltySolve(Contact contact)
     PetscCall(PetscArraycpy(contact->force, force, contact->n_rows));
     PetscCall(VecRestoreArrayRead(penalty->outer.x, &force));
     changed = PETSC_FALSE;
-    if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ForcesHold(contact, &penalty->forces, contact->force, &changed));
+    if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ForcesTouch(contact, &penalty->forces, contact->force, &changed));
   }
   for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || contact->force[i] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);

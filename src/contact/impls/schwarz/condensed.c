@@ -23,82 +23,107 @@ PetscErrorCode SchwarzReadCondensation(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Why the sweeps cannot be condensed, or NULL; whether Newton's method may use the compliance all the same */
-static PetscErrorCode FindObstacle(Contact contact, const char *why[], PetscBool *newton)
+/* Whether a side of a pair has mass on its contact nodes */
+static PetscErrorCode SideHasMass(Contact contact, const ContactPair *pair, PetscInt side, PetscBool *has)
+{
+  PetscBool massless;
+
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  if (pair->obstacle && side == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
+  *has = (PetscBool)!massless;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether contact nodes with mass are prescribed: their force is not the one that would move them */
+static PetscErrorCode PrescribesMass(Contact contact, PetscBool *prescribes)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  *why    = NULL;
-  *newton = PETSC_FALSE;
-  if (schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN) *why = "-schwarz_transmission is not dirichlet_neumann";
-  else if (schwarz->swap) *why = "-contact_swap_sides is on";
-  else if (schwarz->convergence == CONVERGENCE_POSITION) *why = "-schwarz_convergence position wants all nodes after each sweep";
-  for (PetscInt p = 0; p < contact->n_pairs && !*why; p++) {
-    PetscBool massless;
+  *prescribes = PETSC_FALSE;
+  if (schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++) {
+      PetscBool has;
 
-    PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[0]], &massless));
-    if (!massless) *why = "the contact nodes of a Dirichlet side have mass (-<body>_mass_redistribute false)";
-  }
-  if (*why) PetscFunctionReturn(PETSC_SUCCESS);
-  *newton = PETSC_TRUE;
-  for (PetscInt b = 0; b < contact->n_bodies && !*why; b++) {
+      PetscCall(SideHasMass(contact, &contact->pairs[p], side, &has));
+      *prescribes = (PetscBool)(*prescribes || has);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What keeps sweeps from running on the interface compliance, or NULL */
+static PetscErrorCode CondensationPrevented(Contact contact, PetscBool mass, const char *reason[])
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  *reason = NULL;
+  if (mass) *reason = "the contact nodes of a Dirichlet side have mass (-<body>_mass_redistribute false)";
+  else if (schwarz->convergence == CONVERGENCE_POSITION) *reason = "-schwarz_convergence position wants all nodes after each sweep";
+  for (PetscInt b = 0; b < contact->n_bodies && !*reason; b++) {
     PetscBool exact;
 
     PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
-    if (!exact) *why = "a body is nonlinear, or its integrator is not Newmark's";
+    if (!exact) *reason = "a body is nonlinear, or its integrator is not Newmark's";
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Marks the pairs whose Dirichlet side makes substeps that its partner does not share: their forces are the unknowns, see
-   SchwarzSetUpSides() */
-static PetscErrorCode MarkUnshared(Contact contact, PetscBool *any)
+ * SchwarzSetUpSides() */
+static PetscErrorCode MarkUnshared(Contact contact)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  *any = PETSC_FALSE;
-  for (PetscInt p = 0; p < contact->n_pairs && schwarz->waveform == WAVEFORM_LINEAR; p++) {
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     PetscInt     substeps[2];
 
     if (pair->obstacle) continue;
     for (PetscInt side = 0; side < 2; side++) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[side]], &substeps[side]));
-    pair->by_force = (PetscBool)(substeps[1] % substeps[0] != 0);
-    if (pair->by_force) *any = PETSC_TRUE;
+    pair->by_force = (PetscBool)(substeps[1] % substeps[0] != 0 || (schwarz->swap && substeps[0] % substeps[1] != 0));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether Newton's method uses the bodies' compliance, and whether sweeps run on it. In one dimension the response to whole conditions,
-   which is there already, is as good, unless forces are unknowns: where a node has several partners, or substeps are not shared. */
-PetscErrorCode SchwarzChooseCondensation(Contact contact)
+/* How controller steps in contact are made. Everything but the mass of prescribed nodes changes the way to the solution, not the solution:
+   forces of rows that are let go fade in the course of the step wherever contact nodes are massless. */
+PetscErrorCode SchwarzChooseMode(Contact contact)
 {
   Schwarz    *schwarz = (Schwarz *)contact->data;
-  const char *why;
-  PetscBool   newton, unshared, substeps = PETSC_FALSE;
-  int         shared = contact->shared.n > 0;
+  const char *reason;
+  PetscBool   prescribes, has;
 
   PetscFunctionBegin;
-  PetscCall(ContactOr(contact, &shared));
-  PetscCall(FindObstacle(contact, &why, &newton));
-  PetscCall(MarkUnshared(contact, &unshared));
+  PetscCall(PrescribesMass(contact, &prescribes));
+  PetscCall(CondensationPrevented(contact, prescribes, &reason));
+  PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !reason, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_condense 1: %s; leave it at auto", reason);
+  schwarz->exact = PETSC_TRUE;
+  contact->fades = (PetscBool)(schwarz->waveform == WAVEFORM_LINEAR);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscInt n;
+    PetscBool exact;
+    PetscInt  n;
 
+    PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
     PetscCall(BodyGetSubsteps(contact->bodies[b], &n));
-    if (n > 1) substeps = PETSC_TRUE;
+    if (!exact || prescribes) schwarz->exact = PETSC_FALSE;
+    if (n > 1) schwarz->substeps = PETSC_TRUE;
   }
-  PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !why, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-schwarz_condense 1: %s; leave it at auto", why);
-  schwarz->by_compliance = (PetscBool)(newton && (contact->dim > 1 || shared || unshared || schwarz->condense == CONDENSE_ALWAYS));
-  schwarz->exact         = (PetscBool)!why;
-  schwarz->uses_secants  = (PetscBool)(schwarz->by_compliance && (why || substeps));
-  schwarz->condensed     = (PetscBool)(schwarz->by_compliance && !why && schwarz->condense != CONDENSE_NEVER);
-  contact->fades         = (PetscBool)(schwarz->by_compliance && schwarz->waveform == WAVEFORM_LINEAR);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscCall(SideHasMass(contact, &contact->pairs[p], 0, &has));
+    if (has) contact->fades = PETSC_FALSE;
+  }
+  if (prescribes) schwarz->mode = SCHWARZ_MASS;
+  else if (reason || schwarz->condense == CONDENSE_NEVER) schwarz->mode = SCHWARZ_BODIES;
+  else schwarz->mode = SCHWARZ_CONDENSED;
+  if (!prescribes && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->waveform == WAVEFORM_LINEAR)
+    PetscCall(MarkUnshared(contact));
   if (contact->fades) PetscCall(ContactSetUpRelease(contact));
-  for (PetscInt p = 0; p < contact->n_pairs && !schwarz->by_compliance; p++) contact->pairs[p].by_force = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,8 +156,19 @@ static PetscErrorCode MakeBase(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What changes are counted from in this controller step, and the part that each row plays now. Call with the active set known to the
-   bodies. */
+/* Tells the bodies' compliance what each row is in this round */
+PetscErrorCode SchwarzSetRoles(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->conditions);
+    PetscCall(BodySetRoles(contact->bodies[b], contact->conditions));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The integrations that condensed sweeps count changes from, and what each row is in this round. Call with the active set known to the
+ * bodies. */
 PetscErrorCode SchwarzPrepareCondensed(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
@@ -143,34 +179,40 @@ PetscErrorCode SchwarzPrepareCondensed(Contact contact)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(MakeBase(contact, b));
     schwarz->have_base = PETSC_TRUE;
   }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactGetConditions(contact, CONDITIONS_SCHWARZ, b, contact->conditions);
-    PetscCall(BodySetRoles(contact->bodies[b], contact->conditions));
+  PetscCall(SchwarzSetRoles(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces that the sweeps have ended with, on the rows whose force they have found, into the input trace of a body */
+static PetscErrorCode LoadSolution(Contact contact, PetscInt b)
+{
+  const BodyTraces *traces = &contact->traces[b];
+  PetscInt          levels;
+
+  PetscFunctionBegin;
+  ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->conditions);
+  PetscCall(TraceGetSizes(traces->force_in, NULL, &levels));
+  for (PetscInt level = 0; level <= levels; level++) {
+    PetscScalar *force, *reaction;
+
+    PetscCall(TraceGetLevel(traces->force_in, level, &force));
+    PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
+    for (PetscInt i = 0; i < contact->n_rows; i++)
+      if (contact->conditions[i] == BODY_PRESCRIBED || contact->conditions[i] == BODY_ROBIN) force[i] = reaction[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The whole bodies under the forces that the sweeps have ended with, which are in their traces */
+/* The whole bodies under the forces that the sweeps have ended with */
 PetscErrorCode SchwarzFinishCondensed(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const BodyTraces *traces = &contact->traces[b];
-    PetscInt          levels;
-
-    PetscCall(TraceGetSizes(traces->force_in, NULL, &levels));
-    for (PetscInt level = 0; level <= levels; level++) {
-      PetscScalar *force, *reaction;
-
-      PetscCall(TraceGetLevel(traces->force_in, level, &force));
-      PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
-      for (PetscInt i = 0; i < contact->n_rows; i++)
-        if (DirichletBody(&contact->pairs[contact->row_pair[i]]) == b) force[i] = reaction[i];
-    }
+    PetscCall(LoadSolution(contact, b));
     PetscCall(ContactLoadReleased(contact, b));
-    PetscCall(BodyIntegrate(contact->bodies[b]));
   }
+  PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyIntegrate(contact->bodies[b]));
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

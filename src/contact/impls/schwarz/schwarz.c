@@ -53,7 +53,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->exchange, contact->n_rows, &schwarz->offset, contact->n_all_rows,
-                         &schwarz->all_offset, contact->n_rows, &schwarz->jacobian_active));
+                         &schwarz->all_offset, contact->n_rows, &schwarz->solved_active));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal dt;
     PetscInt  substeps;
@@ -80,46 +80,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->rounds.tried, contact->n_rows, &schwarz->kept_force,
                          2 * contact->n_rows, &schwarz->previous));
   PetscCall(PetscCalloc2(contact->n_rows, &schwarz->known, contact->n_rows, &schwarz->rounds.kept));
-  PetscCall(PetscCalloc1(contact->n_rows, &schwarz->interpolated));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes everything that the time loop needs once all nodes are in contact that ever can be, so that it need not be made there */
-static PetscErrorCode PrepareContact(Contact contact)
-{
-  Schwarz *schwarz = (Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = schwarz->jacobian_active[i] = contact->opposite[i];
-  for (PetscInt time = 0; time < (schwarz->swap ? 2 : 1); time++) {
-    if (schwarz->swap) PetscCall(SchwarzSwapSides(contact)); /* twice */
-    PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
-    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
-    schwarz->stale = PETSC_TRUE;
-    PetscCall(SchwarzComputeJacobian(schwarz->outer.snes, schwarz->outer.x, schwarz->outer.jacobian, schwarz->outer.jacobian, contact));
-  }
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = PETSC_FALSE;
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Newton's method by the bodies' compliance, or by probing them under each set of conditions; the latter is only for interfaces of a few
-   rows */
-static PetscErrorCode SetUpNewton(Contact contact)
-{
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool newton;
-
-  PetscFunctionBegin;
-  schwarz->stale = PETSC_TRUE;
-  if (schwarz->by_compliance) {
-    PetscCall(SchwarzSetUpInterfaceProblem(contact));
-    if (schwarz->uses_secants) PetscCall(SchwarzSetUpSecants(contact));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &newton));
-  if (newton || contact->dim == 1) PetscCall(SchwarzSetUpNewton(contact));
-  if (newton || contact->dim == 1) PetscCall(PrepareContact(contact));
+  PetscCall(PetscCalloc2(contact->n_rows, &schwarz->interpolated, 3 * contact->n_rows, &schwarz->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -134,17 +95,19 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
              "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take "
              "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
-  PetscCall(SchwarzChooseCondensation(contact));
+  PetscCall(SchwarzChooseMode(contact));
   PetscCall(SchwarzSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
   PetscCall(SchwarzSetUpTransmission(contact));
-  PetscCall(ContactSetUpSharedNodes(contact, schwarz->by_compliance));
+  PetscCall(ContactSetUpSharedNodes(
+      contact, (PetscBool)(schwarz->mode != SCHWARZ_MASS && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && !schwarz->swap)));
   schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
   for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
   if (schwarz->relaxation == RELAXATION_AITKEN) {
     SNESLineSearch line_search;
@@ -158,9 +121,11 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   }
   /* on the compliance alone bodies stay where they are from sweep to sweep, whatever the rows do */
   if (schwarz->convergence == CONVERGENCE_AUTO)
-    schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED && !schwarz->condensed ? CONVERGENCE_POSITION
-                                                                                                        : CONVERGENCE_MISMATCH;
-  PetscCall(SetUpNewton(contact));
+    schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED && schwarz->mode != SCHWARZ_CONDENSED
+                               ? CONVERGENCE_POSITION
+                               : CONVERGENCE_MISMATCH;
+  PetscCall(SchwarzSetUpJacobian(contact));
+  if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,15 +166,14 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
-  PetscCall(SchwarzDestroyNewton(contact));
-  PetscCall(SchwarzDestroyInterfaceProblem(contact));
+  PetscCall(SchwarzDestroyJacobian(contact));
   PetscCall(SchwarzDestroySecants(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
-  PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->jacobian_active));
+  PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->solved_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
   PetscCall(PetscFree3(schwarz->rounds.tried, schwarz->kept_force, schwarz->previous));
   PetscCall(PetscFree2(schwarz->known, schwarz->rounds.kept));
-  PetscCall(PetscFree(schwarz->interpolated));
+  PetscCall(PetscFree2(schwarz->interpolated, schwarz->row_work));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

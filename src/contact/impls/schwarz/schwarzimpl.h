@@ -1,5 +1,7 @@
 #pragma once
+#include <contact/compliance/interfaceoperator.h>
 #include <contact/compliance/outersolver.h>
+#include <solver/densefactor.h>
 
 /* Rounds of the active set in one step after which something must be wrong */
 #define SCHWARZ_MAX_ROUNDS 100
@@ -41,21 +43,33 @@ typedef enum {
   CONDENSE_AUTO /* in two and three dimensions, where it gives the same */
 } Condense;
 
-/* The linearised contact problem on the active rows, in terms of contact forces: what Newton's method solves */
+/* How controller steps in contact are made: chosen at set-up from the bodies and the options */
+typedef enum {
+  SCHWARZ_MASS,     /* contact nodes of a Dirichlet side have mass: sweeps integrate the bodies, rows are let go all at once */
+  SCHWARZ_BODIES,   /* sweeps integrate the bodies, since one is nonlinear or the options want it */
+  SCHWARZ_CONDENSED /* sweeps run on the interface compliance of the bodies, which are all linear */
+} SchwarzMode;
+
+/* What sweeps are made on at the moment */
+typedef enum {
+  STEP_WHOLE,    /* the bodies */
+  STEP_CONDENSED /* their compliance */
+} SchwarzStep;
+
+/* Newton's step of the outer iteration, on the active rows */
 typedef struct {
-  PetscInt      n, capacity; /* active rows of all ranks; how many unknowns there is room for */
-  PetscInt      n_known;     /* with those whose force fades, which come after them in `rows` */
-  PetscInt     *rows, *body_rows;
-  PetscInt      levels;               /* times in the controller step at which there are forces */
-  PetscBool     chain;                /* no such simple form: the matrix of the whole sweep */
-  PetscBool     dense, factored;      /* else conjugate gradients */
-  PetscScalar  *matrices, *dirichlet; /* for each level n x n, by columns: on gaps, and on the displacement of Dirichlet sides [m/N] */
-  PetscScalar  *factor;               /* LU of the first, or of the chain */
-  PetscBLASInt *pivots;
-  PetscScalar  *residual, *force, *change; /* levels x n */
-  KSP           iterative;
-  Vec           force_vec, residual_vec, work[2];
-} InterfaceProblem;
+  InterfaceOperator S;
+  InterfaceMark    *marks;  /* of the rows of this rank */
+  PetscInt          levels; /* times in the controller step at which there are forces */
+  PetscInt          n;      /* rows that are solved for, of all ranks */
+  const PetscInt   *rows;   /* which; owned by the operator */
+  PetscBool         dense;
+  PetscBool         chain;                     /* no convolution: the matrix of the whole sweep */
+  DenseFactor       chained;                   /* that, levels x n */
+  PetscInt          room;                      /* of the following */
+  PetscScalar      *residual, *force, *change; /* levels x n, on every rank */
+  Vec               probe[2];                  /* work space */
+} Jacobian;
 
 #define SCHWARZ_MAX_SECANTS 12
 
@@ -78,59 +92,64 @@ typedef struct {
 } Rounds;
 
 typedef struct {
-  OuterSolver         outer;
-  PetscReal           atol, rtol;
-  ConvergenceTest     convergence;
-  Relaxation          relaxation;
-  Unconverged         unconverged;
-  BodyTractionType    traction;
-  Transmission        transmission;
-  Predictor           predictor;
-  TractionWaveform    waveform;
-  PetscReal           controller_step; /* [s] */
-  PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
-  Condense            condense;
-  PetscInt            dense_limit;   /* unknowns of the interface up to which its matrices are dense */
-  PetscBool           by_compliance; /* Newton's method by the bodies' compliance; else by probing them under each set of conditions */
-  PetscBool           condensed;     /* sweeps on the compliance alone */
-  PetscBool           responding;    /* sweeps are, just now */
-  PetscBool           have_base;     /* an integration of this step that they count from */
-  PetscBool          *known;         /* per row: it is known to the bodies' compliance */
-  PetscBool           has_forces;    /* forces are the unknowns of some rows */
-  InterfaceProblem    problem;
-  PetscBool           exact;        /* the compliance is */
-  PetscBool           uses_secants; /* it is not, or not all of it is used where conjugate gradients are */
-  Secants             secants;
-  PetscBool           recheck;         /* tensile reactions leave the active set within the step */
-  PetscBool           swap;            /* sides change with every controller step */
-  PetscInt            side;            /* 0, or 1 while they are swapped */
-  PetscBool           started;         /* a step has been made */
-  PetscInt           *levels;          /* per pair: times in the controller step at which its trace is an unknown */
-  PetscInt           *side_levels[2];  /* the same for each choice of sides */
-  PetscInt           *offset;          /* per row: its first unknown on this rank */
-  PetscInt           *room;            /* per pair: unknowns that each of its rows has room for */
-  Trace              *trace;           /* per pair and side: what its unknowns put on the Dirichlet side */
-  Trace              *exchange;        /* per body: what it hands to its partners */
-  Trace               rate[2];         /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
-  PetscBool          *kinematic;       /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
-  PetscReal          *weight;          /* per row: Robin stiffness [N/m] */
-  PetscReal          *mass[2];         /* per row: of the contact element of its body and of the partner's [kg] */
-  PetscScalar        *interpolated;    /* work space: per row */
-  PetscScalar        *previous;        /* displacements of the rows of both bodies of each pair in the last sweep */
-  PetscBool           swept;           /* they are of this step */
-  PetscBool           stale;           /* the Jacobian belongs to another active set */
-  PetscBool          *jacobian_active; /* per row: the set that it belongs to */
-  PetscInt           *all_offset;      /* per row, all ranks: its first unknown */
-  const PetscScalar **responses;       /* per body: its waveform response */
-  Trace              *body_in, *body_out; /* per body: waveforms of all rows, on every rank */
-  Trace              *body_exchange;
-  Trace              *unit;             /* per pair and side: a unit at one of its unknowns */
-  PetscReal           change, position; /* of the last sweep: the body with the worst ratio */
-  PetscBool           converged;
-  PetscReal           damping; /* Aitken: relaxation of the last iteration */
-  Vec                 last_residual;
-  Rounds              rounds;
-  PetscReal          *kept_force; /* of the contact solution, during a free trial after it */
+  /* options */
+  ConvergenceTest  convergence;
+  Relaxation       relaxation;
+  Unconverged      unconverged;
+  BodyTractionType traction;
+  Transmission     transmission;
+  Predictor        predictor;
+  TractionWaveform waveform;
+  Condense         condense;
+  PetscReal        robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
+  PetscInt         dense_limit;     /* unknowns of the interface up to which its matrices are dense */
+  PetscBool        recheck;         /* tensile reactions leave the active set within the step */
+  PetscBool        swap;            /* sides change with every controller step */
+  PetscReal        atol, rtol;      /* on the change of position [m], relative */
+  /* chosen at set-up */
+  SchwarzMode mode;
+  PetscBool   exact;           /* the compliance of all bodies tells all that sweeps do */
+  PetscBool   substeps;        /* a body makes several */
+  PetscBool   newton;          /* the outer iteration is Newton's method */
+  PetscReal   controller_step; /* [s] */
+  PetscBool   has_forces;      /* forces are the unknowns of some rows */
+  /* unknowns of the outer iteration */
+  OuterSolver outer;
+  PetscInt   *levels;         /* per pair: times in the controller step at which its trace is an unknown */
+  PetscInt   *side_levels[2]; /* the same for each choice of sides */
+  PetscInt   *room;           /* per pair: unknowns that each of its rows has room for */
+  PetscInt   *offset;         /* per row: its first unknown on this rank */
+  PetscInt   *all_offset;     /* per row of all ranks: its first unknown */
+  /* what goes back and forth */
+  Trace     *trace;     /* per pair and side: what its unknowns put on the Dirichlet side */
+  Trace     *exchange;  /* per body: what it hands to its partners */
+  Trace      rate[2];   /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
+  PetscBool *kinematic; /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
+  PetscReal *weight;    /* per row: Robin stiffness [N/m] */
+  PetscReal *mass[2];   /* per row: what its body, and the partner, weigh in the inelastic predictor */
+  /* Newton's step */
+  Jacobian   jacobian;
+  Secants    secants;
+  PetscBool  stale; /* the Jacobian belongs to another active set */
+  PetscBool *known; /* per row: the bodies' compliance knows it */
+  /* Aitken */
+  PetscReal damping; /* relaxation of the last iteration */
+  Vec       last_residual;
+  /* the controller step under way */
+  SchwarzStep step;
+  PetscInt    side;      /* 0, or 1 while sides are swapped */
+  PetscBool   started;   /* a step has been made */
+  PetscBool   have_base; /* an integration of this step that condensed sweeps count from */
+  Rounds      rounds;
+  PetscBool  *solved_active;    /* per row: the active set that the Jacobian belongs to */
+  PetscBool   swept;            /* `previous` is of this step */
+  PetscReal   change, position; /* of the last sweep: the body with the worst ratio */
+  PetscBool   converged;
+  /* work space */
+  PetscScalar *previous;     /* displacements of the rows of both bodies of each pair in the last sweep */
+  PetscScalar *interpolated; /* per row */
+  PetscScalar *row_work;     /* three for each row */
+  PetscReal   *kept_force;   /* of the contact solution, during a free trial after it */
 } Schwarz;
 
 /* The bodies of a pair by what they take in this controller step */
@@ -182,19 +201,17 @@ PETSC_INTERN PetscErrorCode SchwarzSetUpTransmission(Contact);
 PETSC_INTERN PetscReal      SchwarzResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSetUpNewton(Contact);
-PETSC_INTERN PetscErrorCode SchwarzDestroyNewton(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetUpJacobian(Contact);
+PETSC_INTERN PetscErrorCode SchwarzUpdateJacobian(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
-PETSC_INTERN PetscErrorCode SchwarzSetUpInterfaceProblem(Contact);
-PETSC_INTERN PetscErrorCode SchwarzUpdateInterfaceProblem(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSolveIteratively(Contact, Vec, Vec);
-PETSC_INTERN PetscErrorCode SchwarzDestroyInterfaceProblem(Contact);
+PETSC_INTERN PetscErrorCode SchwarzDestroyJacobian(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetRoles(Contact);
+PETSC_INTERN PetscErrorCode SchwarzChooseMode(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSecants(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroySecants(Contact);
 PETSC_INTERN PetscErrorCode SchwarzApplySecants(Contact, Vec, Vec *, PetscInt *, PetscInt[], PetscScalar[]);
 PETSC_INTERN void           SchwarzResetSecants(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode SchwarzReadCondensation(Contact);
-PETSC_INTERN PetscErrorCode SchwarzChooseCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzFinishCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpAitken(Contact);

@@ -8,12 +8,12 @@ static PetscErrorCode CompareActive(Contact contact)
   int      differs = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->jacobian_active[i] != contact->active[i];
+  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->solved_active[i] != contact->active[i];
   PetscCall(ContactOr(contact, &differs));
   if (!differs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(schwarz->jacobian_active, contact->active, contact->n_rows));
+  PetscCall(PetscArraycpy(schwarz->solved_active, contact->active, contact->n_rows));
   schwarz->stale = PETSC_TRUE;
-  if (schwarz->uses_secants) SchwarzResetSecants(contact, PETSC_TRUE);
+  if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_TRUE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -24,14 +24,11 @@ static PetscErrorCode PrepareSweeps(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(CompareActive(contact));
-  if (schwarz->by_compliance) PetscCall(SchwarzUpdateInterfaceProblem(contact));
-  schwarz->responding = (PetscBool)(schwarz->condensed && schwarz->problem.dense);
-  if (schwarz->responding) PetscCall(SchwarzPrepareCondensed(contact));
+  if (schwarz->newton || schwarz->mode == SCHWARZ_CONDENSED) PetscCall(SchwarzUpdateJacobian(contact));
+  schwarz->step = schwarz->mode == SCHWARZ_CONDENSED && schwarz->jacobian.dense ? STEP_CONDENSED : STEP_WHOLE;
+  if (schwarz->step == STEP_CONDENSED) PetscCall(SchwarzPrepareCondensed(contact));
   PetscCall(SchwarzPredict(contact));
-  if (schwarz->responding) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
-  if (!schwarz->by_compliance)
-    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPrepareSweeps(contact->bodies[b]));
+  if (schwarz->step == STEP_WHOLE) PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,7 +40,7 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionBegin;
   PetscCall(PrepareSweeps(contact));
   schwarz->swept = PETSC_FALSE;
-  if (schwarz->uses_secants) SchwarzResetSecants(contact, PETSC_FALSE);
+  if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
   PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
   PetscCall(SchwarzCheckConverged(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -66,11 +63,11 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  schwarz->responding = PETSC_FALSE;
+  schwarz->step = STEP_WHOLE;
   PetscCall(ContactIntegrateFree(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzUpdateActiveSet(contact, in_contact));
-  if (!schwarz->condensed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (schwarz->mode != SCHWARZ_CONDENSED) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetBase(contact->bodies[b]));
   schwarz->have_base = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -80,21 +77,21 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
    the contact solution is the better of both, and is taken back. */
 static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *taken_back)
 {
-  Schwarz        *schwarz    = (Schwarz *)contact->data;
-  const PetscBool responding = schwarz->responding;
+  Schwarz        *schwarz   = (Schwarz *)contact->data;
+  const PetscBool condensed = (PetscBool)(schwarz->step == STEP_CONDENSED);
   PetscBool       flips;
 
   PetscFunctionBegin;
   *taken_back = PETSC_FALSE;
   PetscCall(SchwarzBeginRound(contact));
-  if (!responding)
+  if (!condensed)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
   PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzBreakCycle(contact, &flips));
   /* on the compliance it is to be found again; where single rows change, others may penetrate */
-  if (!flips || responding || schwarz->rounds.single) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!flips || condensed || schwarz->rounds.single) PetscFunctionReturn(PETSC_SUCCESS);
   *taken_back = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
   PetscCall(PetscArraycpy(contact->force, schwarz->kept_force, contact->n_rows));
@@ -110,9 +107,9 @@ static PetscErrorCode Finish(Contact contact, PetscBool *changed)
 
   PetscFunctionBegin;
   *changed = PETSC_FALSE;
-  if (!schwarz->responding) PetscFunctionReturn(PETSC_SUCCESS);
+  if (schwarz->step != STEP_CONDENSED) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzFinishCondensed(contact));
-  schwarz->responding = PETSC_FALSE;
+  schwarz->step = STEP_WHOLE;
   PetscCall(ContactAny(contact, PETSC_TRUE, changed));
   if (!*changed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->n_rows; i++)

@@ -280,7 +280,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(VecGetArrayRead(X, &x));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     PetscCall(LoadBody(contact, contact->order[k], x));
-    if (schwarz->responding) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
+    if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
     else PetscCall(BodyIntegrate(contact->bodies[contact->order[k]]));
     if (schwarz->has_forces) PetscCall(ReportByForce(contact, contact->order[k]));
   }

@@ -16,48 +16,30 @@
 #include "schwarzimpl.h"
 
 /* Stiffness of the springs of each row: as given, or that of the partner, which answers best */
-static PetscErrorCode SetUpWeights(Contact contact)
-{
-  Schwarz   *schwarz = (Schwarz *)contact->data;
-  PetscReal *stiffness;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_rows, &stiffness));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal impedance;
-
-    PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
-    PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-      const PetscReal    z    = impedance * contact->area[i];
-
-      /* of the contact element: E A / h and sqrt(E rho) A make rho A h */
-      if (pair->body[0] == b) schwarz->mass[0][i] = z * z / stiffness[i];
-      if (pair->body[1] != b) continue;
-      schwarz->mass[1][i] = z * z / stiffness[i];
-      if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = z / schwarz->controller_step;
-      else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->area[i] : stiffness[i];
-    }
-  }
-  PetscCall(PetscFree(stiffness));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The common velocity after a plane impact of two bodies is that weighted by their impedances */
-static PetscErrorCode WeighByImpedance(Contact contact)
+static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal impedance;
-
-    PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
-    for (PetscInt i = 0; i < contact->n_rows; i++)
-      for (PetscInt side = 0; side < 2; side++)
-        if (contact->pairs[contact->row_pair[i]].body[side] == b) schwarz->mass[side][i] = impedance;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    if (contact->pairs[contact->row_pair[i]].body[1] != b) continue;
+    if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = impedance * contact->area[i] / schwarz->controller_step;
+    else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->area[i] : stiffness[i];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What both sides of each row weigh in their common velocity after an impact: the impedances of plane waves, or, where nodes with mass are
+   prescribed, the masses of the elements beside the row. E A / h and sqrt(E rho) A make rho A h. */
+static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    for (PetscInt side = 0; side < 2; side++)
+      if (contact->pairs[contact->row_pair[i]].body[side] == b)
+        schwarz->mass[side][i] = schwarz->mode == SCHWARZ_MASS ? PetscSqr(impedance * contact->area[i]) / stiffness[i] : impedance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,20 +65,24 @@ static PetscErrorCode CheckBodies(Contact contact)
 /* Masses for the inelastic predictor; weights, and springs of the bodies, for Robin conditions */
 PetscErrorCode SchwarzSetUpTransmission(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Schwarz        *schwarz = (Schwarz *)contact->data;
+  const PetscBool robin   = (PetscBool)(schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN);
+  PetscReal      *stiffness;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc3(contact->n_rows, &schwarz->weight, contact->n_rows, &schwarz->mass[0], contact->n_rows, &schwarz->mass[1]));
-  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->predictor != PREDICTOR_INELASTIC)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (schwarz->by_compliance) {
-    PetscCall(WeighByImpedance(contact));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (robin) PetscCall(CheckBodies(contact));
+  PetscCall(PetscCalloc1(contact->n_rows, &stiffness));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal impedance;
+
+    PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
+    if (robin || schwarz->mode == SCHWARZ_MASS) PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
+    PetscCall(SetUpMasses(contact, b, stiffness, impedance));
+    if (robin) PetscCall(SetUpWeights(contact, b, stiffness, impedance));
   }
-  PetscCall(SetUpWeights(contact));
-  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CheckBodies(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRobin(contact->bodies[b], schwarz->weight));
+  PetscCall(PetscFree(stiffness));
+  for (PetscInt b = 0; b < contact->n_bodies && robin; b++) PetscCall(BodySetRobin(contact->bodies[b], schwarz->weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

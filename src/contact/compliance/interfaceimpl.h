@@ -1,0 +1,53 @@
+/* The operator of interfaceoperator.h. Private to the files that make it up. */
+#pragma once
+#include "interfaceoperator.h"
+#include <solver/densefactor.h>
+
+#define INTERFACE_MAPS 4
+
+struct _n_InterfaceOperator {
+  Contact           contact; /* borrowed */
+  InterfaceSettings settings;
+  PetscBool        *feels;  /* per body: its displacements answer to forces at the end of the step */
+  Mat               matrix; /* S where it is given as a sparse matrix, else NULL: from the compliance of the bodies */
+  PetscInt          levels; /* matrices for forces at as many times in the controller step, as a convolution */
+  /* listed rows of all ranks, on every rank, in ascending order: first those that are solved for, then those that are known beside them */
+  PetscInt  n, n_known, room;
+  PetscInt *rows, *body_rows;
+  /* dense: each map's matrices, n x n by columns for each level, where they have been assembled */
+  PetscBool    dense;
+  PetscScalar *matrices[INTERFACE_MAPS];
+  PetscInt     sizes[INTERFACE_MAPS]; /* of these arrays */
+  PetscBool    assembled[INTERFACE_MAPS];
+  DenseFactor  factor; /* of S at the first level with the diagonal, on the rows that are `in` */
+  PetscBool    factored;
+  PetscInt     n_in, *places; /* which of the listed rows these are */
+  PetscScalar *listed[2];     /* work space */
+  /* rows of this rank */
+  InterfaceMark *marks;
+  PetscScalar   *diagonal; /* added to that of S, less than 0 on rows that are not solved for at present */
+  /* conjugate gradients */
+  KSP            iterative;
+  Vec            unknown, rhs, work[2];
+  PetscLogDouble product_flops, spent, dense_flops; /* of one product; of all iterations so far; of dense matrices that are put off, or 0 */
+};
+
+PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
+PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
+PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator);
+
+/* With what sign forces on row i act on body b, and its displacement counts */
+static inline PetscInt InterfaceSideIn(InterfaceMap map, const ContactPair *pair, PetscInt b)
+{
+  const PetscInt dirichlet = pair->body[pair->dirichlet] == b, neumann = pair->body[1 - pair->dirichlet] == b;
+
+  return map == INTERFACE_GAP || map == INTERFACE_DIRICHLET ? dirichlet - neumann : neumann;
+}
+
+static inline PetscInt InterfaceSideOut(InterfaceMap map, const ContactPair *pair, PetscInt b)
+{
+  const PetscInt dirichlet = pair->body[pair->dirichlet] == b, neumann = pair->body[1 - pair->dirichlet] == b;
+
+  return map == INTERFACE_GAP || map == INTERFACE_NEUMANN_GAP ? dirichlet - neumann : dirichlet;
+}

@@ -1,0 +1,374 @@
+/* The rows of S and its dense form; conjugate gradients are in interfaceiteration.c. */
+#include "interfaceimpl.h"
+
+PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings *settings, InterfaceOperator *operator)
+{
+  InterfaceOperator op;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&op));
+  op->contact  = contact;
+  op->settings = *settings;
+  op->levels   = 1;
+  PetscCall(PetscCalloc3(contact->n_rows, &op->marks, contact->n_rows, &op->diagonal, contact->n_bodies, &op->feels));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
+  *operator= op;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode InterfaceOperatorDestroy(InterfaceOperator *operator)
+{
+  InterfaceOperator op = *operator;
+
+  PetscFunctionBegin;
+  if (!op) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDestroy(&op->matrix));
+  PetscCall(PetscFree3(op->marks, op->diagonal, op->feels));
+  PetscCall(PetscFree5(op->rows, op->body_rows, op->places, op->listed[0], op->listed[1]));
+  for (PetscInt m = 0; m < INTERFACE_MAPS; m++) PetscCall(PetscFree(op->matrices[m]));
+  PetscCall(DenseFactorDestroy(&op->factor));
+  PetscCall(InterfaceOperatorDestroyIterative(op));
+  PetscCall(PetscFree(*operator));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* S is a sparse matrix of all rows by all rows, in place of what the bodies' compliance tells; NULL: it has changed, and is told again
+ * later */
+PetscErrorCode InterfaceOperatorSetMatrix(InterfaceOperator op, Mat matrix)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscObjectReference((PetscObject)matrix));
+  PetscCall(MatDestroy(&op->matrix));
+  op->matrix   = matrix;
+  op->factored = PETSC_FALSE;
+  for (PetscInt m = 0; m < INTERFACE_MAPS; m++) op->assembled[m] = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeRoom(InterfaceOperator op, PetscInt n)
+{
+  PetscFunctionBegin;
+  if (n <= op->room) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree5(op->rows, op->body_rows, op->places, op->listed[0], op->listed[1]));
+  op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->n_all_rows));
+  PetscCall(PetscMalloc5(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->places, op->room, &op->listed[0], op->room,
+                         &op->listed[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The listed rows that concern a body, if it answers to forces on them, into body_rows */
+static PetscInt ListBodyRows(InterfaceOperator op, PetscInt b)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < op->n_known && op->feels[b]; i++) {
+    const ContactPair *pair = &op->contact->pairs[op->contact->all_row_pair[op->rows[i]]];
+
+    if (pair->body[0] == b || pair->body[1] == b) op->body_rows[n++] = op->rows[i];
+  }
+  return n;
+}
+
+/* Operations that one product with S takes, and those that it takes to have a dense matrix, its columns and its factors, in its place */
+static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, PetscLogDouble *dense)
+{
+  PetscFunctionBegin;
+  *product = 0;
+  *dense   = DenseFactorFlops(op->n);
+  for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
+    const PetscInt n = ListBodyRows(op, b);
+    PetscLogDouble flops;
+    PetscInt       missing;
+
+    PetscCall(BodyCountUnknown(op->contact->bodies[b], n, op->body_rows, &missing));
+    PetscCall(BodyGetComplianceFlops(op->contact->bodies[b], &flops));
+    if (op->feels[b]) *product += flops;
+    *dense += missing * flops;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether matrices are to be dense: where they are small, and else once iterations have cost as much, which with an unknown number of steps
+   to come is never more than twice as dear as the better of the two. Where bodies make substeps a product is not all of S, and iterations
+   take more sweeps: there matrices are dense up to the limit. */
+static PetscErrorCode ChooseDense(InterfaceOperator op)
+{
+  const PetscInt size     = op->n_known * op->levels;
+  PetscBool      substeps = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  op->dense_flops = 0;
+  op->dense       = (PetscBool)(size <= op->settings.dense_limit);
+  if (!op->dense || size <= op->settings.few || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
+    PetscInt n;
+
+    PetscCall(BodyGetSubsteps(op->contact->bodies[b], &n));
+    if (n > 1) substeps = PETSC_TRUE;
+  }
+  if (substeps) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CountFlops(op, &op->product_flops, &op->dense_flops));
+  op->dense = (PetscBool)(op->spent >= op->dense_flops);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists the rows of the problem: `marks` of this rank's rows. Where matrices are dense, the bodies get to know the rows that are solved for
+   or known; else nothing but the marks is kept. Collective. */
+PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMark marks[], PetscInt levels)
+{
+  Contact  contact  = op->contact;
+  PetscInt count[3] = {0, 0, 0}, next[3];
+
+  PetscFunctionBegin;
+  op->levels   = levels;
+  op->factored = PETSC_FALSE;
+  for (PetscInt m = 0; m < INTERFACE_MAPS; m++) op->assembled[m] = PETSC_FALSE;
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    op->marks[i]            = marks[i];
+    contact->mine_active[i] = (int)marks[i];
+  }
+  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts,
+                              contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt i = 0; i < contact->n_all_rows; i++) count[contact->all_active[i]]++;
+  op->n       = count[INTERFACE_SOLVED];
+  op->n_known = op->n + count[INTERFACE_KNOWN];
+  PetscCall(MakeRoom(op, op->n_known));
+  next[INTERFACE_SOLVED] = 0;
+  next[INTERFACE_KNOWN]  = op->n;
+  for (PetscInt i = 0; i < contact->n_all_rows; i++)
+    if (contact->all_active[i]) op->rows[next[contact->all_active[i]]++] = i;
+  PetscCall(ChooseDense(op));
+  if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const PetscInt n = ListBodyRows(op, b);
+
+    PetscCall(BodyExtendCompliance(contact->bodies[b], n, op->body_rows));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether iterations have cost as much by now as dense matrices of these rows would: then it is time to set the rows again */
+PetscBool InterfaceOperatorWantsDense(InterfaceOperator op)
+{
+  return (PetscBool)(!op->dense && op->dense_flops > 0 && op->spent >= op->dense_flops);
+}
+
+/* Any of: how many rows are solved for, which, and whether matrices are dense */
+void InterfaceOperatorGetRows(InterfaceOperator op, PetscInt *n, const PetscInt *rows[], PetscBool *dense)
+{
+  if (n) *n = op->n;
+  if (rows) *rows = op->rows;
+  if (dense) *dense = op->dense;
+}
+
+/* Adds what one body does */
+static PetscErrorCode AddBody(InterfaceOperator op, InterfaceMap map, PetscInt b, PetscInt level, PetscScalar matrix[])
+{
+  const Contact      contact = op->contact;
+  const PetscScalar *W;
+  const PetscInt    *place;
+  PetscInt           leading;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetCompliance(contact->bodies[b], level, &place, &leading, &W));
+  for (PetscInt j = 0; j < op->n; j++) {
+    const PetscInt sign_j = InterfaceSideIn(map, &contact->pairs[contact->all_row_pair[op->rows[j]]], b);
+
+    if (!sign_j) continue;
+    for (PetscInt i = 0; i < op->n; i++) {
+      const PetscInt sign_i = InterfaceSideOut(map, &contact->pairs[contact->all_row_pair[op->rows[i]]], b);
+
+      if (sign_i) matrix[j * op->n + i] += sign_i * sign_j * W[place[op->rows[j]] * leading + place[op->rows[i]]];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The listed part of a sparse S, on every rank */
+static PetscErrorCode AssembleFromMatrix(InterfaceOperator op, PetscScalar matrix[])
+{
+  const Contact contact = op->contact;
+  PetscInt     *place;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_all_rows, &place));
+  for (PetscInt i = 0; i < contact->n_all_rows; i++) place[i] = -1;
+  for (PetscInt i = 0; i < op->n; i++) place[op->rows[i]] = i;
+  for (PetscInt i = 0; i < op->n; i++) {
+    const PetscInt     local = op->rows[i] - contact->row_begin, *columns;
+    const PetscScalar *values;
+    PetscInt           count;
+
+    if (local < 0 || local >= contact->n_rows) continue;
+    PetscCall(MatGetRow(op->matrix, op->rows[i], &count, &columns, &values));
+    for (PetscInt k = 0; k < count; k++)
+      if (place[columns[k]] >= 0) matrix[place[columns[k]] * op->n + i] = values[k];
+    PetscCall(MatRestoreRow(op->matrix, op->rows[i], &count, &columns, &values));
+  }
+  if (contact->size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, matrix, (PetscMPIInt)(op->n * op->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(PetscFree(place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A map's matrix on the rows that are solved for, n x n by columns [m/N]: displacements k substeps after forces, or, for level -1, at the
+   end of the controller step for forces that rise linearly over it */
+PetscErrorCode InterfaceOperatorAssemble(InterfaceOperator op, InterfaceMap map, PetscInt level, PetscScalar matrix[])
+{
+  PetscFunctionBegin;
+  PetscCheck(op->dense, PetscObjectComm((PetscObject)op->contact), PETSC_ERR_ARG_WRONGSTATE,
+             "The interface is too large for dense matrices");
+  PetscCall(PetscArrayzero(matrix, op->n * op->n));
+  if (op->matrix) PetscCall(AssembleFromMatrix(op, matrix));
+  for (PetscInt b = 0; b < op->contact->n_bodies && !op->matrix; b++)
+    if (op->feels[b]) PetscCall(AddBody(op, map, b, level, matrix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All levels of a map, unless they are there */
+static PetscErrorCode MakeMatrices(InterfaceOperator op, InterfaceMap map)
+{
+  const PetscInt square = op->n * op->n, size = op->levels * square;
+
+  PetscFunctionBegin;
+  if (op->assembled[map]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (size > op->sizes[map]) {
+    PetscCall(PetscFree(op->matrices[map]));
+    op->sizes[map] = PetscMax(size, 2 * op->sizes[map]);
+    PetscCall(PetscMalloc1(op->sizes[map], &op->matrices[map]));
+  }
+  for (PetscInt k = 0; k < op->levels; k++)
+    PetscCall(InterfaceOperatorAssemble(op, map, op->levels == 1 ? -1 : k, op->matrices[map] + k * square));
+  op->assembled[map] = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sums over all ranks of values that are zero but on one rank each */
+PetscErrorCode InterfaceOperatorSum(InterfaceOperator op, PetscInt n, PetscScalar values[])
+{
+  PetscFunctionBegin;
+  if (op->contact->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, values, (PetscMPIInt)n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)op->contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Values of this rank's rows on the rows that are solved for, of all ranks */
+PetscErrorCode InterfaceOperatorGather(InterfaceOperator op, const PetscScalar mine[], PetscScalar all[])
+{
+  const Contact contact = op->contact;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < op->n; i++) {
+    const PetscInt local = op->rows[i] - contact->row_begin;
+
+    all[i] = local >= 0 && local < contact->n_rows ? mine[local] : 0;
+  }
+  PetscCall(InterfaceOperatorSum(op, op->n, all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From now on S is solved on the rows of this rank that are `in` (NULL: all that are to be solved for), with `diagonal` (NULL: zero) added
+   to its own: the compliance of springs between both sides */
+PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[], const PetscReal diagonal[])
+{
+  PetscScalar *listed = op->listed[0], *S;
+  PetscBool    singular;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < op->contact->n_rows; i++)
+    op->diagonal[i] = op->marks[i] != INTERFACE_SOLVED || (in && !in[i]) ? -1 : diagonal ? diagonal[i] : 0;
+  op->factored = PETSC_TRUE;
+  if (!op->dense) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MakeMatrices(op, INTERFACE_GAP));
+  S = op->matrices[INTERFACE_GAP];
+  PetscCall(InterfaceOperatorGather(op, op->diagonal, listed));
+  op->n_in = 0;
+  for (PetscInt i = 0; i < op->n; i++)
+    if (PetscRealPart(listed[i]) >= 0) op->places[op->n_in++] = i;
+  PetscCall(DenseFactorResize(&op->factor, op->n_in, op->contact->n_all_rows));
+  for (PetscInt j = 0; j < op->n_in; j++)
+    for (PetscInt i = 0; i < op->n_in; i++)
+      op->factor.values[j * op->n_in + i] = S[op->places[j] * op->n + op->places[i]] + (i == j ? listed[op->places[i]] : 0);
+  PetscCall(DenseFactorCompute(&op->factor, &singular));
+  PetscCheck(!singular, PetscObjectComm((PetscObject)op->contact), PETSC_ERR_MAT_LU_ZRPVT,
+             "The matrix of the contact forces is singular: contact rows are not independent, and constrain each other");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = (S + diagonal)^{-1} x on the rows that are in, zero on the others, with S at its first level */
+PetscErrorCode InterfaceOperatorSolveListed(InterfaceOperator op, PetscScalar x[])
+{
+  PetscFunctionBegin;
+  if (!op->factored) PetscCall(InterfaceOperatorFactor(op, NULL, NULL));
+  if (op->n_in == op->n) {
+    PetscCall(DenseFactorSolve(&op->factor, x));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /* places ascend */
+  for (PetscInt k = 0; k < op->n_in; k++) x[k] = x[op->places[k]];
+  PetscCall(DenseFactorSolve(&op->factor, x));
+  for (PetscInt i = op->n - 1, k = op->n_in - 1; i >= 0; i--) x[i] = k >= 0 && op->places[k] == i ? x[k--] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y += scale M x on the rows that are solved for */
+PetscErrorCode InterfaceOperatorMultiplyListed(InterfaceOperator op, InterfaceMap map, PetscInt level, PetscReal scale,
+                                               const PetscScalar x[], PetscScalar y[])
+{
+  PetscFunctionBegin;
+  PetscCall(MakeMatrices(op, map));
+  PetscCall(DenseMultiplyAdd(op->n, op->n, op->matrices[map] + level * op->n * op->n, scale, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Values on the rows that are solved for, back on this rank's rows; zero on others */
+static void Scatter(InterfaceOperator op, const PetscScalar all[], PetscScalar mine[])
+{
+  for (PetscInt i = 0; i < op->contact->n_rows; i++) mine[i] = 0;
+  for (PetscInt i = 0; i < op->n; i++) {
+    const PetscInt local = op->rows[i] - op->contact->row_begin;
+
+    if (local >= 0 && local < op->contact->n_rows) mine[local] = all[i];
+  }
+}
+
+/* y = (S + diagonal)^{-1} x on this rank's rows that are in, zero on the others; where that is iterated for, y may be the first iterate */
+PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
+{
+  PetscFunctionBegin;
+  if (!op->dense) {
+    if (!op->factored) PetscCall(InterfaceOperatorFactor(op, NULL, NULL));
+    PetscCall(InterfaceOperatorIterate(op, x, y));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
+  PetscCall(InterfaceOperatorSolveListed(op, op->listed[0]));
+  Scatter(op, op->listed[0], y);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = M x on this rank's rows that are solved for, zero on the others, at one level; x and y are not the same */
+PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map, const PetscScalar x[], PetscScalar y[])
+{
+  PetscFunctionBegin;
+  if (op->dense) {
+    PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
+    PetscCall(PetscArrayzero(op->listed[1], op->n));
+    PetscCall(InterfaceOperatorMultiplyListed(op, map, 0, 1, op->listed[0], op->listed[1]));
+    Scatter(op, op->listed[1], y);
+  } else {
+    const PetscScalar *moved;
+    PetscScalar       *force;
+
+    if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
+    PetscCall(VecGetArrayWrite(op->unknown, &force));
+    PetscCall(PetscArraycpy(force, x, op->contact->n_rows));
+    PetscCall(VecRestoreArrayWrite(op->unknown, &force));
+    PetscCall(InterfaceOperatorApply(op, map, op->unknown, op->rhs));
+    PetscCall(VecGetArrayRead(op->rhs, &moved));
+    PetscCall(PetscArraycpy(y, moved, op->contact->n_rows));
+    PetscCall(VecRestoreArrayRead(op->rhs, &moved));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

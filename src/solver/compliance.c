@@ -1,0 +1,206 @@
+#include "compliance.h"
+
+struct _n_Compliance {
+  MPI_Comm     comm;
+  PetscMPIInt  size;
+  PetscInt     local, begin, global, levels; /* rows of this rank, the first of them, rows of all ranks; matrices */
+  PetscInt     n, room;                      /* known rows; how many there is room for */
+  PetscInt    *place;                        /* per row of all ranks: its place among the known ones, or -1 */
+  PetscInt    *rows;                         /* per place: its row */
+  PetscInt    *known;                        /* per place: levels that its column has */
+  PetscScalar *matrices;                     /* levels of them, room x room by columns [m/N] */
+  PetscScalar *ramp;                         /* room x room; made when asked for */
+  PetscBool    ramp_valid;
+  PetscScalar *column; /* work space: levels x room */
+  PetscInt64   state;  /* counts changes of what is known */
+};
+
+/* For `local` rows of this rank from number `begin` on, of `global` rows in all */
+PetscErrorCode ComplianceCreate(MPI_Comm comm, PetscInt local, PetscInt begin, PetscInt global, PetscInt levels, Compliance *compliance)
+{
+  Compliance c;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&c));
+  c->comm   = comm;
+  c->local  = local;
+  c->begin  = begin;
+  c->global = global;
+  c->levels = levels;
+  PetscCallMPI(MPI_Comm_size(comm, &c->size));
+  PetscCall(PetscMalloc1(global, &c->place));
+  for (PetscInt j = 0; j < global; j++) c->place[j] = -1;
+  *compliance = c;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ComplianceDestroy(Compliance *compliance)
+{
+  Compliance c = *compliance;
+
+  PetscFunctionBegin;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree(c->place));
+  PetscCall(PetscFree2(c->rows, c->known));
+  PetscCall(PetscFree3(c->matrices, c->ramp, c->column));
+  PetscCall(PetscFree(*compliance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for `more` rows beside those that are known, so that these need not allocate one by one */
+PetscErrorCode ComplianceReserve(Compliance c, PetscInt more)
+{
+  const PetscInt old = c->room, room = PetscMin(c->global, PetscMax(c->n + more, 2 * old));
+  PetscInt      *rows, *known;
+  PetscScalar   *matrices, *ramp, *column;
+
+  PetscFunctionBegin;
+  if (c->n + more <= old) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(room, &rows, room, &known));
+  PetscCall(PetscMalloc3(c->levels * room * room, &matrices, room * room, &ramp, c->levels * room, &column));
+  PetscCall(PetscArraycpy(rows, c->rows, c->n));
+  PetscCall(PetscArraycpy(known, c->known, c->n));
+  for (PetscInt k = 0; k < c->levels; k++)
+    for (PetscInt j = 0; j < c->n; j++) PetscCall(PetscArraycpy(matrices + (k * room + j) * room, c->matrices + (k * old + j) * old, c->n));
+  PetscCall(PetscFree2(c->rows, c->known));
+  PetscCall(PetscFree3(c->matrices, c->ramp, c->column));
+  c->rows       = rows;
+  c->known      = known;
+  c->matrices   = matrices;
+  c->ramp       = ramp;
+  c->column     = column;
+  c->room       = room;
+  c->ramp_valid = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Values of this rank's rows, for some levels one after the other, on the known rows of every rank */
+PetscErrorCode ComplianceGather(Compliance c, PetscInt levels, const PetscScalar mine[], PetscScalar all[])
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < levels; k++)
+    for (PetscInt i = 0; i < c->n; i++) {
+      const PetscInt local = c->rows[i] - c->begin;
+
+      all[k * c->n + i] = local >= 0 && local < c->local ? mine[k * c->local + local] : 0;
+    }
+  if (c->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(levels * c->n), MPIU_SCALAR, MPIU_SUM, c->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A place for a row that has none: all it does to others is unknown, and zero until it is */
+static PetscErrorCode AddRow(Compliance c, PetscInt row)
+{
+  const PetscInt n = c->n;
+
+  PetscFunctionBegin;
+  PetscCall(ComplianceReserve(c, 1));
+  for (PetscInt k = 0; k < c->levels; k++) {
+    PetscScalar *matrix = c->matrices + k * c->room * c->room;
+
+    for (PetscInt i = 0; i <= n; i++) matrix[n * c->room + i] = matrix[i * c->room + n] = 0;
+  }
+  c->place[row] = n;
+  c->rows[n]    = row;
+  c->known[n]   = 0;
+  c->n          = n + 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacements of this rank's rows under a unit force on a row, at the first `levels` of the levels; collective */
+PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, const PetscScalar mine[])
+{
+  PetscInt j;
+
+  PetscFunctionBegin;
+  if (c->place[row] < 0) PetscCall(AddRow(c, row));
+  j = c->place[row];
+  PetscCall(ComplianceGather(c, levels, mine, c->column));
+  for (PetscInt k = 0; k < levels; k++) {
+    PetscScalar *matrix = c->matrices + k * c->room * c->room;
+
+    for (PetscInt i = 0; i < c->n; i++) matrix[j * c->room + i] = matrix[i * c->room + j] = c->column[k * c->n + i];
+  }
+  c->known[j]   = PetscMax(c->known[j], levels);
+  c->ramp_valid = PETSC_FALSE;
+  c->state++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows that have changed are not known any more; `changed`: for each row of all ranks */
+PetscErrorCode ComplianceForget(Compliance c, const PetscMPIInt changed[])
+{
+  PetscInt n = 0, *from;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(c->n, &from));
+  for (PetscInt j = 0; j < c->n; j++) {
+    if (changed[c->rows[j]]) c->place[c->rows[j]] = -1;
+    else from[n++] = j;
+  }
+  for (PetscInt k = 0; k < c->levels; k++) {
+    PetscScalar *matrix = c->matrices + k * c->room * c->room;
+
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = 0; i < n; i++) matrix[j * c->room + i] = matrix[from[j] * c->room + from[i]];
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    c->rows[j]           = c->rows[from[j]];
+    c->known[j]          = c->known[from[j]];
+    c->place[c->rows[j]] = j;
+  }
+  c->n          = n;
+  c->ramp_valid = PETSC_FALSE;
+  c->state++;
+  PetscCall(PetscFree(from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Any of: how many rows are known, which, and the place of each row of all ranks among them, or -1 */
+void ComplianceGetRows(Compliance c, PetscInt *n, const PetscInt *rows[], const PetscInt *place[])
+{
+  if (n) *n = c->n;
+  if (rows) *rows = c->rows;
+  if (place) *place = c->place;
+}
+
+/* Whether a row's column is known at all levels */
+PetscBool ComplianceKnows(Compliance c, PetscInt row)
+{
+  return (PetscBool)(c->place[row] >= 0 && c->known[c->place[row]] == c->levels);
+}
+
+/* Known rows by known rows, with `leading` entries from one column to the next */
+void ComplianceGetMatrix(Compliance c, PetscInt level, PetscInt *leading, const PetscScalar *matrix[])
+{
+  *leading = c->room;
+  *matrix  = c->matrices + level * c->room * c->room;
+}
+
+/* The same at the end of the last level for forces that rise linearly over all of them: the sum of W_{L - l} l / L for l = 1 ... L */
+PetscErrorCode ComplianceGetRamp(Compliance c, PetscInt *leading, const PetscScalar *matrix[])
+{
+  PetscFunctionBegin;
+  if (c->levels == 1) {
+    ComplianceGetMatrix(c, 0, leading, matrix);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt j = 0; j < c->n && !c->ramp_valid; j++)
+    for (PetscInt i = 0; i < c->n; i++) {
+      PetscScalar sum = 0;
+
+      for (PetscInt l = 1; l <= c->levels; l++)
+        sum += (PetscReal)l / c->levels * c->matrices[((c->levels - l) * c->room + j) * c->room + i];
+      c->ramp[j * c->room + i] = sum;
+    }
+  c->ramp_valid = PETSC_TRUE;
+  *leading      = c->room;
+  *matrix       = c->ramp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Another number than before whenever a matrix, or a place, has changed */
+PetscInt64 ComplianceGetState(Compliance c)
+{
+  return c->state;
+}
