@@ -1,108 +1,6 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
 #include <contact/compliance/interfaceoperator.h>
 
-/* Whether a row has been let go in this controller step, and its force is not zero all at once. Bodies of one step take it so by the force
-   that their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and momentum with it. */
-static PetscBool RowFades(Contact contact, PetscInt i)
-{
-  return (PetscBool)(contact->fades && !contact->active[i] && contact->release_intervals[i]);
-}
-
-/* Room for the forces of rows that are let go: of each at the ends of as many intervals as a body makes substeps */
-PetscErrorCode ContactSetUpRelease(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscInt substeps;
-
-    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    contact->release_room = PetscMax(contact->release_room, substeps + 1);
-  }
-  PetscCall(PetscCalloc2(contact->n_rows, &contact->release_intervals, contact->n_rows * contact->release_room, &contact->release));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Force of a row that has been let go at a part (0 to 1) of the controller step */
-static PetscReal ReleasedForce(Contact contact, PetscInt i, PetscReal part)
-{
-  const PetscInt   n     = contact->release_intervals[i];
-  const PetscReal *force = contact->release + i * contact->release_room, at = part * n;
-  const PetscInt   k = PetscMin((PetscInt)PetscFloorReal(at), n - 1);
-
-  return force[k] + (at - k) * (force[k + 1] - force[k]);
-}
-
-/* Sum of the forces of a row that has been let go within a controller step of that many substeps, by the trapezoidal rule of integrators,
-   and what it is to be for bodies of other substeps to get the same impulse: that of the force itself, and at least what the force at the
-   start brings them */
-static PetscErrorCode ReleasedSums(Contact contact, PetscInt i, PetscInt levels, PetscReal *sum, PetscReal *wanted)
-{
-  const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
-  const PetscInt     n     = contact->release_intervals[i];
-  const PetscReal   *force = contact->release + i * contact->release_room;
-  PetscReal          impulse;
-
-  PetscFunctionBegin;
-  impulse = 0.5 * (force[0] + force[n]) / n;
-  for (PetscInt k = 1; k < n; k++) impulse += force[k] / n;
-  for (PetscInt side = 0; side < 2; side++) {
-    PetscInt substeps;
-
-    PetscCall(BodyGetSubsteps(contact->bodies[pair->body[side]], &substeps));
-    impulse = PetscMax(impulse, 0.5 * force[0] / substeps);
-  }
-  *sum = 0;
-  for (PetscInt level = 1; level < levels; level++) *sum += ReleasedForce(contact, i, (PetscReal)level / levels);
-  *wanted = impulse * levels - 0.5 * force[0];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where substeps of the two bodies differ so that a force at the times of one is not that at the times of the other */
-static PetscErrorCode BalanceReleased(Contact contact, PetscInt b)
-{
-  Trace        trace = contact->traces[b].force_in;
-  PetscInt     levels;
-  PetscScalar *force;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetSizes(trace, NULL, &levels));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-    PetscReal          sum = 0, wanted = 0;
-
-    if (!pair->by_force || !RowFades(contact, i) || (pair->body[0] != b && pair->body[1] != b)) continue;
-    PetscCall(ReleasedSums(contact, i, levels, &sum, &wanted));
-    for (PetscInt level = 1; level < levels; level++) {
-      PetscCall(TraceGetLevel(trace, level, &force));
-      if (sum > 0) force[i] *= wanted / sum;
-      else if (level == 1) force[i] = (pair->body[1] == b ? 1 : -1) * wanted;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Forces of rows that are let go, over the substeps of a body */
-PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
-{
-  Trace        trace = contact->traces[b].force_in;
-  PetscScalar *force;
-  PetscInt     levels;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetSizes(trace, NULL, &levels));
-  for (PetscInt level = 0; level <= levels && contact->fades; level++) {
-    PetscCall(TraceGetLevel(trace, level, &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
-
-      if (RowFades(contact, i))
-        force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * ReleasedForce(contact, i, (PetscReal)level / levels);
-    }
-  }
-  PetscCall(BalanceReleased(contact, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What the rows mean to a body */
 void ContactGetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
 {
@@ -113,7 +11,7 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
     rows[i] = BODY_FREE;
     if (!takes || conditions == CONDITIONS_FREE) continue;
     if (conditions == CONDITIONS_FORCES) rows[i] = BODY_FORCED;
-    if (RowFades(contact, i)) rows[i] = BODY_FORCED;
+    if (ContactRowFades(contact, i)) rows[i] = BODY_FORCED;
     if (!contact->active[i]) continue;
     if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
     if (conditions == CONDITIONS_SCHWARZ)
@@ -159,7 +57,7 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
 void ContactMarkActive(Contact contact, InterfaceMark marks[])
 {
   for (PetscInt i = 0; i < contact->n_rows; i++)
-    marks[i] = contact->active[i] ? INTERFACE_SOLVED : RowFades(contact, i) ? INTERFACE_KNOWN : INTERFACE_LEFT_OUT;
+    marks[i] = contact->active[i] ? INTERFACE_SOLVED : ContactRowFades(contact, i) ? INTERFACE_KNOWN : INTERFACE_LEFT_OUT;
 }
 
 /* Gaps at the end of the controller step, from the bodies' traces */

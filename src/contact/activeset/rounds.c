@@ -14,19 +14,42 @@
    does not tell. Such rows are held to the end of the step, so that nothing penetrates, and let go at the start of the next if they are
    still pulled. The others go on.
 */
-#include <contact/impls/schwarz/schwarzimpl.h>
+#include "rounds.h"
 
+/* Rounds of the active set in one step after which something must be wrong: more than any run of the tests takes, by five times */
+#define MAX_ROUNDS 100
 /* Rounds after which no row leaves any more, so that a step with a set seen twice ends with an answer */
-#define LAST_ROUNDS (SCHWARZ_MAX_ROUNDS / 2)
+#define LAST_ROUNDS (MAX_ROUNDS / 2)
+
+/* For rows of this rank whose state is in these arrays, which stay where they are */
+PetscErrorCode RoundsCreate(Contact contact, PetscBool active[], const PetscReal force[], const PetscReal gap[], Rounds *rounds)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(rounds, sizeof(*rounds)));
+  rounds->contact   = contact;
+  rounds->active    = active;
+  rounds->force     = force;
+  rounds->gap       = gap;
+  rounds->tolerance = contact->tolerance;
+  rounds->recheck   = PETSC_TRUE;
+  PetscCall(PetscMalloc1((MAX_ROUNDS + 1) * contact->n_rows, &rounds->tried));
+  PetscCall(PetscCalloc1(contact->n_rows, &rounds->kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RoundsDestroy(Rounds *rounds)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(rounds->tried));
+  PetscCall(PetscFree(rounds->kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* Call at the start of a controller step */
-PetscErrorCode SchwarzBeginRounds(Contact contact)
+PetscErrorCode RoundsBegin(Rounds *rounds)
 {
-  Rounds *rounds = &((Schwarz *)contact->data)->rounds;
-
   PetscFunctionBegin;
-  if (rounds->cycled) PetscCall(PetscArrayzero(rounds->kept, contact->n_rows));
-  if (contact->fades) PetscCall(PetscArrayzero(contact->release_intervals, contact->n_rows));
+  if (rounds->cycled) PetscCall(PetscArrayzero(rounds->kept, rounds->contact->n_rows));
   rounds->n = rounds->first = 0;
   rounds->cycled = rounds->single = PETSC_FALSE;
   rounds->fewest                  = PETSC_INT_MAX;
@@ -34,39 +57,42 @@ PetscErrorCode SchwarzBeginRounds(Contact contact)
 }
 
 /* Remembers the active set that is about to be solved for */
-PetscErrorCode SchwarzBeginRound(Contact contact)
+PetscErrorCode RoundsNext(Rounds *rounds)
 {
-  Rounds *rounds = &((Schwarz *)contact->data)->rounds;
+  const PetscInt n = rounds->contact->n_rows;
 
   PetscFunctionBegin;
-  PetscCheck(rounds->n < SCHWARZ_MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-             "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step",
-             SCHWARZ_MAX_ROUNDS);
-  PetscCall(PetscArraycpy(rounds->tried + rounds->n++ * contact->n_rows, contact->active, contact->n_rows));
+  PetscCheck(rounds->n < MAX_ROUNDS, PetscObjectComm((PetscObject)rounds->contact), PETSC_ERR_NOT_CONVERGED,
+             "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", MAX_ROUNDS);
+  PetscCall(PetscArraycpy(rounds->tried + rounds->n++ * n, rounds->active, n));
   if (!rounds->cycled || rounds->n < LAST_ROUNDS) PetscFunctionReturn(PETSC_SUCCESS);
   rounds->single = PETSC_FALSE;
-  for (PetscInt i = 0; i < contact->n_rows; i++) rounds->kept[i] = PETSC_TRUE;
+  for (PetscInt i = 0; i < n; i++) rounds->kept[i] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row penetrates or is pulled. While sweeps run on the compliance, the gaps of rows that it does not know are not there yet. */
-static PetscBool RowIsWrong(Contact contact, PetscInt i)
+/* The active set of the last round, NULL before the first */
+const PetscBool *RoundsLast(const Rounds *rounds)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  return rounds->n ? rounds->tried + (rounds->n - 1) * rounds->contact->n_rows : NULL;
+}
 
-  if (contact->active[i]) return (PetscBool)(schwarz->recheck && contact->force[i] < 0 && !contact->tied[i] && !schwarz->rounds.kept[i]);
-  return (PetscBool)(contact->gap[i] < -contact->tolerance && (schwarz->step != STEP_CONDENSED || schwarz->known[i]));
+/* Whether a row penetrates without being active, or is active and pulled */
+static PetscBool RowIsWrong(const Rounds *rounds, PetscInt i)
+{
+  if (rounds->active[i]) return (PetscBool)(rounds->recheck && rounds->force[i] < 0 && !rounds->contact->tied[i] && !rounds->kept[i]);
+  return (PetscBool)(rounds->gap[i] < -rounds->tolerance && (!rounds->known || rounds->known[i]));
 }
 
 /* The first of all ranks' rows that are wrong, by its number on this rank, or -1; and whether all rows may change at once again */
-static PetscErrorCode FindFirstWrong(Contact contact, PetscInt *which)
+static PetscErrorCode FindFirstWrong(Rounds *rounds, PetscInt *which)
 {
-  Rounds  *rounds = &((Schwarz *)contact->data)->rounds;
-  PetscInt count = 0, first = PETSC_INT_MAX;
+  const Contact contact = rounds->contact;
+  PetscInt      count = 0, first = PETSC_INT_MAX;
 
   PetscFunctionBegin;
   for (PetscInt i = contact->n_rows - 1; i >= 0; i--) {
-    if (!RowIsWrong(contact, i)) continue;
+    if (!RowIsWrong(rounds, i)) continue;
     first = contact->row_begin + i;
     count++;
   }
@@ -79,107 +105,54 @@ static PetscErrorCode FindFirstWrong(Contact contact, PetscInt *which)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row leaves with the force that holds it until it is pulled, where that is told in the course of the step; else with one that falls
-   linearly until its end. To go on with that while the row opens would be work out of nothing: with ten discs 1.4e-3 of the energy at a
-   step of 4e-4 s. */
-static PetscErrorCode NoteRelease(Contact contact, PetscInt i)
-{
-  Schwarz           *schwarz  = (Schwarz *)contact->data;
-  const ContactPair *pair     = &contact->pairs[contact->row_pair[i]];
-  const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
-  PetscReal         *force    = contact->release + i * contact->release_room;
-  PetscInt           n        = 1, partner;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetSizes(contact->traces[NeumannBody(pair)].displacement, NULL, &partner));
-  if (pair->by_force ? partner > 1 : schwarz->levels[contact->row_pair[i]] > 1) PetscCall(TraceGetSizes(reaction, NULL, &n));
-  force[0]                      = contact->saved_active[i] ? PetscMax(contact->saved_force[i], 0) : 0;
-  force[n]                      = 0;
-  contact->release_intervals[i] = force[0] > 0 ? n : 0;
-  for (PetscInt k = 1; k < n; k++) {
-    PetscScalar *values;
-
-    PetscCall(TraceGetLevel(reaction, k, &values));
-    force[k] = k > 1 && force[k - 1] == 0 ? 0 : PetscMax(-NeumannSign(pair) * values[i], 0);
-    if (force[k] > 0) contact->release_intervals[i] = n;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether the active set is another than that of the last round, after rows of shared nodes have been put in order, of which some may be
-   let go again; notes the forces of rows that leave */
-PetscErrorCode SchwarzTakeActiveSet(Contact contact, PetscBool *changed)
-{
-  const Rounds    *rounds = &((Schwarz *)contact->data)->rounds;
-  const PetscBool *before = rounds->n ? rounds->tried + (rounds->n - 1) * contact->n_rows : NULL;
-  int              any    = 0;
-
-  PetscFunctionBegin;
-  ContactArrangeShared(contact);
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscBool was = (PetscBool)(before && before[i]);
-
-    if (contact->active[i] == was) continue;
-    if (was && contact->fades) PetscCall(NoteRelease(contact, i));
-    any = 1;
-  }
-  PetscCall(ContactOr(contact, &any));
-  *changed = (PetscBool)(any > 0);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Rows that penetrate join, rows that are pulled leave, or the first of them alone */
-PetscErrorCode SchwarzUpdateActiveSet(Contact contact, PetscBool *changed)
+PetscErrorCode RoundsChange(Rounds *rounds)
 {
-  const Rounds *rounds = &((Schwarz *)contact->data)->rounds;
-  PetscInt      first  = -1;
+  PetscInt first = -1;
 
   PetscFunctionBegin;
-  if (rounds->single) PetscCall(FindFirstWrong(contact, &first));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    if (rounds->single ? i == first : RowIsWrong(contact, i)) contact->active[i] = (PetscBool)!contact->active[i];
-  PetscCall(SchwarzTakeActiveSet(contact, changed));
+  if (rounds->single) PetscCall(FindFirstWrong(rounds, &first));
+  for (PetscInt i = 0; i < rounds->contact->n_rows; i++)
+    if (rounds->single ? i == first : RowIsWrong(rounds, i)) rounds->active[i] = (PetscBool)!rounds->active[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* How many rounds ago the active set was solved for in this step, under the present rule; 0: never */
-static PetscErrorCode FindActiveSet(Contact contact, PetscInt *ago)
+static PetscErrorCode FindActiveSet(const Rounds *rounds, PetscInt *ago)
 {
-  const Rounds *rounds = &((Schwarz *)contact->data)->rounds;
+  const PetscInt n = rounds->contact->n_rows;
 
   PetscFunctionBegin;
   *ago = 0;
   for (PetscInt k = rounds->n - 1; k >= rounds->first && !*ago; k--) {
     int differs = 0;
 
-    for (PetscInt i = 0; i < contact->n_rows; i++) differs |= rounds->tried[k * contact->n_rows + i] != contact->active[i];
-    PetscCall(ContactOr(contact, &differs));
+    for (PetscInt i = 0; i < n; i++) differs |= rounds->tried[k * n + i] != rounds->active[i];
+    PetscCall(ContactOr(rounds->contact, &differs));
     if (!differs) *ago = rounds->n - k;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Compares the active set, which has changed, with those of the rounds before, and turns to another rule if it is one of them. `flips`: it
-   is that of the last round but one. */
-PetscErrorCode SchwarzBreakCycle(Contact contact, PetscBool *flips)
+   is that of the last round but one; then rows that differ between both are kept. */
+PetscErrorCode RoundsBreakCycle(Rounds *rounds, PetscBool *flips)
 {
-  Rounds          *rounds = &((Schwarz *)contact->data)->rounds;
-  const PetscBool *last   = rounds->tried + (rounds->n - 1) * contact->n_rows;
+  const PetscBool *last = RoundsLast(rounds);
   PetscInt         ago;
 
   PetscFunctionBegin;
-  PetscCall(FindActiveSet(contact, &ago));
+  PetscCall(FindActiveSet(rounds, &ago));
   *flips = (PetscBool)(ago == 2);
   if (!ago) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!rounds->cycled) contact->counts_made.set_cycles++;
+  if (!rounds->cycled) rounds->contact->counts_made.set_cycles++;
   rounds->cycled = PETSC_TRUE;
   rounds->first  = rounds->n;
   if (!*flips && !rounds->single) {
     rounds->single = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    if (contact->active[i] != last[i]) contact->active[i] = rounds->kept[i] = PETSC_TRUE;
-  ContactArrangeShared(contact);
+  for (PetscInt i = 0; i < rounds->contact->n_rows; i++)
+    if (rounds->active[i] != last[i]) rounds->active[i] = rounds->kept[i] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

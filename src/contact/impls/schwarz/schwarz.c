@@ -77,9 +77,10 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets,
                               MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc3((SCHWARZ_MAX_ROUNDS + 1) * contact->n_rows, &schwarz->rounds.tried, contact->n_rows, &schwarz->kept_force,
-                         2 * contact->n_rows, &schwarz->previous));
-  PetscCall(PetscCalloc2(contact->n_rows, &schwarz->known, contact->n_rows, &schwarz->rounds.kept));
+  PetscCall(PetscMalloc2(contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
+  PetscCall(PetscCalloc1(contact->n_rows, &schwarz->known));
+  PetscCall(RoundsCreate(contact, contact->active, contact->force, contact->gap, &schwarz->rounds));
+  schwarz->rounds.recheck = schwarz->recheck;
   PetscCall(PetscCalloc2(contact->n_rows, &schwarz->interpolated, 3 * contact->n_rows, &schwarz->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -171,8 +172,9 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->solved_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
-  PetscCall(PetscFree3(schwarz->rounds.tried, schwarz->kept_force, schwarz->previous));
-  PetscCall(PetscFree2(schwarz->known, schwarz->rounds.kept));
+  PetscCall(PetscFree2(schwarz->kept_force, schwarz->previous));
+  PetscCall(PetscFree(schwarz->known));
+  PetscCall(RoundsDestroy(&schwarz->rounds));
   PetscCall(PetscFree2(schwarz->interpolated, schwarz->row_work));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,10 +1,8 @@
 #pragma once
+#include <contact/activeset/rounds.h>
 #include <contact/compliance/interfaceoperator.h>
 #include <contact/compliance/outersolver.h>
 #include <solver/densefactor.h>
-
-/* Rounds of the active set in one step after which something must be wrong */
-#define SCHWARZ_MAX_ROUNDS 100
 
 /* What "change of position" is compared with the tolerances */
 typedef enum {
@@ -80,16 +78,6 @@ typedef struct {
   Vec      *dx, *df, *basis;
   Vec       last_x, last_f, rest;
 } Secants;
-
-/* The active sets of one controller step */
-typedef struct {
-  PetscBool *tried;    /* those seen, one after the other */
-  PetscInt   n, first; /* how many; those before the first were under another rule */
-  PetscBool  cycled;   /* one has been seen twice */
-  PetscBool  single;   /* one row changes in a round, not all */
-  PetscInt   fewest;   /* wrong rows in any round since */
-  PetscBool *kept;     /* per row: it stays held */
-} Rounds;
 
 typedef struct {
   /* options */
@@ -188,8 +176,6 @@ static inline ContactConditions SchwarzConditions(const Schwarz *schwarz)
 }
 
 PETSC_INTERN PetscErrorCode ContactStep_Schwarz(Contact);
-PETSC_INTERN PetscErrorCode SchwarzBeginRounds(Contact);
-PETSC_INTERN PetscErrorCode SchwarzBeginRound(Contact);
 PETSC_INTERN PetscErrorCode SchwarzTakeActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzUpdateActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzBreakCycle(Contact, PetscBool *);

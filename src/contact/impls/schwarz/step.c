@@ -83,7 +83,7 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
 
   PetscFunctionBegin;
   *taken_back = PETSC_FALSE;
-  PetscCall(SchwarzBeginRound(contact));
+  PetscCall(RoundsNext(&schwarz->rounds));
   if (!condensed)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
   PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
@@ -124,7 +124,8 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscBool in_contact, changed, flips, taken_back = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(SchwarzBeginRounds(contact));
+  PetscCall(RoundsBegin(&schwarz->rounds));
+  PetscCall(ContactBeginRelease(contact));
   schwarz->have_base = PETSC_FALSE;
   if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
@@ -135,7 +136,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
   while (in_contact && !taken_back) {
-    PetscCall(SchwarzBeginRound(contact));
+    PetscCall(RoundsNext(&schwarz->rounds));
     PetscCall(SolveActive(contact));
     PetscCall(SchwarzUpdateActiveSet(contact, &changed));
     if (!changed) PetscCall(Finish(contact, &changed));
