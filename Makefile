@@ -4,7 +4,7 @@
 # then runs itself again with what it found: PETSC_ROOT, the directory of PETSc's libraries, and PYTHON, an interpreter.
 #   PETSC_DIR, PETSC_ARCH   your own PETSc, 3.21 or newer, instead of the private build
 #   DEBUG=1                 unoptimised, in build/debug          ASAN=1   address and undefined-behaviour checks, in build/asan
-#   TESTS="tests/unit -k x" what `make test` hands to pytest     V=1      show whole commands
+#   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
 
 cores := $(shell nproc)
 
@@ -57,7 +57,7 @@ CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/includ
 LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lm
 
 members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c'))))
-units     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/unit/*.c)))
+units     := $(patsubst %.c,$(BUILD)/%,$(filter-out tests/scaling/% tests/library/%,$(sort $(shell find tests -name '*.c'))))
 c_files    = $(shell find src include tests -name '*.[ch]')
 sh_files  := .setup/common .setup/debian .setup/petsc .setup/python .ci/run
 TESTS     ?= tests
@@ -116,8 +116,10 @@ $(BUILD)/libimpakt.a: $(members) $(BUILD)/members
 	@rm -f $@
 	$(call say,AR) ar rcs $@ $(members)
 
-$(BUILD)/tests/unit/%: $(BUILD)/tests/unit/%.o $(BUILD)/libimpakt.a
+$(units): %: %.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
+
+$(addsuffix .o,$(units)): CPPFLAGS += -Itests/support
 
 $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
 	@mkdir -p $(@D)

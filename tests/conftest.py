@@ -6,6 +6,7 @@ import re
 import shlex
 import signal
 import subprocess
+import sys
 from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,6 +15,10 @@ import h5py
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+# What tests share, and the programs that make pictures and reports
+sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "plots")]
+pytest_plugins = ["shared_runs"]
+
 BUILD = Path(os.environ.get("IMPAKT_BUILD", ROOT / "build"))
 IMPAKT = Path(os.environ.get("IMPAKT", BUILD / "impakt"))
 MPIEXEC = shlex.split(os.environ.get("MPIEXEC") or "mpiexec")
