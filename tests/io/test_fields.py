@@ -219,8 +219,9 @@ def test_error_in_the_run(launch, tmp_path):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_kill(ranks, tmp_path):
+def test_kill(ranks, take_cores, tmp_path):
     """Killed at any moment: the frames that are listed are there, others have no time."""
+    take_cores(ranks)
     (tmp_path / "options").symlink_to(ROOT / "options")
     command = [IMPAKT, *f"{BARS} -time_step 1e-8 -output_fields fields.h5 -output_fields_interval 11".split()]
     if ranks > 1:
