@@ -1,4 +1,5 @@
-"""The CMocka programs of tests/unit, each on 1, 2 and 3 ranks or on those that a comment in it names: /* ranks: 1 2 */"""
+"""The CMocka programs, which are the C files of all folders here but scaling and library, each on 1, 2 and 3 ranks or on those that a comment
+in it names: /* ranks: 1 2 */"""
 
 import os
 import re
@@ -10,15 +11,19 @@ RANKS = re.compile(r"/\*\s*ranks:\s*([\d\s,]+)\*/")
 
 
 def cases():
-    for source in sorted((ROOT / "tests/unit").glob("*.c")):
+    tests = ROOT / "tests"
+    for source in sorted(tests.rglob("*.c")):
+        program = source.relative_to(tests).with_suffix("")
+        if program.parts[0] in ("scaling", "library"):
+            continue
         named = RANKS.search(source.read_text())
         for ranks in re.findall(r"\d+", named.group(1)) if named else (1, 2, 3):
-            yield pytest.param(source.stem, int(ranks), id=f"{source.stem}-{ranks}")
+            yield pytest.param(program, int(ranks), id=f"{program}-{ranks}")
 
 
 @pytest.mark.parametrize(("name", "ranks"), list(cases()))
 def test_unit(name, ranks, launch, tmp_path):
-    done = launch([BUILD / "tests/unit" / name], ranks, cwd=tmp_path, env={**os.environ, "PETSC_OPTIONS": "-malloc_dump"})
+    done = launch([BUILD / "tests" / name], ranks, cwd=tmp_path, env={**os.environ, "PETSC_OPTIONS": "-malloc_dump"})
     output = done.stdout + done.stderr
     failed = sorted(set(re.findall(r"\[  FAILED  \] (\w+)$", output, re.MULTILINE)))
     if done.returncode != 0 or failed:

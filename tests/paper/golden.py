@@ -1,32 +1,14 @@
-"""The golden figures of the report's tables: what our runs gave when they were recorded, with a tolerance for each. Published
-values have no part in it.
+"""All golden figures of the report's tables, on what `make paper` has run. `make test` does not collect this file: tests/plots/test_golden.py
+runs the cheap ones again."""
 
-`make paper` checks all of them on what it has run (this file, which `make test` does not collect);
-tests/regression/test_golden.py runs the cheap ones again. In golden.json an experiment has, for each quantity, its value, the
-tolerance and the reason for it, which is written out under "reasons". record.py writes the file.
-"""
-
-import json
 import os
 from pathlib import Path
 
 import pytest
+from goldenfigures import GOLDEN, differences
 from paper.experiments import ROOT, find
-from paper.results import Results, figure
+from paper.results import Results
 from paper.running import Runner
-
-FILE = Path(__file__).resolve().parent / "golden.json"
-GOLDEN = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {"figures": {}, "cheap": [], "reasons": {}}
-
-
-def differences(name, summary):
-    """Figures of a summary that are not what they were, as texts."""
-    found = []
-    for quantity, (value, tolerance, reason) in GOLDEN["figures"][name].items():
-        now = figure(summary, quantity)
-        if now is None or not abs(now - value) <= tolerance:
-            found.append(f"{quantity}: {now!r} instead of {value!r} within {tolerance!r} ({GOLDEN['reasons'][reason]})")
-    return found
 
 
 @pytest.fixture(scope="module")

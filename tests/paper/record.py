@@ -16,9 +16,10 @@ import shlex
 import sys
 from pathlib import Path
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[2] / "plots"), str(Path(__file__).resolve().parent)]
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "plots"), str(ROOT / "tests/support")]
 
-from golden import FILE
+from goldenfigures import FILE
 from paper.experiments import Experiment, find
 from paper.results import NoResult, Results
 from paper.running import Runner, run_all

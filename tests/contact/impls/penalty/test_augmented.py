@@ -1,0 +1,58 @@
+"""The augmented Lagrangian at high speed: the penalty parameter is a matter of cost alone."""
+
+import pytest
+from cases import (
+    DEFAULTS,
+    PAIRINGS,
+    force_scatter,
+    joined,
+    never_tensile,
+    worst_energy_error,
+)
+
+AUGMENTED = f"{DEFAULTS} -contact_type augmented_lagrangian"
+NAME = "contact/left:right/force"
+EQUAL_STEPS = {"II": "", "EE": PAIRINGS["EE"], "IE": "-right_ts_type centraldifference"}
+
+
+@pytest.mark.parametrize("pairing", list(EQUAL_STEPS))
+def test_stiff(pairing, shared_run):
+    """tau W = 1e9 N/m times 2.5e-6 m/N: each round makes the gap 2500 times smaller."""
+    run = shared_run(joined(AUGMENTED, "-contact_penalty 1e9", EQUAL_STEPS[pairing]))
+    assert run.summary["schwarz"]["max"] <= 6  # three rounds of two sweeps
+    assert run.summary["schwarz"]["mean_contact_steps"] <= 2.1
+    assert run.summary["contact"]["onsets"] == 1
+    assert run.summary["contact"]["max_penetration"] <= 1e-10  # -contact_augmentation_tolerance
+    assert force_scatter(run.summary) <= 1e-5
+    assert worst_energy_error(run.summary) <= 4e-6
+    assert run.summary["errors"]["kinetic"] <= 1.3e-3
+    assert run.summary["system"]["penalty_energy_max"] == 0
+    assert never_tensile(run)
+
+
+@pytest.mark.parametrize(("penalty", "most"), [("7.5e4", 150), ("1e7", 10), ("1e12", 3)])
+def test_any_penalty(penalty, most, shared_run):
+    """The same forces with the paper's parameter, by many rounds, and with one that is far too stiff for the penalty method; within
+    the tolerance of 1e-10 m over a compliance of 2.5e-6 m/N, times two for both runs."""
+    run = shared_run(f"{AUGMENTED} -contact_penalty {penalty}")
+    stiff = shared_run(f"{AUGMENTED} -contact_penalty 1e9")
+    assert most / 2 < run.summary["schwarz"]["max"] <= most
+    assert abs(run.history[NAME][()] - stiff.history[NAME][()]).max() <= 1e-4
+    assert run.summary["contact"]["max_penetration"] <= 1e-10
+
+
+def test_tolerance(shared_run):
+    """With 1e-14 m it is the Lagrange multiplier, to 1e-9 of the force. A node out of contact may lie as deep as does not count as
+    penetration, 3e-12 of the extent of 0.27 m."""
+    run = shared_run(f"{AUGMENTED} -contact_penalty 1e9 -contact_augmentation_tolerance 1e-14")
+    lagrange = shared_run(f"{DEFAULTS} -contact_type lagrange -lagrange_snes_atol 1e-15")
+    assert run.summary["contact"]["max_penetration"] <= 3e-12 * 0.27
+    assert abs(run.history[NAME][()] - lagrange.history[NAME][()]).max() <= 1e-7
+
+
+def test_unconverged(impakt):
+    """With mass on the contact nodes the paper's parameter is far too soft: tau W = 6e-4 (W = dt^2/4 over half of 6.25e-7 kg)."""
+    massive = "-left_mass_type lumped -right_mass_type lumped -left_mass_redistribute false -right_mass_redistribute false"
+    run = impakt(f"{AUGMENTED} -contact_penalty 7.5e4 {massive}", expect_failure=True)
+    for words in ("augmented Lagrangian did not converge", "time 1e-07 s", "200 augmentations", "-contact_penalty"):
+        assert words in run.stderr

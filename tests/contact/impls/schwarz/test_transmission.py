@@ -1,0 +1,88 @@
+"""Transmission conditions, predictors and swapped sides on the high-speed impact: one solution, other numbers of sweeps."""
+
+import math
+
+import pytest
+from cases import DEFAULTS, MOVING, PAIRINGS, force_scatter, joined, worst_energy_error
+
+# A frame in which the last position of the contact nodes is not the answer
+CASES = {"II": "", "EE": f"{PAIRINGS['EE']} -left_mass_type lumped -right_mass_type lumped", "IE": f"{PAIRINGS['IE']} -right_mass_type lumped"}
+WAYS = {
+    "robin": "-schwarz_transmission robin",
+    "impedance": "-schwarz_transmission impedance",
+    "plain-robin": "-schwarz_transmission robin -schwarz_snes_type nrichardson",
+    "last": "-schwarz_predictor last",
+    "trial": "-schwarz_predictor trial",
+    "extrapolate": "-schwarz_predictor extrapolate",
+    "swapped": "-contact_swap_sides",
+    "swapped-robin": "-contact_swap_sides -schwarz_transmission robin",
+}
+
+
+def same(one, other, relative, absolute=0.0):
+    return math.isclose(one, other, rel_tol=relative, abs_tol=absolute)
+
+
+@pytest.mark.parametrize("way", list(WAYS))
+@pytest.mark.parametrize("case", list(CASES))
+def test_one_solution(case, way, shared_run):
+    """The conditions change the way to the solution, not the solution: the issue asks for the outer tolerance, 1e-12 m."""
+    base = joined(DEFAULTS, MOVING, CASES[case])
+    reference, summary = shared_run(base).summary, shared_run(joined(base, WAYS[way])).summary
+    # Where both sides make the same substeps only the outer tolerance is left: 1e-12 m on layers of 8e5 N/m is 1e-5 of the force of
+    # 0.1 N, which the steps do not pile up; 1.1e-9 was seen in these figures, which are means and peaks over many steps. Where they do
+    # not, what happens between the ends of the controller step is a matter of the conditions: a soft spring leaves a path that a
+    # displacement forces; 8e-5 was seen in the peak of the force.
+    tolerance = 2e-4 if case == "IE" else 1e-8
+    for name in ("force_mean", "force_peak", "impulse"):
+        assert same(summary["contact"][name], reference["contact"][name], tolerance), name
+    for name in ("first_contact_time", "release_time", "onsets", "steps_in_contact"):
+        assert summary["contact"][name] == reference["contact"][name], name
+    for body in ("left", "right"):
+        assert same(summary["bodies"][body]["peak_potential"], reference["bodies"][body]["peak_potential"], tolerance)
+    for name in ("kinetic", "potential", "contact_position", "mean_velocity"):
+        assert same(summary["errors"][name], reference["errors"][name], 2e-3 if case == "IE" else 1e-5), name  # 9e-4 and 8e-7 seen: differences of large numbers
+    assert summary["contact"]["max_penetration"] <= 2e-12  # the outer tolerance
+    assert worst_energy_error(summary) <= 1e-5  # as the default's, which is 1.4e-6
+    assert force_scatter(summary) <= 1e-4
+    assert summary["schwarz"]["unconverged_steps"] == 0
+
+
+@pytest.mark.parametrize("case", list(CASES))
+@pytest.mark.parametrize("way", ["robin", "impedance", "swapped", "swapped-robin"])
+def test_newton_needs_two_sweeps(case, way, shared_run):
+    """Its Jacobian is that of the conditions chosen."""
+    assert shared_run(joined(DEFAULTS, MOVING, CASES[case], WAYS[way])).summary["schwarz"]["max"] <= 2
+
+
+@pytest.mark.parametrize("case", list(CASES))
+def test_plain_robin_converges(case, shared_run):
+    """A spring as stiff as the massless layer behind it makes the plain alternation converge without relaxation, where Dirichlet
+    and Neumann conditions only alternate: at most 4 sweeps have been seen, the last of which finds no change."""
+    assert shared_run(joined(DEFAULTS, MOVING, CASES[case], WAYS["plain-robin"])).summary["schwarz"]["max"] <= 5
+
+
+@pytest.mark.parametrize(("case", "most"), [("II", 1.01), ("EE", 1.01), ("IE", 2.0)])
+def test_inelastic_predictor(case, most, shared_run):
+    """Equal bars go on with their common velocity, so that it is the answer; and it is never worse than where they were."""
+    mean = {way: shared_run(joined(DEFAULTS, MOVING, CASES[case], options)).summary["schwarz"]["mean_contact_steps"] for way, options in [("", ""), *WAYS.items()] if way in ("", "last", "trial", "extrapolate")}
+    assert mean[""] <= most
+    assert mean[""] <= min(mean.values())
+
+
+@pytest.mark.parametrize("way", ["robin", "impedance", "swapped"])
+def test_ranks(way, shared_run):
+    """Two ranks that share bodies and rows: the same within round-off."""
+    options = joined(DEFAULTS, MOVING, WAYS[way], "-time_end 1e-4")
+    one, two = (shared_run(options, ranks).summary for ranks in (1, 2))
+    assert one["schwarz"]["max"] == two["schwarz"]["max"]
+    assert same(one["contact"]["force_mean"], two["contact"]["force_mean"], 1e-8)
+    assert same(one["bodies"]["left"]["peak_potential"], two["bodies"]["left"]["peak_potential"], 1e-8)
+
+
+def test_constant_traction_calms_the_papers_mixed_variant(shared_run):
+    """With the traction held over the explicit substeps the implicit-explicit variant of the paper shows the little chatter that the
+    paper reports; with a linear one it does not (measured 0.0054 and 0.27)."""
+    paper = "-options_file options/paper/high-speed/ie.opts"
+    assert force_scatter(shared_run(f"{paper} -schwarz_traction_waveform constant").summary) <= 0.01
+    assert force_scatter(shared_run(paper).summary) >= 0.1

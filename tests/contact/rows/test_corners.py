@@ -1,0 +1,214 @@
+"""Nodes that touch two obstacles at once: in corners and grooves their normals are oblique, beside each other they are the same."""
+
+import h5py
+import numpy as np
+import pytest
+from cases import SAME, joined, last, same, worst_energy_error
+from setups import FIELDS, box, linear, material, plane, rotation, words
+
+EXPLICIT = "-a_ts_type centraldifference"
+
+
+# A block pressed into a corner by the displacement of its far faces: its strain is uniform, so that any mesh has the exact solution.
+
+FACES = (3, 2, 2)
+SIZE = np.array((0.6, 0.5, 0.4))
+STRAIN = np.array((-0.02, -0.01, -0.015))
+TURNS = {2: ((0, 0, 1), 37), 3: ((1, -2, 0.7), 71)}
+CORNERS = {"quad4": (2, ""), "tri3": (2, "-a_dm_plex_simplex 1"), "hex8": (3, ""), "tet4": (3, "-a_dm_plex_simplex 1")}
+
+
+def stress(kind, dim, e=1, nu=0.25):
+    """First Piola-Kirchhoff stress along the axes; in two dimensions the third strain is zero."""
+    mu, lame = e / (2 * (1 + nu)), e * nu / ((1 + nu) * (1 - 2 * nu))
+    strain = np.array([*STRAIN[:dim], *(0,) * (3 - dim)])
+    if kind == "linear_elastic":
+        return 2 * mu * strain + lame * strain.sum()
+    stretch = 1 + strain
+    if kind == "saint_venant_kirchhoff":  # F S with S = 2 mu E + lambda tr E
+        green = (stretch**2 - 1) / 2
+        return stretch * (2 * mu * green + lame * green.sum())
+    return mu * (stretch - 1 / stretch) + lame / 2 * (stretch.prod() ** 2 - 1) / stretch  # neo-Hookean, as in src/body/material/neohookean.c
+
+
+def pressed(shape, kind):
+    """The corner is at the origin, and the walls are the planes across the axes, all turned."""
+    dim, simplex = CORNERS[shape]
+    axis, degrees = TURNS[dim]
+    across = rotation(axis, degrees)[:dim, :dim]
+    exact = linear(across @ np.diag(STRAIN[:dim]) @ across.T, np.zeros(dim), "t*")
+    names = "lmn"[:dim]
+    far = [f"{x}max" for x in "xyz"[:dim]]
+    parts = [box("a", FACES[:dim], (0,) * dim, SIZE[:dim], simplex or "-a_dm_plex_simplex 0"), material("a", more=f"-a_material_type {kind} -a_ts_type static")]
+    parts.append(f"-a_rotate {degrees if dim == 2 else words((*axis, degrees))} -a_rotate_centre {words((0,) * dim)}")
+    parts.append(f"-a_boundary_displacement {','.join(far)} " + " ".join(f"-a_boundary_displacement_{side} {exact}" for side in far))
+    parts.append(f"-a_exact_displacement {exact} -bodies a -obstacles {','.join(names)} {FIELDS} -time_step 1 -time_end 1")
+    parts += [plane(name, (0,) * 3, (*across[:, i], *(0,) * (3 - dim))) for i, name in enumerate(names)]
+    return " ".join(parts), dim, names, across
+
+
+def check_pressed(run, dim, names, across, pressure):
+    """What the walls carry of the uniform stress: where nodes of the far faces are held, which contact could not move, they carry nothing."""
+    for i, name in enumerate(names):
+        pair = f"a:{name}"
+        assert last(run, pair, "active") == np.prod(np.delete(FACES[:dim], i))  # nodes but those of far faces
+        assert last(run, pair, "force") == pytest.approx(-pressure[i] * last(run, pair, "area"), rel=1e-9)
+        np.testing.assert_allclose(last(run, pair, "force_vector")[:dim], -last(run, pair, "force") * across[:, i], rtol=1e-9, atol=1e-12)
+    assert run.summary["bodies"]["a"]["displacement_error"] <= 1e-9
+    with h5py.File(run.folder / "fields.h5") as fields:
+        found = fields["stress"][max(fields["displacement"])][()].reshape(-1, 3, 3)
+    first = found[0]
+    np.testing.assert_allclose(found, np.broadcast_to(first, found.shape), rtol=0, atol=1e-9 * np.abs(first).max())
+
+
+@pytest.mark.parametrize("kind", ["linear_elastic", "saint_venant_kirchhoff", "neo_hookean"])
+@pytest.mark.parametrize("shape", CORNERS)
+def test_pressed_into_a_corner(shape, kind, shared_run):
+    options, dim, names, across = pressed(shape, kind)
+    pressure = stress(kind, dim)
+    runs = [shared_run(options), shared_run(f"{options} -schwarz_condense 0"), shared_run(options, 2)]
+    for run in runs:
+        check_pressed(run, dim, names, across, pressure)
+
+
+# A block flies into a corner, and turns back in both directions.
+
+INTEGRATORS = {"implicit": "", "implicit-substeps": "-a_ts_time_step 0.01", "explicit": EXPLICIT, "explicit-substeps": f"{EXPLICIT} -a_ts_time_step 0.01"}
+
+
+def thrown(degrees, more="", dim=2):
+    """The corner is at the origin; the block reaches one wall after the other."""
+    axis = (0, 0, 1) if dim == 2 else (1, -2, 0.7)
+    across = rotation(axis, degrees)[:dim, :dim]
+    lower, velocity = np.array((0.02, 0.03, 0.025))[:dim], across @ np.array((-0.1, -0.1, -0.07))[:dim]
+    names = "lmn"[:dim]
+    parts = [box("a", (4, 4, 3)[:dim], lower, lower + 1, f"-a_dm_plex_simplex 0 -a_initial_velocity {words(velocity)}"), material("a")]
+    parts.append(f"-a_rotate {degrees if dim == 2 else words((*axis, degrees))} -bodies a -obstacles {','.join(names)} -time_step 0.02 -time_end 2.4")
+    parts += [plane(name, (0,) * 3, (*across[:, i], *(0,) * (3 - dim))) for i, name in enumerate(names)]
+    return joined(*parts, more)
+
+
+def check_impulse(run, pairs, body="a"):
+    """What the walls have given is what the body has got: the forces of each step act in the middle of two, so that round-off is left."""
+    momentum = run.history[f"body/{body}/momentum"][()]
+    given = -sum(run.history[f"contact/{pair}/impulse"][()][-1] for pair in pairs)[: momentum.shape[1]]
+    np.testing.assert_allclose(given, momentum[-1] - momentum[0], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_thrown_into_a_corner(integrator, dim, shared_run):
+    options = thrown(23, INTEGRATORS[integrator], dim)
+    pairs = [f"a:{name}" for name in "lmn"[:dim]]
+    run = shared_run(options)
+    both = sum(run.history[f"contact/{pair}/active"][()] > 0 for pair in pairs)
+    assert both.max() == dim  # at once
+    assert worst_energy_error(run.summary) <= 5e-4  # of steps of 0.02 s, in proportion to their square; measured: 1e-4 to 2e-4
+    assert run.summary["contact"]["tension_max"] == 0
+    assert run.summary["contact"]["max_penetration"] <= 1e-11
+    same(run, shared_run(f"{options} -schwarz_condense 0"), SAME, "a", pairs)
+    same(run, shared_run(options, 2), SAME, "a", pairs)
+    same(run, shared_run(thrown(0, INTEGRATORS[integrator], dim)), SAME, "a", pairs)
+    if "substeps" not in integrator:
+        check_impulse(run, pairs)
+
+
+@pytest.mark.parametrize("kind", ["saint_venant_kirchhoff", "neo_hookean"])
+@pytest.mark.parametrize("integrator", ["implicit", "explicit"])
+def test_nonlinear_thrown_into_a_corner(integrator, kind, shared_run):
+    options = thrown(23, f"{INTEGRATORS[integrator]} -a_material_type {kind}")
+    run = shared_run(options)
+    assert worst_energy_error(run.summary) <= 5e-4  # measured: 1e-4 to 3.3e-4
+    assert run.summary["schwarz"]["mean_contact_steps"] <= 5
+    check_impulse(run, ("a:l", "a:m"))
+    # Newton's method of the body leaves 1e-12 of its forces, the sweeps 1e-12 m of 0.1 m
+    same(run, shared_run(thrown(0, f"{INTEGRATORS[integrator]} -a_material_type {kind}")), 1e-8, "a", ("a:l", "a:m"))
+    same(run, shared_run(f"{options} -schwarz_snes_type anderson"), 1e-8, "a", ("a:l", "a:m"))
+
+
+# A square stands on its corner in a groove, whose walls are not square to each other: one node touches both.
+
+GROOVE = 100  # degrees between the walls
+
+
+def grooved(more=""):
+    lean = np.radians(GROOVE / 2)
+    walls = [plane("l", (0, 0, 0), (np.cos(lean), np.sin(lean), 0)), plane("r", (0, 0, 0), (-np.cos(lean), np.sin(lean), 0))]
+    return joined(box("a", (4, 4), (0.02, 0.02), (1.02, 1.02), "-a_dm_plex_simplex 0 -a_rotate 45 -a_initial_velocity 0,-0.1"), material("a"), "-bodies a -obstacles l,r -time_step 0.02 -time_end 3", *walls, more)
+
+
+@pytest.mark.parametrize("more", ["", EXPLICIT, "-a_material_type neo_hookean", f"{EXPLICIT} -a_material_type neo_hookean"])
+def test_groove(more, shared_run):
+    """By symmetry both walls push alike: twice the force times the sine of half the angle is what turns the square back."""
+    run = shared_run(grooved(more))
+    left, right = (run.history[f"contact/{pair}/force"][()] for pair in ("a:l", "a:r"))
+    assert left.max() > 0
+    np.testing.assert_allclose(left, right, rtol=0, atol=1e-9 * left.max())
+    momentum = run.history["body/a/momentum"][()]
+    impulse = 2 * np.sin(np.radians(GROOVE / 2)) * np.sum(0.02 * (left[1:] + left[:-1]) / 2)
+    assert momentum[-1, 1] - momentum[0, 1] == pytest.approx(impulse, rel=1e-9)
+    np.testing.assert_allclose(momentum[:, 0], 0, atol=1e-11)
+    assert worst_energy_error(run.summary) <= 5e-4  # measured: 1e-4 to 3.3e-4
+    if "neo" not in more:
+        same(run, shared_run(grooved(f"{more} -schwarz_condense 0")), SAME, "a", ("a:l", "a:r"))
+    same(run, shared_run(grooved(more), 2), SAME, "a", ("a:l", "a:r"))
+
+
+# Plane obstacles side by side, or one behind the other
+
+FLAT = {"one": [(0, 0, 0)], "two": [(0, 0, 0), (1, 0, 0)], "behind": [(0, -0.001, 0), (0, 0, 0)]}
+
+
+def fallen(planes, more=""):
+    names = "lr"[: len(FLAT[planes])]
+    walls = [plane(name, point, (0, 1, 0)) for name, point in zip(names, FLAT[planes])]
+    return joined(box("a", (4, 4), (-1, 0.02), (1, 1.02), "-a_dm_plex_simplex 0 -a_initial_velocity 0,-0.1"), material("a"), f"-bodies a -obstacles {','.join(names)} -time_step 0.02 -time_end 3 {FIELDS.replace('1000000', '50')}", *walls, more)
+
+
+@pytest.mark.parametrize("more", ["", EXPLICIT, "-a_material_type neo_hookean", "-schwarz_condense 0", "-contact_type penalty", "-contact_type lagrange", f"{EXPLICIT} -contact_type lagrange"])
+@pytest.mark.parametrize("planes", ["two", "behind"])
+def test_obstacles_beside_each_other(planes, more, shared_run):
+    """Only the nearest counts: nothing changes."""
+    one, two = shared_run(fallen("one", more)), shared_run(fallen(planes, more))
+    nearest, other = ("r", "l") if planes == "behind" else ("l", "r")
+    force = one.history["contact/a:l/force"][()]
+    assert force.max() > 0
+    np.testing.assert_allclose(two.history[f"contact/a:{nearest}/force"][()], force, rtol=0, atol=1e-12 * force.max())
+    assert not two.history[f"contact/a:{other}/force"][()].any()
+    with h5py.File(one.folder / "fields.h5") as first, h5py.File(two.folder / "fields.h5") as second:
+        frame = sorted(first["contact_pressure"])[1]
+        pressure = first["contact_pressure"][frame][()]
+        assert pressure.max() > 0
+        np.testing.assert_allclose(second["contact_pressure"][frame][()], pressure, rtol=0, atol=1e-12 * pressure.max())
+
+
+# More partners of a node than it has displacements
+
+LEANT = {"concurrent": (0, 0, 0), "before": (0.001, 0.001, 0)}  # a point of the third plane, which cuts the corner off, or touches it
+
+
+@pytest.mark.parametrize("more", ["", EXPLICIT, "-a_material_type neo_hookean"])
+@pytest.mark.parametrize("third", LEANT)
+def test_three_planes_in_two_dimensions(third, more, shared_run):
+    """None is entered, though only two rows of the node can be active at once."""
+    options = joined(thrown(0, more), "-obstacles l,m,n", plane("n", LEANT[third], (1, 1, 0)))
+    run = shared_run(options)
+    pairs = ("a:l", "a:m", "a:n")
+    check_impulse(run, pairs)
+    assert worst_energy_error(run.summary) <= 5e-4
+    assert run.summary["contact"]["max_penetration"] <= 1e-11
+    assert run.summary["contact"]["tension_max"] == 0
+    same(run, shared_run(options, 2), SAME, "a", pairs)
+    if "neo" not in more:
+        same(run, shared_run(f"{options} -schwarz_condense 0"), SAME, "a", pairs)
+
+
+def test_tied_in_a_corner(shared_run):
+    """The node in the corner is held by one of both. From touching, nothing moves any wall, and all energy stays in the block."""
+    options = joined(thrown(0), "-a_dm_plex_box_lower 0,0 -a_dm_plex_box_upper 1,1 -contact_law tied")
+    run = shared_run(options)
+    check_impulse(run, ("a:l", "a:m"))
+    assert worst_energy_error(run.summary) <= 1e-12
+    assert run.summary["contact"]["max_penetration"] <= 1e-11
+    same(run, shared_run(f"{options} -schwarz_condense 0"), SAME, "a", ("a:l", "a:m"))
+    same(run, shared_run(options, 2), SAME, "a", ("a:l", "a:m"))

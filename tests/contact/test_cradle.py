@@ -1,0 +1,93 @@
+"""Equal bars in a row: Newton's cradle in one dimension, and two bars that hit a resting one from both sides.
+
+A wave runs through a bar in L/c = 2.5e-4 s; impact is at t = 0. The first bar of a cradle pushes with v0/2 sqrt(E rho) A = 50 N
+for 2 L/c. The front of this push comes to the i-th pair (from 0) after i L/c, its end after (i + 2) L/c. At the free end of the
+last bar the front turns round, as tension, and is at the last of the n - 1 pairs after n L/c, with the end of the push: there
+the last bar leaves, with all of the momentum.
+"""
+
+import numpy as np
+import pytest
+from cases import never_tensile, worst_energy_error
+
+CROSSING = 2.5e-4  # L/c [s]
+MASS, SPEED, PUSH = 2.5e-4, 100, 50
+ELEMENTS = 200
+
+EXPLICIT = " ".join(f"-{body}_ts_type centraldifference" for body in "abc")
+CRADLES = {
+    "3": ("-options_file options/cradle-3.opts", 1, "abc"),
+    "3-ranks": ("-options_file options/cradle-3.opts", 2, "abc"),
+    "3-explicit": (f"-options_file options/cradle-3.opts {EXPLICIT}", 1, "abc"),
+    "3-reversed": ("-options_file options/cradle-3.opts -contact_pairs b:a,b:c", 1, "abc"),
+    "10": ("-options_file options/cradle-10.opts", 1, "abcdefghij"),
+}
+SIDES = {
+    "default": ("-options_file options/two-sided.opts", 1),
+    "two-ranks": ("-options_file options/two-sided.opts", 2),
+    "explicit": (f"-options_file options/two-sided.opts {EXPLICIT}", 1),
+    "reversed": ("-options_file options/two-sided.opts -contact_pairs b:a,b:c", 1),
+}
+
+
+def check_system(run):
+    """The issue's bounds, and Newton's two sweeps."""
+    schwarz = run.summary["schwarz"]
+    assert run.summary["system"]["momentum_error_max"] <= 1e-10
+    assert worst_energy_error(run.summary) <= 1e-4
+    assert run.summary["contact"]["max_penetration"] <= 1e-9
+    assert schwarz["unconverged_steps"] == 0
+    print("mean iterations: {mean_all_steps:.3f} in all steps, {mean_contact_steps:.4f} in contact; most: {max}".format(**schwarz))
+    assert schwarz["mean_contact_steps"] <= 2.2
+    for pair in run.summary["pairs"]:
+        assert never_tensile(run, pair), pair
+
+
+def velocities(run, bodies):
+    return [run.history[f"body/{body}/mean_velocity"][-1] for body in bodies]
+
+
+@pytest.mark.parametrize("case", list(CRADLES))
+def test_cradle(case, shared_run):
+    options, ranks, bodies = CRADLES[case]
+    run = shared_run(options, ranks)
+    check_system(run)
+    n, pairs = len(bodies), list(run.summary["pairs"])
+    assert run.summary["pairs"][pairs[-1]]["release_time"] == pytest.approx(n * CROSSING, rel=0.01)
+    *others, last = velocities(run, bodies)
+    assert last == pytest.approx(SPEED, rel=0.01)
+    assert np.abs(others).max() <= 0.01 * SPEED
+    time = run.history["time"][()]
+    for i, pair in enumerate(pairs):
+        force = run.history[f"contact/{pair}/force"][()]
+        pushing = time[force > PUSH / 2]
+        # half of the force is where front and end of the push are, to the three elements over which a mesh can smear them
+        assert pushing[0] == pytest.approx(i * CROSSING, abs=3 / ELEMENTS * CROSSING), pair
+        assert pushing[-1] == pytest.approx((i + 2) * CROSSING, abs=3 / ELEMENTS * CROSSING), pair
+        middle = np.abs(time - (i + 1) * CROSSING) < 0.6 * CROSSING
+        assert force[middle].mean() == pytest.approx(PUSH, rel=1e-4), pair
+        assert run.summary["pairs"][pair]["impulse"] == pytest.approx(MASS * SPEED, rel=0.01), pair
+        # bars that touch at rest hear a front before it is there, as dispersion has it, but do not rattle
+        assert run.summary["pairs"][pair]["onsets"] <= 3, pair
+
+
+@pytest.mark.parametrize("case", list(SIDES))
+def test_two_sided(case, shared_run):
+    """b is pushed from both sides, with 50 N. What each push makes is at the other side after L/c, as if b were hit by its mirror
+    image: 100 N against v0. After 2 L/c the waves in a and c are back, and 50 N are left. After 3 L/c, a and c fly back with the
+    speed that they had.
+    """
+    run = shared_run(*SIDES[case])
+    check_system(run)
+    assert velocities(run, "abc") == pytest.approx([-SPEED, 0, SPEED], abs=0.01 * SPEED)
+    time = run.history["time"][()]
+    forces = [run.history[f"contact/{pair}/force"][()] for pair in run.summary["pairs"]]
+    for pair, force in zip(run.summary["pairs"].values(), forces):
+        assert pair["onsets"] == 1
+        assert pair["release_time"] == pytest.approx(3 * CROSSING, rel=0.01)
+        assert pair["impulse"] == pytest.approx(2 * MASS * SPEED, rel=5e-3)
+        for phase, level in enumerate((PUSH, 2 * PUSH, PUSH)):
+            middle = np.abs(time - (phase + 0.5) * CROSSING) < 0.3 * CROSSING
+            assert force[middle].mean() == pytest.approx(level, rel=2e-3)  # fronts ring, the more the further they have come
+    # each step is converged to 1e-12 m, 8e-8 of the compression of an element by 100 N, and so of the force
+    np.testing.assert_allclose(*forces, rtol=0, atol=1e-4)

@@ -1,0 +1,50 @@
+"""Meshes that do not match, and time steps at whose end the bars just touch."""
+
+import pytest
+from cases import (
+    ANDERSON,
+    DEFAULTS,
+    FRAMES,
+    LUMPED,
+    MOVING,
+    PAIRINGS,
+    force_scatter,
+    joined,
+    never_tensile,
+    worst_energy_error,
+)
+
+
+@pytest.mark.parametrize("frame", ["as-is", "moving-inside"])
+@pytest.mark.parametrize("snes", ["newtonls", "anderson"])
+def test_unequal_meshes(snes, frame, shared_run):
+    """137 against 73 elements, with the bounds of the issue."""
+    faces = "-left_dm_plex_box_faces 137 -right_dm_plex_box_faces 73"
+    run = shared_run(joined(DEFAULTS, faces, ANDERSON if snes == "anderson" else "", FRAMES[frame]))
+    assert run.summary["schwarz"]["mean_contact_steps"] <= (5 if snes == "anderson" else 2.5)
+    assert worst_energy_error(run.summary) <= 1e-4
+    assert force_scatter(run.summary) <= 1e-3
+    assert run.summary["contact"]["onsets"] == 1
+    assert {name: body["dofs"] for name, body in run.summary["bodies"].items()} == {"left": 138, "right": 74}
+    assert never_tensile(run)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        DEFAULTS,
+        f"{DEFAULTS} {ANDERSON}",
+        f"{DEFAULTS} {MOVING}",
+        f"{LUMPED} {PAIRINGS['EE']}",
+        f"{LUMPED} -right_ts_type centraldifference -right_ts_time_step 1e-7",
+    ],
+    ids=["newtonls", "anderson", "moving", "EE", "IE"],
+)
+def test_touching_at_the_end_of_a_step(options, shared_run):
+    """With 1e-6 s the gap is exactly 0 at t = 0; the active set must not alternate (issue: no endless loop, 1e-3)."""
+    run = shared_run(f"{options} -time_step 1e-6")
+    assert run.summary["contact"]["onsets"] == 1
+    assert worst_energy_error(run.summary) <= 1e-3
+    assert run.summary["schwarz"]["unconverged_steps"] == 0
+    assert abs(run.summary["contact"]["first_contact_time"]) <= 1e-6 * (1 + 1e-9)
+    assert never_tensile(run)

@@ -1,0 +1,37 @@
+"""Massless contact layers with lumped mass: any pairing of integrators and substeps, without chatter."""
+
+import pytest
+from cases import (
+    ANDERSON,
+    FRAMES,
+    LUMPED,
+    PAIRINGS,
+    force_scatter,
+    joined,
+    never_tensile,
+    worst_energy_error,
+)
+
+
+@pytest.mark.parametrize("frame", ["as-is", "moving-inside"])
+@pytest.mark.parametrize("snes", ["newtonls", "anderson"])
+@pytest.mark.parametrize("pairing", list(PAIRINGS))
+def test_redistributed(pairing, snes, frame, shared_run):
+    """The row of the issue, whose bounds are all here as they stand."""
+    run = shared_run(joined(LUMPED, PAIRINGS[pairing], ANDERSON if snes == "anderson" else "", FRAMES[frame]))
+    # one evaluation to start with, one Newton step, and one more for the interior levels of the substeps
+    assert run.summary["schwarz"]["mean_contact_steps"] <= (4 if snes == "anderson" else 3.2)
+    assert run.summary["schwarz"]["unconverged_steps"] == 0
+    assert force_scatter(run.summary) <= 1e-3
+    assert worst_energy_error(run.summary) <= 1e-4
+    assert run.summary["errors"]["kinetic"] <= 7e-3  # dispersion of lumped mass: 5e-3
+    assert run.summary["contact"]["onsets"] == 1
+    assert never_tensile(run)
+
+
+@pytest.mark.parametrize(("pairing", "left", "right"), [("EE", 1, 1), ("IE", 1, 10), ("EI", 10, 1), ("IE7", 1, 7)])
+def test_substeps(pairing, left, right, shared_run):
+    """The ratio of substeps is that of the time steps asked for, in the sweeps of contact as well."""
+    bodies = shared_run(f"{LUMPED} {PAIRINGS[pairing]}").summary["bodies"]
+    assert bodies["left"]["substeps"] * right == bodies["right"]["substeps"] * left
+    assert bodies["left"]["substeps"] >= 10000 * left

@@ -1,0 +1,94 @@
+"""Two bars meet head on: of quadrilaterals or hexahedra they do what bars in one dimension do, whichever way they lie in space."""
+
+import h5py
+import numpy as np
+import pytest
+from headon import ENDS, NORMAL, SHAPES, compare, figures, options
+
+EXPLICIT = "-{b}_ts_type centraldifference"
+LUMPED = "-l_mass_type lumped -r_mass_type lumped"
+AVERAGED = "-l_mass_type averaged -r_mass_type averaged"
+WITH_MASS = f"{LUMPED} -l_mass_redistribute false -r_mass_redistribute false"
+BOTH_EXPLICIT = f"{EXPLICIT.format(b='l')} {EXPLICIT.format(b='r')} {LUMPED}"
+METHODS = {
+    "II": AVERAGED,
+    "IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED}",
+    "EI": f"{EXPLICIT.format(b='l')} -l_ts_time_step 2e-7 {LUMPED}",
+    "EE": f"{BOTH_EXPLICIT} -l_ts_time_step 1e-6 -r_ts_time_step 5e-7",
+    "whole-bodies": f"{AVERAGED} -schwarz_condense 0",
+    "whole-bodies-IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED} -schwarz_condense 0",
+    "anderson": f"{AVERAGED} -schwarz_snes_type anderson",
+    "nrichardson": f"{AVERAGED} -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5",
+    "paper": f"{WITH_MASS} -schwarz_snes_type nrichardson",
+    "penalty": f"{AVERAGED} -contact_type penalty -contact_penalty {{penalty}}",
+    "penalty-explicit": f"{BOTH_EXPLICIT} -contact_type penalty -contact_penalty {{penalty}}",
+    "augmented-lagrangian": f"{AVERAGED} -contact_type augmented_lagrangian -contact_penalty {{penalty}}",
+    "lagrange": f"{AVERAGED} -contact_type lagrange",
+    "lagrange-explicit": f"{WITH_MASS} {BOTH_EXPLICIT} -contact_type lagrange",
+}
+CASES = [(shape, method) for shape in SHAPES for method in METHODS if "over" not in shape or method in ("II", "EE", "penalty")]
+
+
+def in_one_dimension(method):
+    """Where there are substeps, sweeps on the compliance, without which the force of the last contact is lost to them in one dimension."""
+    return method.replace(" -schwarz_condense 0", "") + (" -schwarz_condense 1" if "ts_time_step" in method else "")
+
+
+@pytest.mark.parametrize(("shape", "method"), CASES)
+def test_impact(shape, method, shared_run):
+    """At every step. The issue wants 1e-6; measured: 1e-12, as the outer iteration stops at 1e-12 m of displacements of 1e-2 m, and 1.4e-10 with the
+    paper's method, which chatters. The figures themselves are tested in one dimension, and here for what they must be in a rough way:
+    rho A c v = 1e4 N, over two passages of 2.5e-4 s."""
+    bars = shared_run(options("bar2", in_one_dimension(METHODS[method])))
+    run = shared_run(options(shape, METHODS[method]))
+    compare(figures(bars, "bar2"), figures(run, shape), 1e-9)
+    assert run.summary["contact"]["onsets"] == bars.summary["contact"]["onsets"]
+    assert run.summary["contact"]["force_mean"] == pytest.approx(1e4, rel=0.01)
+    assert run.summary["contact"]["impulse"] == pytest.approx(5, rel=0.03)  # 25 elements with lumped mass lose 2.1 %
+    if method not in ("EI", "paper"):  # EI: the partner of a body with substeps does not know the force in them; paper: nodes with mass lose theirs
+        assert run.summary["system"]["momentum_error_max"] <= 1e-10
+
+
+@pytest.mark.parametrize("shape", ["quad4-turned", "hex8-turned"])
+@pytest.mark.parametrize("method", ["II", "IE", "EI", "EE", "anderson"])
+def test_condensed(shape, method, shared_run):
+    """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: the issue wants 1e-10; measured: 6e-13."""
+    runs = [shared_run(options(shape, f"{METHODS[method]} -schwarz_condense {condense}")) for condense in (0, 1)]
+    compare(*(figures(run, shape) for run in runs), 1e-10)
+    np.testing.assert_array_equal(*(run.history["schwarz/iterations"][()] for run in runs))
+
+
+@pytest.mark.parametrize("shape", list(SHAPES))
+@pytest.mark.parametrize("pairs", ["auto", "l:r"])
+def test_surfaces_not_named(shape, pairs, shared_run):
+    """Of all the surface of the bars only the ends that face each other have gaps, and the figures are the same."""
+    named = shared_run(options(shape, METHODS["II"]))
+    run = shared_run(options(shape, f"{METHODS['II']} -output_fields fields.h5 -output_fields_precision double -output_fields_interval 125", pairs))
+    compare(figures(named, shape), figures(run, shape), 1e-9)
+    dim, _, _, left, right = SHAPES[shape]
+    rows = (max(left, right) if pairs == "auto" else left) + 1  # auto: of the finer side
+    assert f" {rows ** (dim - 1)} contact nodes" in run.stdout
+    with h5py.File(run.folder / "fields.h5") as fields:
+        along = fields["mesh/positions"][()][:, :dim] @ NORMAL[shape]
+        ends = np.isclose(along, ENDS["l"][1], rtol=0, atol=1e-9) | np.isclose(along, ENDS["r"][0], rtol=0, atol=1e-9)
+        gaps = [fields["contact_gap"][frame][()] for frame in sorted(fields["contact_gap"])]
+    assert len(gaps) == 5
+    np.testing.assert_allclose(gaps[0][ends], ENDS["r"][0] - ENDS["l"][1], rtol=1e-12)
+    for gap in gaps:
+        np.testing.assert_array_equal(np.isfinite(gap), ends)
+
+
+@pytest.mark.parametrize(("method", "ranks"), [("II", 2), ("II", 4), ("IE", 3), ("penalty", 2), ("lagrange-explicit", 3)])
+def test_ranks(method, ranks, shared_run):
+    compare(*(figures(shared_run(options("hex8-turned", METHODS[method]), n), "hex8-turned") for n in (1, ranks)), 1e-9)
+
+
+def test_options_file(shared_run):
+    """The file of the gallery against bars in one dimension: measured 4e-12."""
+    solids = shared_run("-options_file options/impact-solids.opts").summary
+    ends = " ".join(f"-{b}_dm_plex_box_faces 50 -{b}_cross_section 1e-4" for b in ("left", "right"))
+    bars = shared_run(f"-options_file options/bars-high-speed.opts -time_step 1e-6 {ends}").summary
+    for name in ("force_mean", "force_peak", "impulse", "release_time"):
+        assert solids["contact"][name] == pytest.approx(bars["contact"][name], rel=1e-9), name
+    for name in ("kinetic", "potential", "peak_potential"):
+        assert solids["bodies"]["left"][name] == pytest.approx(bars["bodies"]["left"][name], rel=1e-9), name

@@ -1,0 +1,161 @@
+"""Mesh files of both formats in all their containers, as the program reads them; damaged ones end it with a message."""
+
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from conftest import IMPAKT
+from meshes import row, write_exodus, write_gmsh
+
+OPTIONS = "-bodies a -time_step 1 -time_end 1 -a_density 1 -a_youngs_modulus 1"
+
+
+def mesh_of(text):
+    """What PETSc's own view of the mesh (ascii_info_detail) tells: strata of labels over all ranks, and vertices' positions."""
+    labels = {}
+    for part in text.split("\nLabel '")[1:]:
+        labels[part.split("'")[0]] = len(re.findall(r"^\s*\[\d+\]: \d+ \(1\)$", part, re.MULTILINE))
+    found = re.findall(r"\(\s*\d+\) dof +\d+ offset +\d+((?: [-+.e\d]+)+)", text)
+    return SimpleNamespace(labels=labels, points=np.array(sorted({tuple(map(float, line.split())) for line in found})))
+
+
+def viewed(launch, tmp_path, path, ranks=1):
+    done = launch([IMPAKT, *OPTIONS.split(), "-a_dm_plex_filename", path, "-a_dm_view", "::ascii_info_detail"], ranks, cwd=tmp_path)
+    assert "mesh file" not in done.stderr, done.stderr
+    return mesh_of(done.stdout)
+
+
+def check(mesh, shape):
+    points, cells, ends = row(shape)
+    dim = 3 if shape in ("tetra", "hexahedron") else 2
+    assert mesh.labels["all"] == len(cells)
+    assert mesh.labels["left"] == mesh.labels["right"] == len(ends) // 2
+    np.testing.assert_array_equal(mesh.points, sorted(map(tuple, points[:, :dim])))  # small whole numbers: exact
+
+
+@pytest.mark.parametrize("binary", [False, True], ids=["ascii", "binary"])
+@pytest.mark.parametrize("version", ["2.2", "4.1"])
+@pytest.mark.parametrize("shape", ["tetra", "hexahedron", "triangle", "quad"])
+def test_gmsh(launch, tmp_path, shape, version, binary):
+    write_gmsh(tmp_path / "row.msh", shape, version, binary)
+    check(viewed(launch, tmp_path, "row.msh", ranks=2 if binary else 1), shape)
+
+
+@pytest.mark.parametrize(("container", "extension"), [("NETCDF3_CLASSIC", "e"), ("NETCDF3_64BIT_OFFSET", "g"), ("NETCDF3_64BIT_DATA", "ex2"), ("NETCDF4", "exo")])
+def test_exodus(launch, tmp_path, container, extension):
+    write_exodus(tmp_path / f"row.{extension}", container)
+    mesh = viewed(launch, tmp_path, f"row.{extension}", ranks=3 if extension == "g" else 1)
+    check(mesh, "hexahedron")
+    assert mesh.labels["corner"] == 1  # of one rank alone: it is a vertex of one cube
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+@pytest.mark.parametrize("shape", ["tetra", "hexahedron", "exodus"])
+def test_flight(launch, tmp_path, shape, ranks):
+    """6 m^3 of 1000 kg/m^3 in free flight at 2 m/s, whatever the mesh and its place: 6000 * 2^2 / 2 = 12000 J, as printed."""
+    path = tmp_path / ("row.g" if shape == "exodus" else "row.msh")
+    if shape == "exodus":
+        write_exodus(path)
+    else:
+        write_gmsh(path, shape)
+    options = "-bodies a -a_density 1000 -a_youngs_modulus 1e9 -a_initial_velocity 2,0,0 -a_rotate 1,2,3,40 -a_translate 5,0,0 -time_step 1e-5 -time_end 1e-4"
+    done = launch([IMPAKT, *options.split(), "-a_dm_plex_filename", path], ranks, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    kinetic = re.search(r"^ *a +(\S+) J kinetic", done.stdout, re.MULTILINE)
+    assert kinetic and float(kinetic[1]) == pytest.approx(12000, rel=5e-6), done.stdout  # six digits are printed
+
+
+def refused(impakt, path, words, ranks):
+    """One line by Impakt itself that names body and file, before any output is written."""
+    run = impakt(f"{OPTIONS} -a_dm_plex_filename {path}", ranks, expect_failure=True, timeout=60)
+    lines = [line for line in run.stderr.splitlines() if line.startswith("impakt: error")]
+    assert len(lines) == 1, run.stderr
+    assert "PETSC ERROR" not in run.stderr
+    for word in ["'a'", str(path), *words]:
+        assert word in lines[0], lines[0]
+    assert not list(run.folder.glob("*.h5"))
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+@pytest.mark.parametrize("kind", ["2.2-ascii", "2.2-binary", "4.1-ascii", "4.1-binary", "exodus-offset", "exodus-netcdf4"])
+def test_truncated(impakt, tmp_path, kind, ranks):
+    """Cut in the middle: more lengths of more files in mesh_files.c."""
+    version, _, container = kind.partition("-")
+    path = tmp_path / ("cut.g" if version == "exodus" else "cut.msh")
+    if version == "exodus":
+        write_exodus(path, {"offset": "NETCDF3_64BIT_OFFSET", "netcdf4": "NETCDF4"}[container])
+    else:
+        write_gmsh(path, "tetra", version, container == "binary")
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    refused(impakt, path, ["cut short"], ranks)
+
+
+@pytest.mark.parametrize("version", ["2.2", "4.1"])
+def test_cut_binary(launch, tmp_path, version):
+    """No length of a binary file is read as a whole one; none makes the program crash."""
+    write_gmsh(tmp_path / "row.msh", "hexahedron", version, binary=True)
+    whole = (tmp_path / "row.msh").read_bytes()
+    end = whole.rindex(b"$EndElements") + len(b"$EndElements")
+    for length in {*range(0, end, 113), *range(end - 3, end)}:
+        (tmp_path / "cut.msh").write_bytes(whole[:length])
+        done = launch([IMPAKT, *OPTIONS.split(), "-a_dm_plex_filename", "cut.msh"], cwd=tmp_path)
+        assert done.returncode > 0
+        assert re.match(r"impakt: error: Body 'a', mesh file 'cut.msh': ", done.stderr), (length, done.stderr)
+
+
+@pytest.mark.parametrize("kind", ["2.2-ascii", "2.2-binary", "4.1-ascii", "4.1-binary", "exodus-offset", "exodus-netcdf4"])
+def test_damaged(launch, tmp_path, kind):
+    """Bytes changed at random: the program either reads the file (a coordinate that changed) or says what is wrong, and never
+    crashes or hangs. Fixed seeds: the same files each time."""
+    version, _, container = kind.partition("-")
+    path = tmp_path / ("row.g" if version == "exodus" else "row.msh")
+    if version == "exodus":
+        write_exodus(path, {"offset": "NETCDF3_64BIT_OFFSET", "netcdf4": "NETCDF4"}[container])
+    else:
+        write_gmsh(path, "hexahedron", version, container == "binary")
+    whole = np.frombuffer(path.read_bytes(), np.uint8)
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        bytes_ = whole.copy()
+        bytes_[random.integers(0, len(whole), 3)] = random.integers(0, 256, 3)
+        path.write_bytes(bytes_.tobytes())
+        done = launch([IMPAKT, *OPTIONS.split(), "-a_dm_plex_filename", path], timeout=60, cwd=tmp_path)
+        assert 0 <= done.returncode < 128, (seed, done.stderr)
+        assert done.returncode == 0 or done.stderr.startswith("impakt: error: "), (seed, done.stderr)
+
+
+def with_node(cells, element, corner, node):
+    changed = cells.copy()
+    changed[element, corner] = node
+    return changed
+
+
+BAD_EXODUS = {
+    "node": (lambda cells: {"cells": with_node(cells, 2, 3, 28)}, ["element 3", "node 29", "1 to 28"]),
+    "type": (lambda cells: {"elem_type": "WEDGE"}, ["WEDGE", "HEX8"]),
+    "second-order": (lambda cells: {"elem_type": "HEX20", "cells": np.tile(cells, (1, 3))[:, :20]}, ["HEX20", "first-order"]),
+    "inverted": (lambda cells: {"cells": np.vstack([cells[:3], cells[3:4, [4, 5, 6, 7, 0, 1, 2, 3]], cells[4:]])}, ["1 of 6 elements is inverted", "element 4", "(3.5, 0.5, 0.5)"]),
+    "left-handed": (lambda cells: {"cells": cells[:, [4, 5, 6, 7, 0, 1, 2, 3]]}, ["all 6 elements", "left-handed"]),
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+@pytest.mark.parametrize("name", list(BAD_EXODUS))
+def test_bad_exodus(impakt, tmp_path, name, ranks):
+    change, words = BAD_EXODUS[name]
+    write_exodus(tmp_path / "bad.g", **change(row("hexahedron")[1]))
+    refused(impakt, tmp_path / "bad.g", words, ranks)
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+def test_no_file(impakt, tmp_path, ranks):
+    refused(impakt, tmp_path / "nowhere.exo", ["no such file"], ranks)
+    refused(impakt, tmp_path, ["directory"], ranks)
+    (tmp_path / "row.obj").write_text("v 0 0 0\n")
+    refused(impakt, tmp_path / "row.obj", [".msh", ".exo"], ranks)
+
+
+def test_more_ranks_than_elements(impakt):
+    run = impakt("-bodies a -a_dm_plex_dim 1 -a_dm_plex_box_faces 2 -a_density 1 -a_youngs_modulus 1 -time_step 1 -time_end 1", 3, expect_failure=True, timeout=60)
+    assert "impakt: error: Body 'a' has 2 elements for 3 ranks" in run.stderr
