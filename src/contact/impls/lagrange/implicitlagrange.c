@@ -130,7 +130,7 @@ static PetscErrorCode SetUpOuter(Contact contact)
     PetscCall(SNESGetLineSearch(snes, &line_search));
     PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   }
-  PetscCall(SNESSetTolerances(snes, 1e-12, 1e-15, 0, 50, 1000000));
+  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->length_scale, 1e-15, 0, 50, 1000000));
   PetscCall(PetscOptionsHasName(NULL, "lagrange_", "-snes_vi_zero_tolerance", &tolerance_set));
   if (!tolerance_set) PetscCall(PetscOptionsSetValue(NULL, "-lagrange_snes_vi_zero_tolerance", "0"));
   PetscCall(SNESSetFromOptions(snes));
