@@ -1,6 +1,9 @@
 /* What ranks send each other: records of any kind, vectors of nodes, and the faces that come near. */
 #include "interfaceimpl.h"
 
+/* Beyond the box in which partners are looked for [parts of the face]: keeps those that touch its side but for round-off */
+#define BOX_MARGIN 0.1
+
 /* Sends record i, of `bytes` bytes, to rank destination[i]; what arrives is sorted by the rank it comes from. Free with PetscFree(). */
 PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const PetscMPIInt destination[], const void *records,
                                PetscInt *n_received, void **received)
@@ -36,8 +39,8 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The star forest of `n_roots` and `n_leaves` nodes for three numbers of each. With a type of three numbers in its place PETSc takes that
-   type apart to compare it, and allocates memory, in each communication. */
+/* A star forest from `n_roots` to `n_leaves` nodes that carries three numbers for each node. PETSc could carry them as one MPI type of
+   three numbers, but then it compares that type with its own, and allocates memory, in each communication. */
 PetscErrorCode CreateVectorForest(MPI_Comm comm, PetscInt n_roots, PetscInt n_leaves, const PetscInt leaves[], const PetscSFNode roots[],
                                   PetscSF *vectors)
 {
@@ -57,7 +60,8 @@ PetscErrorCode CreateVectorForest(MPI_Comm comm, PetscInt n_roots, PetscInt n_le
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Box about all that may lie opposite to the faces of this rank: they, swept along their normals; [0]: lower, [3]: upper corner */
+/* A box that holds all that may lie opposite to the faces of this rank: these faces, swept along their normals. Its lower corner comes
+   first, then the upper one. */
 static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind, PetscReal box[])
 {
   for (PetscInt d = 0; d < 3; d++) {
@@ -72,12 +76,12 @@ static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind,
         const PetscReal x = data->positions[3 * data->faces[f * data->face_nodes + k] + d], to = x + normal[d] * (ahead + size),
                         from = x - normal[d] * (behind + size);
 
-        box[d]     = PetscMin(box[d], PetscMin(from, to) - 0.1 * size);
-        box[3 + d] = PetscMax(box[3 + d], PetscMax(from, to) + 0.1 * size);
+        box[d]     = PetscMin(box[d], PetscMin(from, to) - BOX_MARGIN * size);
+        box[3 + d] = PetscMax(box[3 + d], PetscMax(from, to) + BOX_MARGIN * size);
       }
   }
   if (ahead < PETSC_MAX_REAL || !data->n_faces) return;
-  for (PetscInt d = 0; d < 3; d++) { /* any distance: all faces are wanted */
+  for (PetscInt d = 0; d < 3; d++) { /* partners at any distance are wanted */
     box[d]     = -PETSC_MAX_REAL;
     box[3 + d] = PETSC_MAX_REAL;
   }

@@ -1,12 +1,17 @@
 /* Which faces of a body may touch another at all: those that see it. */
 #include "interfaceimpl.h"
 
-#define CELLS   5 /* directions are grouped on a cube with 5 x 5 cells to a side; those of the axes are in the middle of a cell */
-#define GROUPS  (6 * CELLS * CELLS)
-#define OPPOSED -0.1
+/* Directions are grouped by where they meet a cube whose sides have 5 x 5 cells: an odd number, so that axes are in the middle of a cell */
+#define CELLS  5
+#define GROUPS (6 * CELLS * CELLS)
+/* Components of a normal that differ by less, relative, count as equal, so that round-off does not choose the side of the cube */
+#define EQUAL_COMPONENTS 1e-9
+/* Added to the bound of the overlap, relative to that bound and to the extent of the larger surface: covers round-off */
+#define OVERLAP_MARGIN 1e-6
+#define OVERLAP_FLOOR  1e-9
 
-/* Faces of similar direction, of all ranks: bounds of their normals n, centroids x, and of n . (x - centre). All are minima, so that one
-   reduction finds them; upper bounds are kept with the opposite sign. */
+/* The faces of all ranks whose normals are in one cell: bounds of their normals n, of their centroids x, and of n . (x - centre). All
+   bounds are minima, so that one reduction finds them: an upper bound is kept with its sign changed. */
 typedef struct {
   PetscReal normal[2][3], x[2][3], support;
 } Group;
@@ -23,7 +28,7 @@ static PetscInt GroupOf(const PetscReal normal[])
   PetscReal largest;
 
   for (PetscInt d = 1; d < 3; d++)
-    if (PetscAbsReal(normal[d]) > PetscAbsReal(normal[axis]) * (1 + 1e-9)) axis = d;
+    if (PetscAbsReal(normal[d]) > PetscAbsReal(normal[axis]) * (1 + EQUAL_COMPONENTS)) axis = d;
   largest = PetscAbsReal(normal[axis]);
   for (PetscInt d = 0; d < 2; d++) cell[d] = PetscMin((PetscInt)((normal[(axis + 1 + d) % 3] / largest + 1) / 2 * CELLS), CELLS - 1);
   return ((2 * axis + (normal[axis] > 0)) * CELLS + cell[0]) * CELLS + cell[1];
@@ -76,7 +81,7 @@ static PetscErrorCode GetDirections(Surface surface, Directions *directions)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest scalar product of a with a vector between the bounds */
+/* The largest scalar product of `a` with any vector within the bounds */
 static PetscReal LargestProduct(const PetscReal a[], PetscReal bounds[2][3])
 {
   PetscReal sum = 0;
@@ -85,8 +90,8 @@ static PetscReal LargestProduct(const PetscReal a[], PetscReal bounds[2][3])
   return sum;
 }
 
-/* Whether a face may see one of the others: their normals are opposed, and each lies before the plane of the other, or behind it by no more
-   than the depth by which the bodies overlap */
+/* Whether a face may see any face of the partner. Two faces see each other if their normals are opposed, and if each lies before the plane
+   of the other, or behind that plane by no more than `depth`, by which the bodies overlap [m]. */
 static PetscBool SeesGroups(const PetscReal x[], const PetscReal normal[], Directions *others, PetscReal depth)
 {
   for (PetscInt g = 0; g < GROUPS; g++) {
@@ -126,7 +131,7 @@ static PetscErrorCode KeepFaces(Surface surface, const PetscBool keep[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bounds of the whole body's extent along directions: the largest n . x of all its nodes */
+/* How far the whole body of a surface reaches along each direction n: the largest n . x of all its nodes, displaced by u [m] */
 static PetscErrorCode GetSupport(Surface surface, Vec u, PetscInt n, const PetscReal directions[][3], PetscReal support[])
 {
   const PetscInt     dim = surface->data.dim;
@@ -177,8 +182,8 @@ static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, P
   }
 }
 
-/* How deep the convex hulls of two bodies overlap, in the direction of a face normal in which they do least; 0: they are apart (theorem
-   of separating axes) */
+/* An upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the depths along the mean normals of the
+   groups and along the axes. If the depth along any direction is negative, the bodies are apart (theorem of separating axes). */
 static PetscErrorCode ComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b, PetscReal *overlap)
 {
   PetscReal(*list)[3], *support[2];
@@ -196,11 +201,12 @@ static PetscErrorCode ComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Dir
   PetscCall(GetSupport(b, u_b, n, (const PetscReal(*)[3])list, support[1]));
   *overlap = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < n; i++) *overlap = PetscMin(*overlap, support[0][i] + support[1][i]);
-  *overlap = PetscMax(*overlap, 0) * (1 + 1e-6) + 1e-9 * PetscMax(of_a->extent, of_b->extent);
+  *overlap = PetscMax(*overlap, 0) * (1 + OVERLAP_MARGIN) + OVERLAP_FLOOR * PetscMax(of_a->extent, of_b->extent);
   PetscCall(PetscFree3(list, support[0], support[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* An upper bound of the depth by which two bodies overlap under displacements u [m] */
 PetscErrorCode SurfaceComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap)
 {
   Directions *directions;
@@ -221,19 +227,20 @@ PetscErrorCode SurfaceComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Pet
 
   Input Parameters:
 + a        - a `Surface`
-. b        - its partner, or `NULL`
-. obstacle - its partner, or `NULL`
-. keep_a   - restrict `a`
-- keep_b   - restrict `b`
+. b        - the surface that it may touch; `NULL` if that is an obstacle
+. obstacle - the obstacle that it may touch; `NULL` if that is a surface
+. keep_a   - whether `a` is restricted to its faces that see the partner
+- keep_b   - whether `b` is
 
   Level: developer
 
   Notes:
-  A face sees another one if their normals are opposed and each lies before the plane of the other, in the reference positions; where bodies
-overlap, or behind it by as much. Faces of the partner are compared in groups of similar direction, which keeps all faces that see one, and
-may keep more. Two blocks side by side keep the ends that face each other, two balls their front halves.
+  In the reference positions, a face sees another one if their normals are opposed and each lies before the plane of the other. Where the
+  bodies overlap, a face may lie behind the plane by as much as they do. Faces of the partner are compared in groups of similar direction:
+  all faces that see one are kept, and maybe some more. Two blocks side by side keep the ends that face each other, two balls their front
+  halves.
 
-  What is left may be nothing.
+  A surface may end up without any face.
 
 .seealso: `Surface`, `SurfaceCreate()`
 @*/

@@ -1,7 +1,12 @@
 /* Faces in space, and polygons in the plane of a face. */
 #include "interfaceimpl.h"
 
-/* Outward unit normal and area; that of a point is given by the caller */
+/* Newton's method for the inverse of a bilinear map ends when the sum of its steps in both natural coordinates, which are of order 1, is
+   below round-off. The limit is for points far outside, where it may not converge. */
+#define SHORTEST_STEP  1e-14
+#define MAX_ITERATIONS 30
+
+/* Outward unit normal and area of a face with n nodes. Of a point, n = 1, the caller sets the normal, and the area is 1. */
 void FaceNormal(PetscInt n, const PetscReal x[][3], PetscReal normal[], PetscReal *area)
 {
   PetscReal a[3], b[3];
@@ -15,7 +20,7 @@ void FaceNormal(PetscInt n, const PetscReal x[][3], PetscReal normal[], PetscRea
     *area     = Normalize(normal);
     return;
   }
-  /* of a quadrilateral from its diagonals: the mean normal where it is warped */
+  /* the normal of a quadrilateral follows from its diagonals: of a warped one it is the mean normal */
   for (PetscInt d = 0; d < 3; d++) {
     a[d] = n == 3 ? x[1][d] - x[0][d] : x[2][d] - x[0][d];
     b[d] = n == 3 ? x[2][d] - x[0][d] : x[3][d] - x[1][d];
@@ -24,13 +29,13 @@ void FaceNormal(PetscInt n, const PetscReal x[][3], PetscReal normal[], PetscRea
   *area = Normalize(normal) / 2;
 }
 
-/* Edge length of a square, of half a square, or of a segment with this area */
+/* The edge of the square, of the half square, or of the segment that has this area [m]; 1 for a point */
 PetscReal FaceSize(PetscInt n, PetscReal area)
 {
   return n < 3 ? area : PetscSqrtReal(n == 3 ? 2 * area : area);
 }
 
-/* Integrals of the shape functions over the face, projected on the plane across the normal; exact for any quadrilateral */
+/* Integrals of the shape functions over a face, projected on the plane across its normal, and their sum; exact for any quadrilateral */
 PetscReal FaceNodeAreas(PetscInt n, const PetscReal x[][3], const PetscReal normal[], PetscReal areas[])
 {
   static const PetscReal corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -60,6 +65,7 @@ PetscReal FaceNodeAreas(PetscInt n, const PetscReal x[][3], const PetscReal norm
   return sum;
 }
 
+/* The plane of a face, with its first tangent along the first edge */
 void FrameOfFace(PetscInt n, const PetscReal x[][3], const PetscReal normal[], Frame *frame)
 {
   for (PetscInt d = 0; d < 3; d++) {
@@ -68,7 +74,7 @@ void FrameOfFace(PetscInt n, const PetscReal x[][3], const PetscReal normal[], F
     frame->normal[d]      = normal[d];
     frame->tangents[0][d] = n > 1 ? x[1][d] - x[0][d] : 0;
   }
-  if (n > 2) { /* the edge of a warped quadrilateral is not in the plane */
+  if (n > 2) { /* an edge of a warped quadrilateral does not lie in its plane */
     const PetscReal out = Dot(frame->tangents[0], normal);
 
     for (PetscInt d = 0; d < 3; d++) frame->tangents[0][d] -= out * normal[d];
@@ -77,6 +83,7 @@ void FrameOfFace(PetscInt n, const PetscReal x[][3], const PetscReal normal[], F
   Cross(frame->normal, frame->tangents[0], frame->tangents[1]);
 }
 
+/* Coordinates of a point in the plane of a face, along its tangents [m] */
 void FrameProject(const Frame *frame, const PetscReal x[], PetscReal s[])
 {
   const PetscReal from[3] = {x[0] - frame->origin[0], x[1] - frame->origin[1], x[2] - frame->origin[2]};
@@ -89,7 +96,7 @@ void FrameProject(const Frame *frame, const PetscReal x[], PetscReal s[])
 static void InvertBilinear(const PetscReal p[][2], const PetscReal s[], PetscReal *xi, PetscReal *eta)
 {
   *xi = *eta = 0;
-  for (PetscInt iteration = 0; iteration < 30; iteration++) {
+  for (PetscInt iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
     PetscReal rest[2], along[2], across[2], determinant, step[2];
 
     for (PetscInt d = 0; d < 2; d++) {
@@ -106,11 +113,11 @@ static void InvertBilinear(const PetscReal p[][2], const PetscReal s[], PetscRea
     step[1] = (along[0] * rest[1] - along[1] * rest[0]) / determinant;
     *xi += step[0];
     *eta += step[1];
-    if (PetscAbsReal(step[0]) + PetscAbsReal(step[1]) < 1e-14) return;
+    if (PetscAbsReal(step[0]) + PetscAbsReal(step[1]) < SHORTEST_STEP) return;
   }
 }
 
-/* Shape functions of a face with these corners at a point of the plane */
+/* Shape functions of the face with corners p at the point s of their plane */
 void FaceShapes(PetscInt n, const PetscReal p[][2], const PetscReal s[], PetscReal shapes[])
 {
   if (n == 2) {
@@ -135,8 +142,8 @@ void FaceShapes(PetscInt n, const PetscReal p[][2], const PetscReal s[], PetscRe
   }
 }
 
-/* Part of a polygon inside a convex one that runs counterclockwise (Sutherland, Hodgman 1974); of an interval inside another for two
-   points. `out` has room for the corners of both. */
+/* The part of a polygon p inside a convex polygon `clip` that runs counterclockwise (Sutherland, Hodgman 1974); with two points each, of
+   one interval inside another. Returns its number of corners, 0 if nothing is inside. `out` must have room for the corners of both. */
 PetscInt PolygonClip(PetscInt n, const PetscReal p[][2], PetscInt n_clip, const PetscReal clip[][2], PetscReal out[][2])
 {
   PetscReal work[2][16][2];
@@ -171,13 +178,13 @@ PetscInt PolygonClip(PetscInt n, const PetscReal p[][2], PetscInt n_clip, const 
     which = 1 - which;
     count = PetscMin(kept, 8);
   }
-  if (count < 3) return 0; /* an edge or a corner in common */
+  if (count < 3) return 0; /* they have an edge or a corner in common, and no area */
   for (PetscInt k = 0; k < count; k++)
     for (PetscInt d = 0; d < 2; d++) out[k][d] = work[which][k][d];
   return count;
 }
 
-/* Area, or length of an interval, without sign, and centroid */
+/* Area of a polygon, or length of an interval, whichever way it runs; and its centroid */
 PetscReal PolygonMeasure(PetscInt n, const PetscReal p[][2], PetscReal centroid[])
 {
   PetscReal area = 0, moment[2] = {0, 0};
@@ -199,7 +206,8 @@ PetscReal PolygonMeasure(PetscInt n, const PetscReal p[][2], PetscReal centroid[
   return PetscAbsReal(area);
 }
 
-/* How far a point is outside a convex polygon that runs clockwise, as one seen from behind does: at most that much; negative inside */
+/* How far a point lies outside the farthest edge line of a convex polygon that runs clockwise, as a face seen from behind does; negative
+   inside. The distance from the polygon is this or more. */
 PetscReal PolygonDistance(PetscInt n, const PetscReal p[][2], const PetscReal s[])
 {
   PetscReal farthest = -PETSC_MAX_REAL;
@@ -214,8 +222,9 @@ PetscReal PolygonDistance(PetscInt n, const PetscReal p[][2], const PetscReal s[
   return farthest;
 }
 
-/* Points and weights exact for polynomials of degree 4 (Dunavant 1985, table II; Gauss on intervals, degree 5): the product of two
-   bilinear functions on parallelograms. Six points to a triangle, so up to 36. */
+/* Points and weights on a polygon, cut into triangles from its first corner: exact for polynomials of degree 4 (Dunavant 1985, table II),
+   and so for the product of two bilinear functions on parallelograms; on intervals of degree 5 (Gauss). Each triangle has six points, so
+   that a polygon of eight corners has 36. */
 PetscInt PolygonQuadrature(PetscInt n, const PetscReal p[][2], PetscReal points[][2], PetscReal weights[])
 {
   static const PetscReal share[2] = {0.223381589678011, 0.109951743655322}, place[2] = {0.445948490915965, 0.091576213509771};

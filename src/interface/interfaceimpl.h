@@ -3,33 +3,37 @@
 #include <petscsf.h>
 #include <impakt/transfer.h>
 
+/* Two faces count as facing each other if the cosine of the angle between their outward normals is below this, which means an angle of more
+   than 96 degrees: faces at right angles cannot push each other */
+#define OPPOSED -0.1
+
 struct _n_Surface {
   DM           dm;
   SurfaceData  data;
   PetscInt    *points;      /* per face: point of the DMPLEX, ascending */
-  PetscReal   *signs;       /* per face, in one dimension: of its normal */
+  PetscReal   *signs;       /* per face, in one dimension: direction of its outward normal, 1 or -1 */
   PetscInt    *owner_index; /* per node: its number on the rank that owns it */
   PetscMPIInt *owner_rank;
-  PetscSF      sf;      /* from owned nodes to ghosts */
-  PetscSF      vectors; /* the same for three numbers of each node */
+  PetscSF      sf;      /* from owned nodes to ghosts, one number for each node */
+  PetscSF      vectors; /* the same, three numbers for each node */
 };
 
-/* A face of the Neumann side as it travels between ranks */
+/* A face of the Neumann side as one rank sends it to another */
 typedef struct {
   PetscInt    dofs[4], owner_index[4];
   PetscMPIInt owner_rank[4];
   PetscReal   x[4][3], normal[3];
 } Face;
 
-/* The plane in which a Dirichlet face is compared with others: its centroid, unit normal, and tangents such that t0 x t1 = n */
+/* The plane in which a Dirichlet face is compared with faces of its partner: centroid, unit normal n, and tangents with t0 x t1 = n */
 typedef struct {
   PetscReal origin[3], normal[3], tangents[2][3];
 } Frame;
 
-/* A tree of boxes about faces */
+/* A node of a tree of boxes that bound faces */
 typedef struct {
   PetscReal lower[3], upper[3];
-  PetscInt  begin, end, child; /* its faces in the order; the first of its two children, -1: a leaf */
+  PetscInt  begin, end, child; /* its faces are order[begin] to order[end - 1]; the first of its two children, -1 for a leaf */
 } Box;
 typedef struct {
   PetscInt  n_boxes, *order;
@@ -44,12 +48,8 @@ typedef struct {
   PetscReal   value;
 } Share;
 
-/* What lies opposite to a Dirichlet node */
-enum {
-  MARK_NONE,
-  MARK_BEYOND, /* nothing, but the partner ends on a face beside it */
-  MARK_COVERED
-};
+/* What lies opposite to a Dirichlet node: nothing; nothing, but the partner ends on a face beside the node; a face of the partner */
+enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
 
 /* The rows of a transfer */
 typedef struct {
@@ -57,26 +57,26 @@ typedef struct {
   PetscReal *gap, *area, *normals; /* normals: dim each */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
-  PetscInt   n_columns;            /* distinct Neumann nodes of the shares */
-  PetscInt  *columns;              /* per share: its column */
-  PetscSF    vectors;              /* from owned nodes of the Neumann side to columns, three numbers of each */
+  PetscInt   n_columns;            /* number of distinct Neumann nodes that the shares name */
+  PetscInt  *columns;              /* per share: which of these nodes it names */
+  PetscSF    vectors;              /* from their owners to these nodes, three numbers for each */
 } RowSet;
 
 struct _n_Transfer {
-  MPI_Comm   comm;
-  Surface    dirichlet, neumann; /* neumann NULL: an obstacle */
-  Obstacle   obstacle;
-  PetscInt   dim, n;
-  PetscReal  slip_bound, angle_bound;
-  PetscBool  guards; /* nodes beyond the end of the partner have rows too */
-  RowSet     rows;
-  PetscBool  built;
-  PetscReal  built_near, smallest_size;
-  PetscReal *built_x[2]; /* positions of the owned nodes of both sides at the last build */
-  PetscReal *built_slip; /* per row: part of sum_j P_ij x_j - x_i across the normal at the last build, 3 each */
-  PetscReal *slip; /* per row: by how much the partner had slipped since the row was built, in parts of the face size, when that was last
-                      looked at */
-  PetscBool     *keep;     /* per row: it is near contact and within the bounds, and stays as it is in the next build */
+  MPI_Comm       comm;
+  Surface        dirichlet, neumann; /* neumann NULL: an obstacle */
+  Obstacle       obstacle;
+  PetscInt       dim, n;
+  PetscReal      slip_bound, angle_bound;
+  PetscBool      guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
+  RowSet         rows;
+  PetscBool      built;
+  PetscReal      built_near;    /* partners at most that far away are known since the last build [m] */
+  PetscReal      smallest_size; /* edge of the smallest face of both sides at the last build [m] */
+  PetscReal     *built_x[2];    /* positions of the owned nodes of both sides at the last build */
+  PetscReal     *built_slip;    /* per row: the part of sum_j P_ij x_j - x_i across the normal at the last build, 3 numbers each [m] */
+  PetscReal     *slip;     /* per row: how far the partner had slipped since the row was built, as of the last update [parts of the face] */
+  PetscBool     *keep;     /* per row: in the next build it stays as it is, being near contact and within the bounds */
   PetscReal     *column_x; /* work space: present positions of the columns */
   TransferCounts counts;
 };
@@ -102,7 +102,7 @@ static inline PetscReal Normalize(PetscReal a[])
   return length;
 }
 
-/* Geometry of faces with 1 to 4 nodes */
+/* Geometry of faces with 1 to 4 nodes. In one dimension a face is a point, whose area and size are 1. */
 PETSC_INTERN void      FaceNormal(PetscInt, const PetscReal[][3], PetscReal[], PetscReal *);
 PETSC_INTERN PetscReal FaceNodeAreas(PetscInt, const PetscReal[][3], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal FaceSize(PetscInt, PetscReal);
@@ -116,7 +116,7 @@ PETSC_INTERN PetscInt  PolygonQuadrature(PetscInt, const PetscReal[][2], PetscRe
 
 PETSC_INTERN PetscErrorCode TreeCreate(PetscInt, PetscInt, const Face[], Tree *);
 PETSC_INTERN PetscErrorCode TreeDestroy(Tree *);
-PETSC_INTERN PetscErrorCode TreeQuery(Tree *, const Frame *, const PetscReal[], const PetscReal[], PetscInt *);
+PETSC_INTERN PetscErrorCode TreeQuery(Tree *, const Frame *, const PetscReal[], const PetscReal[], PetscInt *, const PetscInt *[]);
 
 PETSC_INTERN PetscErrorCode CreateVectorForest(MPI_Comm, PetscInt, PetscInt, const PetscInt[], const PetscSFNode[], PetscSF *);
 PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const PetscMPIInt[], const void *, PetscInt *, void **);

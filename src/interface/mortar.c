@@ -2,8 +2,11 @@
    Popp, Gee, Wall 2009), with dual functions on the covered part of each face (Cichosz, Bischoff 2011). */
 #include "segments.h"
 
-#define SAME_POINT 1e-9 /* shape functions that differ by less */
-#define SINGULAR   1e-3 /* smallest pivot of the mass matrix of a face, scaled to a unit diagonal */
+/* Corners at which the shape function of a node differs by less count as equally near to the node */
+#define SAME_POINT 1e-9
+/* The smallest pivot of a face's mass matrix, scaled to a unit diagonal, with which dual functions are used: their values, and with them
+   the weights of the rows, grow like one over this pivot */
+#define SINGULAR 1e-3
 
 /* Integrals over the covered part of one Dirichlet face */
 typedef struct {
@@ -14,7 +17,8 @@ typedef struct {
   PetscReal mass[4][4];    /* int phi_k phi_l */
 } Patch;
 
-/* Nodes without a row, far beyond the end of the partner: their neighbours on the face take over, so that the functions still sum to one */
+/* A node far beyond the end of the partner has no row. Its neighbours on the face take its shape function over, so that the functions of
+   the nodes with rows still sum to one. */
 static void CombineFunctions(PetscInt n, const PetscInt nodes[], const PetscInt marks[], PetscReal combine[4][4])
 {
   PetscInt all = 0;
@@ -35,6 +39,7 @@ static void CombineFunctions(PetscInt n, const PetscInt nodes[], const PetscInt 
   }
 }
 
+/* The combined shape functions of the nodes of a face at the point s of its plane */
 static void ShapesAt(const Patch *patch, const PetscReal s[], PetscReal shapes[])
 {
   PetscReal phi[4];
@@ -46,7 +51,7 @@ static void ShapesAt(const Patch *patch, const PetscReal s[], PetscReal shapes[]
   }
 }
 
-/* Adds a segment to the patch, and finds int phi_k N_j over it */
+/* Adds the integrals over a segment to those of its patch, and finds int phi_k N_j over the segment */
 static void IntegrateSegment(Patch *patch, const Segment *segment, PetscInt n_partner, PetscReal cross[4][4])
 {
   PetscReal      points[36][2], weights[36], shapes[4], partner[4];
@@ -65,8 +70,8 @@ static void IntegrateSegment(Patch *patch, const Segment *segment, PetscInt n_pa
   }
 }
 
-/* Dual functions psi_k = sum_l dual[k][l] phi_l with int psi_k phi_l = delta_kl int phi_k: dual = diag(lumped) mass^-1. The functions
-   themselves where that is nearly singular, which it is where only a small part in the middle of the face is covered. */
+/* Dual functions psi_k = sum_l dual[k][l] phi_l with int psi_k phi_l = delta_kl int phi_k: dual = diag(lumped) mass^-1. If the mass matrix
+   is nearly singular, which happens if only a small part in the middle of the face is covered, the functions phi_k themselves are used. */
 static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
 {
   PetscInt  which[4], n = 0;
@@ -98,6 +103,7 @@ static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
     for (PetscInt j = 0; j < n; j++) dual[which[i]][which[j]] = patch->lumped[which[i]] * a[i][n + j] * scale[i] * scale[j];
 }
 
+/* The patch of face f, before any segment has been added */
 static void SetUpPatch(const SurfaceData *data, PetscInt f, const PetscInt marks[], Patch *patch)
 {
   const PetscInt n = data->face_nodes, *nodes = data->faces + f * n;
@@ -112,6 +118,7 @@ static void SetUpPatch(const SurfaceData *data, PetscInt f, const PetscInt marks
   CombineFunctions(n, nodes, marks, patch->combine);
 }
 
+/* Appends the integrals of the nodes of face f with one partner to `shares`, and the ranks that own these nodes to `owners` */
 static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Face *partner, PetscReal values[4][4], PetscInt *n_shares,
                       Share shares[], PetscMPIInt owners[])
 {
@@ -132,7 +139,7 @@ static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Fac
   }
 }
 
-/* Gap at a point of the face's plane, along the normal of one of its nodes */
+/* The gap at the point s of the face's plane, along the normal of one of its nodes [m] */
 static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt nodes[], const Patch *patch, const Segment *segment,
                        PetscInt n_partner, const Face *partner, const PetscReal s[])
 {
@@ -146,7 +153,8 @@ static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt no
   return gap;
 }
 
-/* Where the partner ends before node k of the face: the smallest gap where the node's shape function is largest on the covered part */
+/* The gap where the partner ends before node k of the face [m]: of the corners of the covered part at which the node's shape function is
+   largest, the one with the smallest gap counts */
 static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments,
                           PetscInt begin, PetscInt end, const Face faces[])
 {
@@ -169,7 +177,7 @@ static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt no
   return smallest;
 }
 
-/* The segments begin to end - 1 of one face */
+/* Integrates over the segments `begin` to `end` - 1, which all belong to one Dirichlet face */
 static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[],
                                     const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscInt *n_shares, Share shares[],
                                     PetscMPIInt owners[])
@@ -205,8 +213,10 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* marks: what lies opposite to the nodes that this rank has; lumped: their D_i, summed on those it owns; ends: gaps where the partner ends,
-   of owned nodes beyond; shares: M_ij of the rows of this rank, in pieces, free with PetscFree() */
+/* Integrates over all that lies opposite, at most `ahead` before and `behind` behind the Dirichlet side [m]. For each node that this rank
+   has: `marks`, what lies opposite; `lumped`, its D_i, summed over all ranks if this rank owns the node; `ends`, the gap where the partner
+   ends, if this rank owns the node and it lies beyond that end. `shares` are the M_ij of the rows of this rank, in pieces; free with
+   PetscFree(). */
 PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscInt marks[], PetscReal lumped[],
                                  PetscReal ends[], PetscInt *n_shares, Share *shares[])
 {

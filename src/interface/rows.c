@@ -1,9 +1,19 @@
-/* From integrals to rows. */
+/* From the mortar integrals to the rows of a transfer. */
 #include "interfaceimpl.h"
 
-#define COVERED 1e-6  /* a node of whose area less is covered has no row */
-#define SAME    1e-10 /* rows that differ by less stay as they were */
-#define PRUNE   1e-12 /* weights below are left out */
+/* The least part of a node's area that is covered if the node has a row: weights are divided by the covered area, which has round-off */
+#define COVERED 1e-6
+/* Weights, normals, gaps [parts of the face] and areas [relative] of a row that differ by less are those of the last build: above the
+   round-off of the integrals, far below any real slip */
+#define SAME  1e-10
+#define PRUNE 1e-12 /* smaller weights are round-off, and would only fill the matrices */
+/* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-4
+   of the face size of a line or of a point */
+#define NOTHING_NEW 1e-8
+/* In a rebuild, partners are looked for this far behind at least [parts of the smallest face] */
+#define LEAST_DEPTH 0.5
+/* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
+#define OBLIQUE 2
 
 PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSet *set)
 {
@@ -24,7 +34,8 @@ PetscErrorCode RowSetDestroy(RowSet *set)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By value last: then sums do not depend on the order in which ranks and faces contribute */
+/* Orders shares by row, then by displacement, then by value, so that sums do not depend on the order in which ranks and faces add to them
+ */
 static int CompareShares(const void *a, const void *b, void *context)
 {
   const Share *left = (const Share *)a, *right = (const Share *)b;
@@ -35,14 +46,14 @@ static int CompareShares(const void *a, const void *b, void *context)
   return left->value < right->value ? -1 : left->value > right->value;
 }
 
-/* Sums the pieces of each weight and divides by D_i; rows of nodes without enough cover come out empty */
+/* Sums the pieces of each weight and divides by D_i. The row of a node of which too little is covered has no weights. */
 static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const PetscReal lumped[], const PetscReal areas[], PetscInt n_shares,
                                   Share shares[], RowSet *set)
 {
   PetscInt count = 0, share = 0;
 
   PetscFunctionBegin;
-  if (n_shares > 1) PetscCall(PetscTimSort(n_shares, shares, sizeof(Share), CompareShares, NULL)); /* it reads the first of none */
+  if (n_shares > 1) PetscCall(PetscTimSort(n_shares, shares, sizeof(Share), CompareShares, NULL)); /* which reads the first even of none */
   for (PetscInt row = 0; row < n; row++) {
     const PetscBool covered = (PetscBool)(lumped[row] > COVERED * areas[row] || (keep[row] && lumped[row] > 0));
 
@@ -61,7 +72,7 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The distinct nodes of the partner that the shares speak of, and the way to them from their owners */
+/* Numbers the distinct nodes of the partner that the shares name, and makes the star forest that brings their vectors from their owners */
 static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n, RowSet *set)
 {
   const PetscInt count = set->offsets[n];
@@ -85,9 +96,9 @@ static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Smallest change of the weights, in proportion to their sizes, after which they sum to one and sum_j P_j x_j - x is along the normal: then
-   a force along the normal has the same resultant and moment on both sides. Directions in which the nodes do not differ stay as they are.
- */
+/* Changes the weights by as little as possible, each in proportion to its size, such that they sum to one and sum_j P_j x_j - x is along
+   the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
+   partner's nodes do not differ nothing can be changed. */
 void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
                 PetscReal weights[])
 {
@@ -115,8 +126,8 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
       for (PetscInt b = 0; b < dim; b++) gram[a][b] += PetscAbsReal(weights[j]) * condition[a] * condition[b];
     }
   }
-  for (PetscInt a = 0; a < dim; a++) { /* Gauss without the equations that say nothing new */
-    if (gram[a][a] < 1e-8) {
+  for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
+    if (gram[a][a] < NOTHING_NEW) {
       for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
       rest[a] = 0;
       continue;
@@ -141,9 +152,9 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
   }
 }
 
-/* Corrects a row, and takes it if its gap is within the limits. That of a node beyond the end of the partner, which is on the straight line
-   through what the face has opposite, is counted from where it ends: at `end`. So nothing touches before the partner does, nor overlaps it
-   there. */
+/* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
+   the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
+   touches when the end of the partner does, not before or after. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end,
                                 PetscReal ahead, PetscReal behind, RowSet *set)
 {
@@ -185,7 +196,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes rows that are to stay as they are over from the last build, into the pieces that the new rows are made of */
+/* Puts the shares of rows that are to stay as they are in place of their new ones */
 static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt *n_shares, Share *shares[])
 {
   const RowSet *old  = &transfer->rows;
@@ -213,7 +224,7 @@ static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row that stays as it was; its shares come out of the merger but for round-off */
+/* Copies the gap and the normal of a row that is to stay as it is; its weights have been copied by KeepShares() */
 static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
 {
   set->opposite[row] = PETSC_TRUE;
@@ -221,7 +232,7 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
 }
 
-/* Whether a row says the same in both sets */
+/* Whether a row is the same in both sets, but for round-off */
 static PetscBool SameRow(PetscInt dim, PetscReal size, const RowSet *a, const RowSet *b, PetscInt row)
 {
   const PetscInt n = a->offsets[row + 1] - a->offsets[row];
@@ -241,7 +252,7 @@ static PetscBool SameRow(PetscInt dim, PetscReal size, const RowSet *a, const Ro
   return PETSC_TRUE;
 }
 
-/* Marks what has changed; rows that have not keep their numbers to the last bit */
+/* Marks the rows that have changed. Those that have not keep their numbers to the last bit. */
 static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], PetscBool first, const RowSet *old, RowSet *set)
 {
   for (PetscInt row = 0; row < n; row++) {
@@ -255,16 +266,18 @@ static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], Petsc
   }
 }
 
-/* How far behind its node a partner may be: as far as the bodies can overlap */
+/* How far behind a node its partner may be: as far as the bodies can overlap [m] */
 static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
 {
   PetscFunctionBegin;
   PetscCall(SurfaceComputeOverlap(transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind));
-  if (transfer->dim > 1) *behind *= 2; /* gaps are along normals, which may be oblique to the shortest way out */
-  if (transfer->built && transfer->dim > 1) *behind = PetscMax(*behind, transfer->smallest_size / 2);
+  if (transfer->dim > 1) *behind *= OBLIQUE;
+  if (transfer->built && transfer->dim > 1) *behind = PetscMax(*behind, LEAST_DEPTH * transfer->smallest_size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Builds the rows between two surfaces, whose positions are those under the given displacements; partners at most `near` before a node
+   count [m] */
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
@@ -303,7 +316,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows against an obstacle: its distance, linearised where the node is */
+/* Builds the rows against an obstacle: its distance, linearised at the present position of each node */
 PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
 {
   const SurfaceData *data = &transfer->dirichlet->data;
@@ -322,7 +335,7 @@ PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
       continue;
     }
     PetscCall(ObstacleGetGap(transfer->obstacle, x, &distance, gradient));
-    set.opposite[row] = (PetscBool)(distance <= near && Dot(gradient, data->normals + 3 * row) < -0.1);
+    set.opposite[row] = (PetscBool)(distance <= near && Dot(gradient, data->normals + 3 * row) < OPPOSED);
     set.area[row]     = set.opposite[row] ? data->areas[row] : 0;
     set.gap[row]      = set.opposite[row] ? distance : PETSC_MAX_REAL;
     for (PetscInt d = 0; d < dim; d++) {

@@ -1,8 +1,10 @@
 /* Which faces may lie opposite to a face: a tree of boxes, O(log n) a query. */
 #include "interfaceimpl.h"
 
+/* Faces in a leaf at most, a trade between the numbers of boxes and of faces that are compared */
 #define LEAF 4
 
+/* The middle of a face along axis d, times its number of nodes */
 static PetscReal Middle(PetscInt n, const Face *face, PetscInt d)
 {
   PetscReal sum = 0;
@@ -11,7 +13,8 @@ static PetscReal Middle(PetscInt n, const Face *face, PetscInt d)
   return sum;
 }
 
-/* Puts the faces whose middle along d is less than that of the median one before it (Hoare's selection) */
+/* Orders the faces of a box such that those before the middle one have their middle along axis d at most where that one has it, and those
+   after it at least there (Hoare's selection) */
 static void SplitAtMedian(PetscInt n, const Face faces[], PetscInt d, PetscInt begin, PetscInt end, PetscInt order[])
 {
   const PetscInt median = (begin + end) / 2;
@@ -51,6 +54,7 @@ static void BoundFaces(PetscInt n, const Face faces[], const PetscInt order[], B
       }
 }
 
+/* A tree of the boxes that bound some faces, each box halved along its longest axis */
 PetscErrorCode TreeCreate(PetscInt face_nodes, PetscInt n, const Face faces[], Tree *tree)
 {
   PetscFunctionBegin;
@@ -104,10 +108,12 @@ static PetscBool BoxMeets(const Box *box, const Frame *frame, const PetscReal lo
   return PETSC_TRUE;
 }
 
-/* The faces that may reach into those intervals; they are in tree->found */
-PetscErrorCode TreeQuery(Tree *tree, const Frame *frame, const PetscReal lower[], const PetscReal upper[], PetscInt *n)
+/* The faces whose boxes reach into the intervals `lower` to `upper` along the tangents and the normal of a frame: their number, and the
+   faces themselves, which belong to the tree and are valid until its next query */
+PetscErrorCode TreeQuery(Tree *tree, const Frame *frame, const PetscReal lower[], const PetscReal upper[], PetscInt *n,
+                         const PetscInt *found[])
 {
-  PetscInt stack[128], depth = 0;
+  PetscInt stack[128], depth = 0; /* one box for each level, which are fewer than 64 as boxes are halved */
 
   PetscFunctionBegin;
   *n = 0;
@@ -127,5 +133,6 @@ PetscErrorCode TreeQuery(Tree *tree, const Frame *frame, const PetscReal lower[]
     }
     for (PetscInt i = box->begin; i < box->end; i++) tree->found[(*n)++] = tree->order[i];
   }
+  *found = tree->found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

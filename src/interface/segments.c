@@ -1,13 +1,19 @@
 /* Which parts of the Dirichlet faces of this rank lie opposite to which faces of the Neumann side. */
 #include "segments.h"
 
-#define MARGIN  0.05  /* nodes this far beyond the end of the partner, in parts of the face size, count as covered */
-#define REACH   0.95  /* and those up to here guard that end */
-#define SLIVER  1e-10 /* parts of a face smaller than this, relative to its area, are left out */
-#define STEEP   -0.8  /* normals whose scalar product is more are far from parallel */
-#define OPPOSED -0.1  /* normals whose scalar product is less are opposed */
+/* Lengths here are in parts of the edge of the Dirichlet face, areas in parts of its area */
+#define MARGIN 0.05  /* a node no further beyond the end of the partner counts as covered */
+#define REACH  0.95  /* a node beyond that, but no further than this, guards the end; at 1 the next node of a matching mesh would too */
+#define SLIVER 1e-10 /* smaller common parts of two faces are round-off of faces that have an edge in common */
+/* Of two partners over the same part of a face, the one whose gap is larger by this much is hidden behind the other, if that one covers
+   more than this part of its area */
+#define HIDDEN_DISTANCE 0.5
+#define HIDDEN_PART     0.1
+/* A partner is steep if the cosine of the angle between its normal and that of the face is above this: it is inclined to the face by more
+   than 37 degrees, as the side of a block beside its edge is. Its end is not guarded. */
+#define STEEP -0.8
 
-/* What is the same for all candidates of one Dirichlet face */
+/* A Dirichlet face, and what does not depend on the face that it is compared with */
 typedef struct {
   PetscInt           face, n; /* nodes of a face */
   const SurfaceData *data;
@@ -31,7 +37,7 @@ static void SetUpTarget(const SurfaceData *data, PetscInt f, Target *target)
   for (PetscInt k = 0; k < n; k++) FrameProject(&target->frame, x[k], target->corners[k]);
 }
 
-/* Gap at a point of the plane, along the face's normal */
+/* The gap at the point s of the Dirichlet face's plane, along the normal of this face [m] */
 static PetscReal GapAt(const Target *target, const Face *face, PetscInt n, const PetscReal corners[][2], const PetscReal s[])
 {
   PetscReal shapes[4], gap = 0;
@@ -55,8 +61,8 @@ static PetscErrorCode AddSegment(Segments *segments, const Segment *segment)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of the Dirichlet face that lies opposite to one face, if any */
-static PetscErrorCode CompareFaces(const Target *target, const Segments *range, const Face *face, PetscInt which, Segments *segments)
+/* Appends the part of the Dirichlet face that lies opposite to one face of the partner, if there is one */
+static PetscErrorCode CompareFaces(const Target *target, const Face *face, PetscInt which, Segments *segments)
 {
   const PetscInt n       = segments->face_nodes;
   Segment        segment = {.face = target->face, .partner = which};
@@ -71,14 +77,13 @@ static PetscErrorCode CompareFaces(const Target *target, const Segments *range, 
   if (!segment.n || PolygonMeasure(segment.n, (const PetscReal(*)[2])segment.polygon, centroid) < SLIVER * target->area)
     PetscFunctionReturn(PETSC_SUCCESS);
   segment.gap = GapAt(target, face, n, (const PetscReal(*)[2])segment.partner_corners, centroid);
-  if (segment.gap > range->ahead + target->size || segment.gap < -range->behind - (range->behind > 0 ? target->size : 0.1 * target->size))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (segment.gap > segments->ahead + target->size || segment.gap < -segments->behind - target->size) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AddSegment(segments, &segment));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of several partners over the same part of a face the nearest counts. Parts on neighbouring faces do not overlap, so that only those
-   with quite different gaps are compared. */
+/* Of several partners over the same part of a face only the nearest counts. The parts that neighbouring partners share with the face do not
+   overlap, and their gaps are similar: only partners with quite different gaps are compared. */
 static void DropHidden(const Target *target, Segments *segments, PetscInt begin)
 {
   PetscInt kept = begin;
@@ -90,11 +95,12 @@ static void DropHidden(const Target *target, Segments *segments, PetscInt begin)
       const Segment *mine = &segments->list[a], *other = &segments->list[b];
       PetscReal      part[16][2], corners[8][2], centroid[2];
 
-      if (PetscAbsReal(mine->gap) - PetscAbsReal(other->gap) < 0.5 * target->size) continue;
-      for (PetscInt k = 0; k < other->n; k++) /* segments run clockwise, as their partners do */
+      if (PetscAbsReal(mine->gap) - PetscAbsReal(other->gap) < HIDDEN_DISTANCE * target->size) continue;
+      for (PetscInt k = 0; k < other->n; k++) /* segments run clockwise, as their partners do when seen from behind */
         for (PetscInt d = 0; d < 2; d++) corners[k][d] = other->polygon[other->n - 1 - k][d];
       hidden = (PetscBool)(PolygonMeasure(PolygonClip(mine->n, mine->polygon, other->n, (const PetscReal(*)[2])corners, part),
-                                          (const PetscReal(*)[2])part, centroid) > 0.1 * PolygonMeasure(mine->n, mine->polygon, centroid));
+                                          (const PetscReal(*)[2])part,
+                                          centroid) > HIDDEN_PART * PolygonMeasure(mine->n, mine->polygon, centroid));
     }
     segments->list[a].hidden = hidden;
   }
@@ -103,7 +109,7 @@ static void DropHidden(const Target *target, Segments *segments, PetscInt begin)
   segments->n = kept;
 }
 
-/* In one dimension: the nearest point that looks the other way */
+/* In one dimension: the nearest point whose normal has the opposite direction */
 static PetscErrorCode ComparePoints(const SurfaceData *data, PetscInt f, PetscInt n_faces, const Face faces[], Segments *segments)
 {
   const PetscReal *normal = data->face_normals + 3 * f, *x = data->positions + 3 * data->faces[f];
@@ -123,7 +129,7 @@ static PetscErrorCode ComparePoints(const SurfaceData *data, PetscInt f, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes that have something opposite to them, and those just beyond its end, unless the partner turns away there */
+/* Marks the nodes of a face that have a partner opposite, and those just beyond its end, unless the partner is steep there */
 static void MarkNodes(const Target *target, const Segments *segments, PetscInt begin, PetscInt marks[])
 {
   PetscBool guards = segments->guards;
@@ -143,10 +149,12 @@ static void MarkNodes(const Target *target, const Segments *segments, PetscInt b
   }
 }
 
+/* Compares a Dirichlet face with those faces of the partner that the tree finds near it */
 static PetscErrorCode CompareWithTree(const Target *target, Tree *tree, const Face faces[], Segments *segments)
 {
-  PetscReal lower[3], upper[3];
-  PetscInt  n_found;
+  PetscReal       lower[3], upper[3];
+  PetscInt        n_found;
+  const PetscInt *found;
 
   PetscFunctionBegin;
   for (PetscInt a = 0; a < 2; a++) {
@@ -159,14 +167,14 @@ static PetscErrorCode CompareWithTree(const Target *target, Tree *tree, const Fa
   }
   lower[2] = -segments->behind - target->size;
   upper[2] = segments->ahead < PETSC_MAX_REAL ? segments->ahead + target->size : PETSC_MAX_REAL;
-  PetscCall(TreeQuery(tree, &target->frame, lower, upper, &n_found));
-  for (PetscInt i = 0; i < n_found; i++) PetscCall(CompareFaces(target, segments, &faces[tree->found[i]], tree->found[i], segments));
+  PetscCall(TreeQuery(tree, &target->frame, lower, upper, &n_found, &found));
+  for (PetscInt i = 0; i < n_found; i++) PetscCall(CompareFaces(target, &faces[found[i]], found[i], segments));
   segments->candidates += n_found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Compares the Dirichlet faces of this rank with those given. marks, one for each node, must be MARK_NONE; segments->ahead and behind say
-   how far a partner may be. */
+/* Finds the common parts of the Dirichlet faces of this rank and of the faces of the partner, at most segments->ahead before and
+   segments->behind behind them [m]. Marks the nodes of the Dirichlet faces, which must be MARK_NONE before. */
 PetscErrorCode SegmentsFind(const SurfaceData *data, PetscInt n_faces, const Face faces[], PetscInt marks[], Segments *segments)
 {
   Tree tree;

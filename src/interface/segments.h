@@ -3,20 +3,22 @@
 #include "interfaceimpl.h"
 
 typedef struct {
-  PetscInt  face, partner; /* Dirichlet face, and number of the other one among those received */
-  PetscInt  n;             /* corners of the part they share, in the plane of the Dirichlet face */
-  PetscReal polygon[8][2];
-  PetscReal partner_corners[4][2]; /* of the whole partner, projected on that plane */
+  PetscInt  face, partner;         /* the Dirichlet face, and the number of the partner's face among those that this rank has received */
+  PetscInt  n;                     /* corners of the part that they have in common */
+  PetscReal polygon[8][2];         /* these corners, in the plane of the Dirichlet face [m] */
+  PetscReal partner_corners[4][2]; /* corners of the whole face of the partner, projected on that plane [m] */
   PetscReal gap;                   /* at the centroid [m] */
-  PetscBool hidden, steep;
+  PetscBool hidden;                /* another partner lies between the two */
+  PetscBool steep;                 /* the partner is far from parallel to the face */
 } Segment;
 
 typedef struct {
-  PetscInt   n, max, face_nodes; /* face_nodes: of the Neumann side */
-  PetscInt64 candidates;
-  PetscReal  ahead, behind;
-  PetscBool  guards; /* nodes beyond the end of the partner get their mark */
-  Segment   *list;   /* those of one Dirichlet face follow each other */
+  PetscInt   n, max;        /* number of segments, and how many there is room for */
+  PetscInt   face_nodes;    /* nodes of a face of the Neumann side */
+  PetscInt64 candidates;    /* pairs of faces that have been compared */
+  PetscReal  ahead, behind; /* how far before and behind a face its partner may be [m] */
+  PetscBool  guards;        /* whether nodes just beyond the end of the partner are marked */
+  Segment   *list;          /* segments of one Dirichlet face follow each other */
 } Segments;
 
 PETSC_INTERN PetscErrorCode SegmentsFind(const SurfaceData *, PetscInt, const Face[], PetscInt[], Segments *);

@@ -1,7 +1,8 @@
+/* Faces of a body's boundary and their nodes, on the ranks that have them. */
 #include "interfaceimpl.h"
 #include <impakt/mesh.h>
 
-/* The vertices of a boundary face and how many they are; those of a cell too */
+/* The vertices of a boundary face, or of a cell, and their number */
 static PetscErrorCode GetVertices(DM dm, PetscInt point, PetscInt *n, PetscInt vertices[])
 {
   PetscInt *closure = NULL, n_points, vstart, vend;
@@ -19,7 +20,7 @@ static PetscErrorCode GetVertices(DM dm, PetscInt point, PetscInt *n, PetscInt v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the vertices of the faces, on all ranks that have them; the chart's size */
+/* Marks the vertices of some faces with 1, on all ranks that have these vertices. `marks` has an entry for each point of the mesh. */
 static PetscErrorCode MarkVertices(DM dm, PetscInt n_faces, const PetscInt points[], PetscSF sf, PetscInt marks[])
 {
   PetscInt start;
@@ -42,7 +43,7 @@ static PetscErrorCode MarkVertices(DM dm, PetscInt n_faces, const PetscInt point
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes of this rank: owned ones first. marks become their numbers, -1 elsewhere. */
+/* Numbers the nodes of this rank, owned ones first. `marks` become these numbers, and -1 at all other points. */
 static PetscErrorCode NumberNodes(Surface surface, PetscInt marks[])
 {
   SurfaceData *data = &surface->data;
@@ -74,7 +75,7 @@ static PetscErrorCode NumberNodes(Surface surface, PetscInt marks[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the nodes live, and the way from their owners to ghosts */
+/* Finds the rank that owns each node, and makes the star forests from owned nodes to ghosts */
 static PetscErrorCode ConnectNodes(Surface surface, PetscSF points, PetscInt numbers[])
 {
   MPI_Comm           comm = PetscObjectComm((PetscObject)surface->dm);
@@ -122,6 +123,7 @@ static PetscErrorCode ConnectNodes(Surface surface, PetscSF points, PetscInt num
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The reference position of a vertex [m] */
 static PetscErrorCode GetPosition(DM dm, PetscInt vertex, const PetscScalar coordinates[], PetscInt dim, PetscReal x[])
 {
   PetscSection section;
@@ -134,7 +136,7 @@ static PetscErrorCode GetPosition(DM dm, PetscInt vertex, const PetscScalar coor
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes of a face in an order that makes its normal outward, away from its cell */
+/* Puts the nodes of a face in the order in which its normal points away from its cell */
 static PetscErrorCode OrientFace(Surface surface, PetscInt f, const PetscInt numbers[], PetscInt start, const PetscScalar coordinates[])
 {
   SurfaceData    *data = &surface->data;
@@ -173,6 +175,7 @@ static PetscErrorCode OrientFace(Surface surface, PetscInt f, const PetscInt num
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nodes and direction of each face, and reference positions */
 static PetscErrorCode SetUpFaces(Surface surface, const PetscInt numbers[])
 {
   SurfaceData       *data = &surface->data;
@@ -198,7 +201,7 @@ static PetscErrorCode SetUpFaces(Surface surface, const PetscInt numbers[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Everything that follows from the faces in surface->points */
+/* Sets up nodes, faces and communication from surface->points */
 PetscErrorCode SurfaceSetUpNodes(Surface surface)
 {
   PetscInt start, end, roots, *numbers;
@@ -220,6 +223,7 @@ PetscErrorCode SurfaceSetUpNodes(Surface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees what SurfaceSetUpNodes() has made */
 PetscErrorCode SurfaceClearNodes(Surface surface)
 {
   SurfaceData *data = &surface->data;

@@ -1,6 +1,7 @@
 /* Where a surface is now, with its normals and areas. */
 #include "interfaceimpl.h"
 
+/* Present positions of all nodes of this rank; u NULL: the reference positions */
 static PetscErrorCode UpdatePositions(Surface surface, Vec u)
 {
   SurfaceData       *data = &surface->data;
@@ -20,7 +21,7 @@ static PetscErrorCode UpdatePositions(Surface surface, Vec u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the faces of this rank give to its nodes */
+/* Adds the areas and normals of this rank's faces to their nodes, and finds the smallest face at each */
 static void AddFaces(Surface surface)
 {
   SurfaceData   *data = &surface->data;

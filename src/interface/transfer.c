@@ -1,4 +1,10 @@
+/* The rows of a transfer as others see them: creation, settings, values for matrices. */
 #include "interfaceimpl.h"
+
+/* Bounds beyond which rows are built again, unless TransferSetBounds() is called: with this slip bound a half disc that is led round
+   another one has a normal force steady to 0.2 % */
+#define SLIP_BOUND  0.05 /* [parts of the face] */
+#define ANGLE_BOUND 0.02 /* [rad] */
 
 /*@
   TransferCreate - prepares the rows that compare a surface with another, or with an obstacle
@@ -32,8 +38,8 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->obstacle    = obstacle;
   t->dim         = dirichlet->data.dim;
   t->n           = dirichlet->data.n_owned;
-  t->slip_bound  = 0.05;
-  t->angle_bound = 0.02;
+  t->slip_bound  = SLIP_BOUND;
+  t->angle_bound = ANGLE_BOUND;
   t->guards      = PETSC_TRUE;
   if (neumann)
     PetscCheck(t->dim == neumann->data.dim, comm, PETSC_ERR_USER_INPUT,
@@ -102,12 +108,11 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
   Level: developer
 
   Notes:
-  The partner of a node beyond its end, on a face that it covers in part, is the straight line through what lies opposite to the face, as in
-Popp,
-  Seitz, Gee, Wall (2013), with the gap counted from where the partner ends. Without these rows the last node that is covered has the mean
-  gap of the whole covered part, and the end of a tilting partner gets into the surface by half an element times the angle.
+  If a face is covered in part, a node of it beyond the end of the partner is compared with the straight line that continues the covered
+  part, as in Popp, Seitz, Gee, Wall (2013), with the gap counted from where the partner ends. Without these rows the last covered node
+  has the mean gap of the whole covered part, and the end of a tilting partner gets into the surface by half an element times the angle.
 
-  What one partner ends in front of may be in contact with another: see `TransferRows`.
+  A node beyond the end of one partner may be in contact with another one: `TransferRows` tells which nodes are beyond an end.
 
 .seealso: `Transfer`, `TransferUpdate()`
 @*/

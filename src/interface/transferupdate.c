@@ -1,16 +1,22 @@
 /* When the rows of a transfer are built again. */
 #include "interfaceimpl.h"
 
-/* Partners are known up to this number of face sizes beyond the closest one */
+/* Partners are known up to this distance beyond the closest one [edges of the largest face], so that bodies which come closer do not need
+   new rows in each step */
 #define FACES_AHEAD 4
+/* Rows with a smaller gap are near contact: slips and turns beyond the bounds have them built again [edges of the face] */
+#define NEAR_CONTACT 2
+/* Motion relative to the partner since the last build after which other faces may lie opposite [edges of the smallest face] */
+#define FAR_MOTION 0.25
 
-/* How far apart the positions at the last build and now are at most, and their sum: of the nodes that this rank owns */
+/* Adds up how far the nodes that this rank owns have moved since the last build [m], and their number */
 static void SumMotion(const SurfaceData *data, const PetscReal built[], PetscReal sums[])
 {
   for (PetscInt i = 0; i < 3 * data->n_owned; i++) sums[i % 3] += data->positions[i] - built[i];
   sums[3] += data->n_owned;
 }
 
+/* How far any node that this rank owns has moved since the last build, less the mean motion [m] */
 static PetscReal LargestMotion(const SurfaceData *data, const PetscReal built[], const PetscReal mean[])
 {
   PetscReal largest = 0;
@@ -24,15 +30,15 @@ static PetscReal LargestMotion(const SurfaceData *data, const PetscReal built[],
   return PetscSqrtReal(largest);
 }
 
-/* How far the nodes of either side that this rank has are from where they were at the last build at most, but for what all have moved
-   together */
+/* How far any node of each side that this rank owns has moved since the last build [m]. Between two surfaces the mean motion of all nodes
+   is subtracted. */
 static PetscErrorCode GetMotion(Transfer transfer, PetscReal largest[])
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
   PetscReal          sums[4] = {0}, mean[3] = {0};
 
   PetscFunctionBegin;
-  if (data[1]) { /* a common translation changes nothing; an obstacle stays where it is */
+  if (data[1]) { /* rows do not change if both surfaces move together; an obstacle does not move */
     for (PetscInt side = 0; side < 2; side++) SumMotion(data[side], transfer->built_x[side], sums);
     PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, transfer->comm));
     for (PetscInt d = 0; d < 3; d++) mean[d] = sums[3] > 0 ? sums[d] / sums[3] : 0;
@@ -41,7 +47,7 @@ static PetscErrorCode GetMotion(Transfer transfer, PetscReal largest[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sum_j P_ij x_j - x_i at present */
+/* sum_j P_ij x_j - x_i with the present positions [m] */
 static void GetOffset(Transfer transfer, PetscInt row, PetscReal offset[])
 {
   const RowSet    *set = &transfer->rows;
@@ -54,6 +60,7 @@ static void GetOffset(Transfer transfer, PetscInt row, PetscReal offset[])
   }
 }
 
+/* Splits an offset into the gap along the normal and the part across it [m] */
 static void SplitOffset(PetscInt dim, const PetscReal normal[], PetscReal offset[], PetscReal *gap)
 {
   *gap = 0;
@@ -61,6 +68,7 @@ static void SplitOffset(PetscInt dim, const PetscReal normal[], PetscReal offset
   for (PetscInt d = 0; d < dim; d++) offset[d] -= *gap * normal[d];
 }
 
+/* Brings the present positions of the partner's nodes to the ranks whose rows name them */
 static PetscErrorCode GetColumnPositions(Transfer transfer)
 {
   PetscFunctionBegin;
@@ -69,7 +77,7 @@ static PetscErrorCode GetColumnPositions(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row of this rank near contact has slipped or turned beyond the bounds */
+/* Whether a row of this rank near contact has slipped or turned beyond the bounds. Marks those that have not, and notes all slips. */
 static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 {
   const SurfaceData *data = &transfer->dirichlet->data;
@@ -97,7 +105,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
       PetscCall(ObstacleGetGap(transfer->obstacle, data->positions + 3 * row, &gap, gradient));
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(gradient[d] + normal[d]);
     }
-    if (PetscAbsReal(gap) >= 2 * size) continue;
+    if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue;
     within              = (PetscBool)(slip <= PetscSqr(transfer->slip_bound * size) && turned <= turn * turn);
     transfer->keep[row] = within;
     if (!within) *slipped = PETSC_TRUE;
@@ -105,8 +113,8 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the surfaces have moved so far relative to each other since the last build that other faces may lie opposite, or along each other
-   beyond the bounds, on any rank */
+/* Whether on any rank the surfaces have moved so far since the last build that other faces may lie opposite, or that a row near contact is
+   beyond the bounds */
 static PetscErrorCode HasMoved(Transfer transfer, PetscBool *moved)
 {
   PetscReal largest[3]; /* motions of both sides, slip */
@@ -119,11 +127,11 @@ static PetscErrorCode HasMoved(Transfer transfer, PetscBool *moved)
   PetscCall(HasSlipped(transfer, &slipped));
   largest[2] = slipped;
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, largest, 3, MPIU_REAL, MPIU_MAX, transfer->comm));
-  *moved = (PetscBool)(largest[0] + largest[1] > 0.25 * transfer->smallest_size || largest[2] > 0);
+  *moved = (PetscBool)(largest[0] + largest[1] > FAR_MOTION * transfer->smallest_size || largest[2] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the next updates compare with */
+/* Notes the positions and slips that the next updates compare with; `near` is how far partners are known [m] */
 static PetscErrorCode Remember(Transfer transfer, PetscReal near)
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
@@ -141,7 +149,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
     for (PetscInt row = 0; row < transfer->n; row++) {
       PetscReal gap;
 
-      if (transfer->keep[row]) continue; /* its slip goes on from where it was */
+      if (transfer->keep[row]) continue; /* its slip is still counted from its own last build */
       GetOffset(transfer, row, transfer->built_slip + 3 * row);
       SplitOffset(transfer->dim, transfer->rows.normals + transfer->dim * row, transfer->built_slip + 3 * row, &gap);
     }
@@ -152,12 +160,12 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far to look ahead: at least as far as is wanted, and as far as the boxes about both surfaces are apart and some faces more, so that
-   what is closest is known at all times; faces further away need not be sent to other ranks */
+/* How far ahead of a node to look for partners [m]: at least as far as the caller wants, and some faces further than the distance of the
+   boxes about both surfaces, so that the closest partner is always known. Faces further away are not sent to other ranks. */
 static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *reach)
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
-  PetscReal          corners[13], square = 0; /* for each side the upper corner and the negative of the lower one; the largest face */
+  PetscReal corners[13], square = 0; /* for each side the upper corner and the lower one with its sign changed; then the largest face */
 
   PetscFunctionBegin;
   *reach = near;
@@ -195,13 +203,13 @@ static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *rea
   Level: developer
 
   Notes:
-  The rows are built again when one with a gap of less than two face sizes has slipped by more than the bound, or its normal has turned by
-more than the bound; when the surfaces have moved by more than a quarter of the smallest face relative to each other, so that other faces
-may lie opposite; and when `near` exceeds that of the last build. Between builds a normal stays as it was, and in a build rows near contact
-stay as they are that are within both bounds: each change of a row costs a little energy. In one dimension they are built once.
+  The rows are built again if a row whose gap is less than two edges of the face has slipped or turned by more than the bounds; if the
+  surfaces have moved by more than a quarter of the smallest face relative to each other, so that other faces may lie opposite; and if
+  `near` exceeds that of the last build. Between builds normals stay as they are. In a build, rows near contact that are within both bounds
+  stay as they are too: each change of a row costs a little energy. In one dimension rows are built once.
 
-  A build looks ahead of a node as far as is wanted, and as far as the boxes about both surfaces are apart and four faces more; behind it,
-as far as the two bodies can overlap at all.
+  A build looks ahead of a node as far as `near`, or four faces further than the distance of the boxes about both surfaces, if that is more;
+  and behind the node as far as the two bodies can overlap at all.
 
 .seealso: `Transfer`, `TransferSetBounds()`, `TransferGetRows()`
 @*/

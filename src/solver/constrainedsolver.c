@@ -96,6 +96,7 @@ static PetscErrorCode ChooseSolver(KSP ksp, Mat A, PetscInt dim)
     PetscCall(KSPSetType(inner, KSPPREONLY));
     PetscCall(KSPGetPC(inner, &pc));
     PetscCall(PCSetType(pc, PCLU));
+    PetscCall(PCFactorSetZeroPivot(pc, 0));
     PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -105,6 +106,7 @@ static PetscErrorCode ChooseSolver(KSP ksp, Mat A, PetscInt dim)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetZeroPivot(pc, 0)); /* PETSc's default is 2e-14, whatever the unit of the matrix */
   PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -28,6 +28,14 @@ typedef struct {
   PetscBool by_force;   /* forces are the unknowns of all its rows, see SchwarzSetUpSides() */
 } ContactPair;
 
+/* Default tolerances on lengths, in parts of the smallest body: see ContactGetLengthScale(). Those of the outer iterations are 1e-12 m for
+   bars of 0.25 m (Hoy, Tezaur, Mota, section 4). */
+#define CONTACT_POSITION_TOLERANCE     4e-12
+#define CONTACT_AUGMENTATION_TOLERANCE 4e-10 /* gap that the augmented Lagrangian leaves, whose rounds converge linearly */
+/* Default tolerance on contact forces, in parts of ContactGetForceScale(): the strain of 1e-17 is below all round-off, so that forces are
+   found to their relative tolerance unless they vanish */
+#define CONTACT_FORCE_TOLERANCE 1e-17
+
 /* The gap of a row without anything opposite [m] */
 #define CONTACT_NO_GAP 1e30
 
@@ -108,12 +116,17 @@ struct _p_Contact {
   PetscReal *sums, *maxima; /* per pair: work space */
   PetscReal *impulse;       /* per pair, this rank's share: impulse so far, force at the end of the last accepted step; 3 numbers each */
   PetscReal  step;          /* controller step [s] */
+  PetscReal  length_scale, force_scale; /* of the problem, see ContactSetUpScales() [m, N] */
   PetscBool  setup;
   void      *data;
 };
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 
+PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
+
+PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactReadObstacles(Contact);
 PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);

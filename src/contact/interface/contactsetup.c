@@ -19,6 +19,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSetUpPairs(contact));
+  PetscCall(ContactSetUpScales(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));

@@ -13,6 +13,9 @@
 #include <contact/compliance/outersolver.h>
 #include <sys/petsccompat.h>
 
+/* Relative to the largest compliance: pivots below are round-off */
+#define ZERO_PIVOT (100 * PETSC_MACHINE_EPSILON)
+
 typedef struct {
   OuterSolver       outer;
   PetscReal         atol, rtol; /* on the gap [m], and relative to the displacement of the contact nodes */
@@ -110,6 +113,27 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* PETSc takes a pivot below 2e-14 for zero, whatever its unit. Here that is a part of the largest compliance. */
+static PetscErrorCode SetZeroPivot(Contact contact, SNES snes)
+{
+  const ImplicitLagrange *lagrange = (const ImplicitLagrange *)contact->data;
+  PetscReal               largest  = 0;
+  KSP                     ksp;
+  PC                      pc;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->n_all_rows; i++)
+    largest = PetscMax(largest, PetscAbsScalar(lagrange->compliance[i * (contact->n_all_rows + 1)]));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  if (contact->size > 1) { /* a copy of the matrix on each rank, see OuterSolverCreate() */
+    PetscCall(PCRedundantGetKSP(pc, &ksp));
+    PetscCall(KSPGetPC(ksp, &pc));
+  }
+  PetscCall(PCFactorSetZeroPivot(pc, ZERO_PIVOT * largest));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Type, bounds, tolerances. A force counts as zero only where it is zero: it has been put there by the projection onto the bound. */
 static PetscErrorCode SetUpOuter(Contact contact)
 {
@@ -123,6 +147,7 @@ static PetscErrorCode SetUpOuter(Contact contact)
   PetscFunctionBegin;
   PetscCall(OuterSolverCreate(contact, "lagrange_", contact->n_rows, ComputeResidual, ComputeJacobian, &lagrange->outer));
   snes = lagrange->outer.snes;
+  PetscCall(SetZeroPivot(contact, snes));
   PetscCall(PetscOptionsGetString(NULL, "lagrange_", "-snes_type", type, sizeof(type), NULL));
   PetscCall(PetscStrcmp(type, SNESVINEWTONRSLS, &reduced));
   PetscCall(PetscStrcmp(type, SNESVINEWTONSSLS, &semismooth));
@@ -134,7 +159,7 @@ static PetscErrorCode SetUpOuter(Contact contact)
     PetscCall(SNESGetLineSearch(snes, &line_search));
     PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   }
-  PetscCall(SNESSetTolerances(snes, 1e-12, 1e-15, 0, 50, 1000000));
+  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->length_scale, 1e-15, 0, 50, 1000000));
   PetscCall(PetscOptionsHasName(NULL, "lagrange_", "-snes_vi_zero_tolerance", &tolerance_set));
   if (!tolerance_set) PetscCall(PetscOptionsSetValue(NULL, "-lagrange_snes_vi_zero_tolerance", "0"));
   PetscCall(SNESSetFromOptions(snes));

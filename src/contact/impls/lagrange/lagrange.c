@@ -45,7 +45,8 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
    Options Database Keys:
 +  -contact_constraint (gap|gap_rate|both)                      - what they close: the gap, its rate, or both
 .  -lagrange_snes_type (vinewtonrsls|vinewtonssls)              - the outer iteration on the contact forces of implicit bodies
--  -lagrange_snes_atol, -lagrange_snes_rtol, -lagrange_snes_max_it - its tolerances on the gap (1e-12 m, 1e-15) and limit (50)
+-  -lagrange_snes_atol, -lagrange_snes_rtol, -lagrange_snes_max_it - its tolerances on the gap (4e-12 of the size of the smallest body,
+                                                                     in m; 1e-15) and limit (50)
 
    Level: beginner
 

@@ -21,8 +21,8 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
   PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "", penalty->augmentation_max_it,
                             &penalty->augmentation_max_it, NULL));
   PetscOptionsEnd();
-  PetscCheck(penalty->augmentation_tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-contact_augmentation_tolerance %g m must be positive",
-             (double)penalty->augmentation_tolerance);
+  PetscCheck(penalty->augmentation_tolerance == (PetscReal)PETSC_DEFAULT || penalty->augmentation_tolerance > 0, comm, PETSC_ERR_USER_INPUT,
+             "-contact_augmentation_tolerance %g m must be positive", (double)penalty->augmentation_tolerance);
   PetscCheck(penalty->augmentation_max_it > 0, comm, PETSC_ERR_USER_INPUT,
              "-contact_augmentation_max_it %" PetscInt_FMT " must be positive", penalty->augmentation_max_it);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -30,8 +30,12 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
 
 static PetscErrorCode ContactSetUp_AugmentedLagrangian(Contact contact)
 {
+  Penalty *penalty = (Penalty *)contact->data;
+
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, CONTACT_AUGMENTED_LAGRANGIAN));
+  if (penalty->augmentation_tolerance == (PetscReal)PETSC_DEFAULT)
+    penalty->augmentation_tolerance = CONTACT_AUGMENTATION_TOLERANCE * contact->length_scale;
   PetscCall(PenaltySetUp(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,7 +92,7 @@ static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscView
 
    Options Database Keys:
 +  -contact_penalty tau, -contact_penalty_scale s               - penalty parameter, as with `CONTACT_PENALTY`
-.  -contact_augmentation_tolerance g                            - gap that is left [m], 1e-10
+.  -contact_augmentation_tolerance g                            - gap that is left [m], 4e-10 of the size of the smallest body
 .  -contact_augmentation_max_it n                               - limit of rounds in a step, 200
 -  -penalty_snes_type, -penalty_snes_rtol, ...                  - the iteration in each round, as with `CONTACT_PENALTY`
 
@@ -109,7 +113,7 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&penalty));
-  penalty->augmentation_tolerance = 1e-10;
+  penalty->augmentation_tolerance = PETSC_DEFAULT;
   penalty->augmentation_max_it    = 200;
   contact->data                   = penalty;
   contact->ops->setfromoptions    = ContactSetFromOptions_AugmentedLagrangian;

@@ -143,7 +143,7 @@ PetscErrorCode PenaltySetUp(Contact contact)
   PetscCall(PenaltySetUpSprings(contact));
   PetscCall(OuterSolverCreate(contact, "penalty_", n, ComputeResidual, ComputeJacobian, &penalty->outer));
   PetscCall(OuterSolverSetNewton(contact, &penalty->outer, ComputeJacobian, ApplyNewton));
-  PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, 1e-14, 1e-9, 50));
+  PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, CONTACT_FORCE_TOLERANCE * contact->force_scale, 1e-9, 50));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(ForcesCreate(contact, &penalty->forces));
@@ -269,7 +269,8 @@ PetscErrorCode PenaltyDestroy(Contact contact)
 .  -contact_constraint (gap|gap_rate|both)                       - springs, dampers in their place, or both
 .  -contact_penalty_damping c                                    - damping [N s/m^3; N s/m in one dimension], required by dampers
 .  -penalty_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration on the contact forces
--  -penalty_snes_rtol, -penalty_snes_atol, -penalty_snes_max_it  - its tolerances on the force (1e-9, 1e-14 N) and limit (50)
+-  -penalty_snes_rtol, -penalty_snes_atol, -penalty_snes_max_it  - its tolerances on the force (1e-9; 1e-17 of E A of the softest element,
+                                                                   in N) and limit (50)
 
    Level: beginner
 

@@ -105,7 +105,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
   for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
-  PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, 1e-12, 1e-15, 50));
+  PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->length_scale, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
@@ -185,7 +185,8 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 
    Options Database Keys:
 +  -schwarz_snes_type (newtonls|anderson|nrichardson|ngmres|qn) - the outer iteration; newtonls uses the interface compliance
-.  -schwarz_snes_atol, -schwarz_snes_rtol                       - tolerances on the change of position, 1e-12 m and 1e-15
+.  -schwarz_snes_atol, -schwarz_snes_rtol                       - tolerances on the change of position: [m], 4e-12 of the size of the
+                                                                  smallest body; relative, 1e-15
 .  -schwarz_snes_max_it n                                       - limit of iterations, 50
 .  -schwarz_snes_linesearch_damping theta                       - relaxation of nrichardson, 1 (Aitken: first one, 1/2)
 .  -schwarz_relaxation (fixed|aitken)                           - relaxation of nrichardson

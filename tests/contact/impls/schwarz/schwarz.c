@@ -1,6 +1,8 @@
 /* The Schwarz alternating method: one controller step in which two bars hit each other, and what ends contact. */
 #include "simulation.h"
 
+#define TOLERANCE "-schwarz_snes_atol 1e-12" /* [m] */
+
 /*
    The step that ends in contact: the gap is closed to the tolerance of the iteration, and what the force does to one bar it does
    to the other, reversed. Newmark's rule with gamma = 1/2 changes the momentum by dt/2 (F_0 + F_1), and there was no force before.
@@ -12,7 +14,7 @@ static void CheckFirstStep(Simulation *simulation, PetscReal *force)
 
   assert_int_equal(pair.active, 1);
   assert_true(pair.force > 0);
-  near(pair.gap, 0, 1e-12); /* -schwarz_snes_atol [m] */
+  near(pair.gap, 0, 1e-12);
   near(pair.tension, 0, 0);
   /* the gap may be off by 1e-12 m, the layer of stiffness 8 N/m and more that it acts on carries that into the force */
   near(Momentum(simulation, 1) - before[1], 0.5 * COLLISION_STEP * pair.force, 1e-12);
@@ -28,6 +30,7 @@ static void all_pairings_of_integrators(void **state)
                                   "-left_ts_type centraldifference -right_ts_type centraldifference"};
 
   AddCollision(8, 10, 0);
+  AddOptions(TOLERANCE);
   for (PetscInt i = 0; i < 4; i++) {
     PetscReal force;
 
@@ -49,6 +52,7 @@ static void all_types_of_outer_iteration(void **state)
   PetscReal         force[6];
 
   AddCollision(8, 10, 0);
+  AddOptions(TOLERANCE);
   for (PetscInt i = 0; i < 6; i++) {
     SimulationRepeat(simulation, types[i]);
     CheckFirstStep(simulation, &force[i]);
@@ -85,6 +89,7 @@ static void unconverged_steps(void **state)
   ContactCounts counts;
 
   AddCollision(8, 13, 50);
+  AddOptions(TOLERANCE);
   AddOptions("-time_start 1 -time_end 1.2 -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5 -schwarz_snes_max_it 1");
   ok(SimulationCreate(simulation));
   /* one iteration is one sweep beyond the first, which found the residual that it began with */
