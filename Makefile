@@ -119,6 +119,8 @@ $(BUILD)/libimpakt.a: $(members) $(BUILD)/members
 $(BUILD)/tests/unit/%: $(BUILD)/tests/unit/%.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
 
+$(BUILD)/src/sys/help.o: CPPFLAGS += -DIMPAKT_OPTIMISATION='"$(OPTIMISE)"' # -version tells
+
 $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
 	@mkdir -p $(@D)
 	$(call say,CC) $(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
