@@ -1,5 +1,6 @@
 /* The program: everything from options, run, report. */
 #include <impakt.h>
+#include <sys/help.h>
 
 static PetscErrorCode CheckOptions(Controller controller)
 {
@@ -21,14 +22,8 @@ static PetscErrorCode Run(void)
   Controller     controller;
   Output         output;
   PetscErrorCode error;
-  PetscBool      list = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-help_options", &list, NULL));
-  if (list) {
-    PetscCall(ImpaktPrintOptions());
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(ControllerCreate(PETSC_COMM_WORLD, &controller));
   PetscCall(ControllerSetFromOptions(controller));
   PetscCall(ControllerSetUp(controller));
@@ -45,11 +40,26 @@ static PetscErrorCode Run(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Without a word on the command line, and without bodies from a file or variable that PETSC reads by itself, there is nothing to run */
+static PetscErrorCode CheckAsked(int argc, PetscBool *asked)
+{
+  PetscFunctionBegin;
+  *asked = (PetscBool)(argc > 1);
+  if (!*asked) PetscCall(PetscOptionsHasName(NULL, NULL, "-bodies", asked));
+  if (!*asked) PetscCall(ImpaktPrintUsage(stderr));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
-  PetscErrorCode error = ImpaktInitialize(&argc, &argv);
+  PetscBool      done, asked = PETSC_TRUE;
+  const int      n_words = argc;
+  PetscErrorCode error   = ImpaktHelp(argc, argv, &done);
 
-  if (!error) error = Run();
+  if (error || done) return ImpaktExit(error);
+  error = ImpaktInitialize(&argc, &argv);
+  if (!error) error = CheckAsked(n_words, &asked);
+  if (!error && asked) error = Run();
   if (!error) error = ImpaktFinalize();
-  return ImpaktExit(error);
+  return error || asked ? ImpaktExit(error) : 1;
 }

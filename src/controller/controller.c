@@ -166,62 +166,6 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ControllerMonitorSet - adds an observer, called at the start and after every accepted controller step
-
-  Logically Collective
-
-  Input Parameters:
-+ controller - the `Controller`
-. monitor    - function (controller, frame, ctx)
-. ctx        - its context
-- destroy    - frees the context with the controller, or `NULL`
-
-  Level: intermediate
-
-.seealso: `Controller`, `ControllerFrame`
-@*/
-PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *monitor, void *ctx, PetscErrorCode (*destroy)(void **))
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscCheck(controller->n_monitors < MAX_MONITORS, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
-             "Too many monitors, at most %d", MAX_MONITORS);
-  controller->monitor[controller->n_monitors]           = monitor;
-  controller->monitor_ctx[controller->n_monitors]       = ctx;
-  controller->monitor_destroy[controller->n_monitors++] = destroy;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Observe(Controller controller, PetscInt step)
-{
-  ControllerFrame frame = {.step               = step,
-                           .steps              = controller->steps,
-                           .n_bodies           = controller->n_bodies,
-                           .bodies             = controller->measures,
-                           .contact_positions  = controller->contact_positions,
-                           .contact_velocities = controller->contact_velocities,
-                           .pairs              = controller->pair_states};
-  ContactCounts   counts;
-
-  PetscFunctionBegin;
-  /* not summed up, so that round-off does not pile up over many steps */
-  frame.time = controller->time_start + step * controller->time_step;
-  PetscCall(ContactGetNumPairs(controller->contact, &frame.n_pairs));
-  for (PetscInt b = 0; b < controller->n_bodies; b++) {
-    PetscCall(BodyGetMeasures(controller->bodies[b], &controller->measures[b]));
-    if (controller->has_obstacle[b]) controller->measures[b].loaded = PETSC_TRUE;
-    PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
-  }
-  PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
-  PetscCall(ContactGetCounts(controller->contact, &counts));
-  frame.sweeps = step ? counts.sweeps : 0;
-  PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
-  for (PetscInt i = 0; i < controller->n_monitors; i++)
-    PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* CPU time of a process, its own and the system's on its behalf */
 static PetscLogDouble Seconds(const struct rusage *usage)
 {
@@ -251,11 +195,11 @@ PetscErrorCode ControllerSolve(Controller controller)
   PetscCall(ControllerSetUp(controller));
   PetscCall(PetscTime(&wall[0]));
   getrusage(RUSAGE_SELF, &cpu[0]);
-  PetscCall(Observe(controller, 0));
+  PetscCall(ControllerNotify(controller, 0));
   for (PetscInt step = 1; step <= controller->steps; step++) {
     PetscCall(ContactStep(controller->contact));
     PetscCall(ContactAccept(controller->contact));
-    PetscCall(Observe(controller, step));
+    PetscCall(ControllerNotify(controller, step));
   }
   PetscCall(PetscTime(&wall[1]));
   getrusage(RUSAGE_SELF, &cpu[1]);

@@ -26,4 +26,6 @@ struct _p_Controller {
   PetscBool      setup;
 };
 
+/* controller.c calls terminal.c and monitors.c, terminal.c calls monitors.c */
+PETSC_INTERN PetscErrorCode ControllerNotify(Controller, PetscInt);
 PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);

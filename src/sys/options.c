@@ -1,5 +1,6 @@
 /* Option hygiene: every option that is given must have been read by somebody. */
 #include <impakt.h>
+<<<<<<< HEAD
 
 typedef struct {
   const char *name;  /* after the body's prefix, for those of bodies */
@@ -122,6 +123,10 @@ static const KnownOption body_options[] = {
     {"ts_alpha_gamma", "g", "Newmark's gamma, default 1/2"},
     {"ts_alpha_beta", "b", "Newmark's beta, default 1/4"},
 };
+=======
+#include "names.h"
+#include "optiontable.h"
+>>>>>>> wt-words
 
 /* These are read by PETSc when it solves or finalises, so they are unread before the run */
 static const char *const late_options[] = {"schwarz_snes_view",
@@ -175,15 +180,19 @@ static PetscInt EditDistance(const char a[], const char b[])
   return row[m];
 }
 
-/* The options of one table, each behind a prefix, if one is nearer than what there is */
-static PetscErrorCode FindNearestOf(const char name[], const char prefix[], size_t n, const KnownOption options[], PetscInt *best,
-                                    char nearest[], size_t size)
+/* The options of one kind, each behind a prefix, if one is nearer than what there is */
+static PetscErrorCode FindNearestOf(const char name[], OptionOwner owner, const char prefix[], PetscInt *best, char nearest[], size_t size)
 {
+  const KnownOption *options;
+  size_t             n;
+
   PetscFunctionBegin;
+  options = KnownOptionsGet(&n);
   for (size_t i = 0; i < n; i++) {
     char     full[128];
     PetscInt distance;
 
+    if (options[i].owner != owner) continue;
     PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s%s", prefix, prefix[0] ? "_" : "", options[i].name));
     distance = EditDistance(name, full);
     if (distance >= *best) continue;
@@ -195,19 +204,16 @@ static PetscErrorCode FindNearestOf(const char name[], const char prefix[], size
 
 static PetscErrorCode FindNearest(const char name[], PetscInt n_bodies, const char *const bodies[], char nearest[], size_t size)
 {
-  char    *obstacles[64];
-  PetscInt best = 1000, n = 64;
+  char   **obstacles;
+  PetscInt best = 1000, n;
 
   PetscFunctionBegin;
   nearest[0] = 0;
-  PetscCall(FindNearestOf(name, "", PETSC_STATIC_ARRAY_LENGTH(global_options), global_options, &best, nearest, size));
-  for (PetscInt b = 0; b < n_bodies; b++)
-    PetscCall(FindNearestOf(name, bodies[b], PETSC_STATIC_ARRAY_LENGTH(body_options), body_options, &best, nearest, size));
-  PetscCall(PetscOptionsGetStringArray(NULL, NULL, "-obstacles", obstacles, &n, NULL));
-  for (PetscInt o = 0; o < n; o++) {
-    PetscCall(FindNearestOf(name, obstacles[o], PETSC_STATIC_ARRAY_LENGTH(obstacle_options), obstacle_options, &best, nearest, size));
-    PetscCall(PetscFree(obstacles[o]));
-  }
+  PetscCall(FindNearestOf(name, OPTION_OF_RUN, "", &best, nearest, size));
+  for (PetscInt b = 0; b < n_bodies; b++) PetscCall(FindNearestOf(name, OPTION_OF_BODY, bodies[b], &best, nearest, size));
+  PetscCall(NamesRead(NULL, "-obstacles", &n, &obstacles, NULL));
+  for (PetscInt o = 0; o < n; o++) PetscCall(FindNearestOf(name, OPTION_OF_OBSTACLE, obstacles[o], &best, nearest, size));
+  PetscCall(NamesDestroy(n, &obstacles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -253,33 +259,6 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n_left, &names, &values));
   PetscCheck(!unread, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
-             "Unknown option%s, or without effect here: %s. `impakt -help_options` lists the options", unread == 1 ? "" : "s", message);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PrintTable(const char prefix[], size_t n, const KnownOption options[])
-{
-  PetscFunctionBegin;
-  for (size_t i = 0; i < n; i++)
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s%s %s\n      %s\n", prefix, options[i].name, options[i].value, options[i].text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ImpaktPrintOptions - prints a table of all options that Impakt has beside those of PETSc
-
-  Collective on `PETSC_COMM_WORLD`
-
-  Level: beginner
-
-.seealso: `ImpaktCheckOptions()`
-@*/
-PetscErrorCode ImpaktPrintOptions(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "Options of Impakt (PETSc's own options work too; -help lists those that apply)\n\n"));
-  PetscCall(PrintTable("", PETSC_STATIC_ARRAY_LENGTH(global_options), global_options));
-  PetscCall(PrintTable("<body>_", PETSC_STATIC_ARRAY_LENGTH(body_options), body_options));
-  PetscCall(PrintTable("<obstacle>_", PETSC_STATIC_ARRAY_LENGTH(obstacle_options), obstacle_options));
+             "Unknown option%s, or without effect here: %s. `impakt -help all` lists the options", unread == 1 ? "" : "s", message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,9 +3,7 @@
 #include <unistd.h>
 #include "petsccompat.h"
 
-static const char help[] = "Impakt: dynamic contact by the Schwarz alternating method.\n"
-                           "  impakt -options_file FILE [-option value ...]\n"
-                           "`impakt -help_options` lists the options of Impakt; -version prints that of PETSc.\n\n";
+static const char help[] = "Impakt: dynamic contact by the Schwarz alternating method; `impakt -help` on the command line tells more.\n";
 
 /*@
   ImpaktRegisterAll - registers classes, integrators, materials, elements and contact methods

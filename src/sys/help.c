@@ -1,0 +1,311 @@
+/* The screens of -help, -help TOPIC and -version.
+
+   PETSc prints its own screens for these two options while it starts, and then lets the program run. So the program looks for them first,
+   and starts PETSc without them. */
+#include <impakt.h>
+#include <petscts.h>
+#include <hdf5.h>
+#include "help.h"
+#include "optiontable.h"
+
+/* The Makefile knows with what */
+#if !defined(IMPAKT_OPTIMISATION)
+#  define IMPAKT_OPTIMISATION "unknown flags"
+#endif
+
+#if defined(__clang__)
+#  define COMPILER "clang " __clang_version__
+#elif defined(__GNUC__)
+#  define COMPILER "gcc " __VERSION__
+#else
+#  define COMPILER "unknown compiler"
+#endif
+
+typedef enum {
+  REQUEST_NONE,
+  REQUEST_SCREEN,
+  REQUEST_TOPIC,
+  REQUEST_OPTIONS, /* the old name of the whole table */
+  REQUEST_VERSION
+} Request;
+
+/* What the command line asks for; `topic` is the word after -help */
+static PetscErrorCode FindRequest(int argc, char **argv, Request *request, const char **topic)
+{
+  const struct {
+    const char *option;
+    Request     request;
+  } known[] = {
+      {"-help", REQUEST_SCREEN},          {"--help", REQUEST_SCREEN},    {"-h", REQUEST_SCREEN},
+      {"-help_options", REQUEST_OPTIONS}, {"-version", REQUEST_VERSION}, {"--version", REQUEST_VERSION},
+  };
+
+  PetscFunctionBegin;
+  *request = REQUEST_NONE;
+  *topic   = NULL;
+  for (int i = 1; i < argc && *request == REQUEST_NONE; i++) {
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(known); k++) {
+      PetscBool same;
+
+      PetscCall(PetscStrcmp(argv[i], known[k].option, &same));
+      if (same) *request = known[k].request;
+    }
+    if (*request == REQUEST_SCREEN && i + 1 < argc && argv[i + 1][0] != '-') {
+      *request = REQUEST_TOPIC;
+      *topic   = argv[i + 1];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Name and version of the MPI library: the first words of what MPI itself tells, which goes on with dates and machines */
+static PetscErrorCode GetMPIVersion(char text[], size_t size)
+{
+  char library[MPI_MAX_LIBRARY_VERSION_STRING];
+  int  length;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Get_library_version(library, &length));
+  for (int i = 0; i < length; i++)
+    if (library[i] == ',' || library[i] == '\n') library[i] = 0;
+  PetscCall(PetscStrncpy(text, library, size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  PetscInt petsc[3];
+  char     mpi[128];
+  unsigned hdf5[3];
+} Versions;
+
+static PetscErrorCode GetVersions(Versions *versions)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscGetVersionNumber(&versions->petsc[0], &versions->petsc[1], &versions->petsc[2], NULL));
+  PetscCall(GetMPIVersion(versions->mpi, sizeof(versions->mpi)));
+  PetscCheck(H5get_libversion(&versions->hdf5[0], &versions->hdf5[1], &versions->hdf5[2]) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "HDF5 does not tell its version");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintVersions(void)
+{
+  Versions v;
+
+  PetscFunctionBegin;
+  PetscCall(GetVersions(&v));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "Impakt   %s\nPETSc    %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT "%s\nMPI      %s\nHDF5     %u.%u.%u\n",
+                        IMPAKT_VERSION, v.petsc[0], v.petsc[1], v.petsc[2], PetscDefined(USE_DEBUG) ? ", with debugging" : "", v.mpi,
+                        v.hdf5[0], v.hdf5[1], v.hdf5[2]));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "compiler %s, %s\nscalars  %s, %d bytes\nintegers %d bytes\n", COMPILER, IMPAKT_OPTIMISATION,
+                        PetscDefined(USE_COMPLEX) ? "complex" : "real", (int)sizeof(PetscScalar), (int)sizeof(PetscInt)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How the program is started; the first lines of -help, and all that it says without options */
+PetscErrorCode ImpaktPrintUsage(FILE *file)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFPrintf(PETSC_COMM_WORLD, file,
+                         "Impakt %s simulates bodies that hit each other.\n\n"
+                         "  impakt -options_file FILE [-option value ...]\n"
+                         "  mpiexec -n 4 impakt -options_file FILE [-option value ...]\n\n",
+                         IMPAKT_VERSION));
+  if (file == stderr) PetscCall(PetscFPrintf(PETSC_COMM_WORLD, file, "There are options files in options/. `impakt -help` tells more.\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintScreen(void)
+{
+  const OptionTopic *topics;
+  size_t             n;
+  Versions           v;
+
+  PetscFunctionBegin;
+  PetscCall(GetVersions(&v));
+  topics = OptionTopicsGet(&n);
+  PetscCall(ImpaktPrintUsage(stdout));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "-help TOPIC prints the options of a topic and ends:\n"));
+  for (size_t t = 0; t < n; t++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-10s %s\n", topics[t].name, topics[t].text));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  all        the options of all topics, and those of PETSc\n"
+                                          "  markdown   the options of all topics, as tables in Markdown\n"
+                                          "-version prints what Impakt was built with and ends.\n\n"));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "PETSc %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT ", %s, HDF5 %u.%u.%u\nbuilt by %s, %s\n", v.petsc[0],
+                        v.petsc[1], v.petsc[2], v.mpi, v.hdf5[0], v.hdf5[1], v.hdf5[2], COMPILER, IMPAKT_OPTIMISATION));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the name of an option begins with, as it stands in print */
+static const char *PrintedPrefix(OptionOwner owner)
+{
+  return owner == OPTION_OF_BODY ? "<body>_" : owner == OPTION_OF_OBSTACLE ? "<obstacle>_" : "";
+}
+
+static PetscErrorCode PrintTopic(const OptionTopic *topic)
+{
+  const KnownOption *options;
+  size_t             n;
+
+  PetscFunctionBegin;
+  options = KnownOptionsGet(&n);
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n\n", topic->name, topic->text));
+  for (size_t i = 0; i < n; i++) {
+    PetscBool same;
+
+    PetscCall(PetscStrcmp(options[i].topic, topic->name, &same));
+    if (same)
+      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s%s %s\n      %s\n", PrintedPrefix(options[i].owner), options[i].name, options[i].value,
+                            options[i].text));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same as a table in Markdown, in which | stands between columns */
+static PetscErrorCode PrintMarkdown(const OptionTopic *topic)
+{
+  const KnownOption *options;
+  size_t             n;
+
+  PetscFunctionBegin;
+  options = KnownOptionsGet(&n);
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "**%s**: %s\n\n| option | takes | meaning |\n| --- | --- | --- |\n", topic->name, topic->text));
+  for (size_t i = 0; i < n; i++) {
+    PetscBool same;
+
+    PetscCall(PetscStrcmp(options[i].topic, topic->name, &same));
+    if (!same) continue;
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "| `-%s%s` | `", PrintedPrefix(options[i].owner), options[i].name));
+    for (const char *c = options[i].value; *c; c++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, *c == '|' ? "\\|" : "%c", *c));
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "` | %s |\n", options[i].text));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintTopics(PetscErrorCode (*print)(const OptionTopic *))
+{
+  const OptionTopic *topics;
+  size_t             n;
+
+  PetscFunctionBegin;
+  topics = OptionTopicsGet(&n);
+  for (size_t t = 0; t < n; t++) {
+    if (t) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n"));
+    PetscCall((*print)(&topics[t]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ImpaktPrintOptions - prints a table of all options that Impakt has beside those of PETSc
+
+  Collective on `PETSC_COMM_WORLD`
+
+  Level: beginner
+
+.seealso: `ImpaktCheckOptions()`
+@*/
+PetscErrorCode ImpaktPrintOptions(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "Options of Impakt, in SI units; those of PETSc work too\n\n"));
+  PetscCall(PrintTopics(PrintTopic));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What PETSc calls before it prints the help that all of its programs have */
+static PetscErrorCode PrintBeforePetsc(MPI_Comm comm)
+{
+  PetscFunctionBegin;
+  (void)comm;
+  PetscCall(ImpaktPrintOptions());
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n----------------------------------------\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options of the integrator and solvers of a body, and of the outer iteration: objects print theirs when they read them */
+static PetscErrorCode PrintSolvers(void)
+{
+  TS   ts;
+  SNES snes;
+
+  PetscFunctionBegin;
+  PetscCall(TSCreate(PETSC_COMM_WORLD, &ts));
+  PetscCall(TSSetOptionsPrefix(ts, "<body>_"));
+  PetscCall(TSSetType(ts, TSALPHA2));
+  PetscCall(TSSetFromOptions(ts));
+  PetscCall(TSDestroy(&ts));
+  PetscCall(SNESCreate(PETSC_COMM_WORLD, &snes));
+  PetscCall(SNESSetOptionsPrefix(snes, "schwarz_"));
+  PetscCall(SNESSetFromOptions(snes));
+  PetscCall(SNESDestroy(&snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FindTopic(const char name[], const OptionTopic **topic)
+{
+  const OptionTopic *topics;
+  char               list[512] = "";
+  size_t             n;
+
+  PetscFunctionBegin;
+  topics = OptionTopicsGet(&n);
+  *topic = NULL;
+  for (size_t t = 0; t < n && !*topic; t++) {
+    PetscBool same;
+
+    PetscCall(PetscStrcmp(topics[t].name, name, &same));
+    if (same) *topic = &topics[t];
+    PetscCall(PetscStrlcat(list, topics[t].name, sizeof(list)));
+    PetscCall(PetscStrlcat(list, ", ", sizeof(list)));
+  }
+  PetscCheck(*topic, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "-help %s: there is no such topic; topics are %sall, markdown", name, list);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Answer(Request request, const char topic[], PetscBool all)
+{
+  const OptionTopic *found;
+  PetscBool          markdown = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (topic) PetscCall(PetscStrcmp(topic, "markdown", &markdown));
+  if (request == REQUEST_VERSION) PetscCall(PrintVersions());
+  else if (request == REQUEST_SCREEN) PetscCall(PrintScreen());
+  else if (request == REQUEST_OPTIONS) {
+    PetscCall(PetscFPrintf(PETSC_COMM_WORLD, stderr, "impakt: warning: -help_options is the old name of -help all\n"));
+    PetscCall(ImpaktPrintOptions());
+  } else if (all) PetscCall(PrintSolvers());
+  else if (markdown) PetscCall(PrintTopics(PrintMarkdown));
+  else {
+    PetscCall(FindTopic(topic, &found));
+    PetscCall(PrintTopic(found));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Answers -help and -version, where the command line has one of them: starts Impakt and PETSc, prints, and ends them */
+PetscErrorCode ImpaktHelp(int argc, char **argv, PetscBool *done)
+{
+  Request     request;
+  const char *topic;
+  PetscBool   all    = PETSC_FALSE;
+  char        help[] = "-help", *shown[] = {argv[0], help, NULL}, **words = shown;
+  int         n_words = 1;
+
+  PetscFunctionBegin;
+  PetscCall(FindRequest(argc, argv, &request, &topic));
+  *done = (PetscBool)(request != REQUEST_NONE);
+  if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
+  if (topic) PetscCall(PetscStrcmp(topic, "all", &all));
+  if (all) {
+    PetscCall(PetscSetHelpVersionFunctions(NULL, PrintBeforePetsc));
+    n_words = 2;
+  }
+  PetscCall(ImpaktInitialize(&n_words, &words));
+  PetscCall(Answer(request, topic, all));
+  PetscCall(ImpaktFinalize());
+  /* PetscFunctionReturn() would need PETSc */
+  return PETSC_SUCCESS;
+}

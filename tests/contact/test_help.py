@@ -1,0 +1,177 @@
+"""What the program says about itself: -help, -help TOPIC, -version, and nothing at all."""
+
+import os
+import re
+
+import pytest
+from conftest import IMPAKT, ROOT, complaints
+
+TOPICS = ["bodies", "meshes", "materials", "loads", "time", "contact", "obstacles", "schwarz", "penalty", "lagrange", "files"]
+ENTRY = re.compile(r"^  -(\S+) \S+\n      \S.*$", re.MULTILINE)
+
+# Options that Impakt looks at, and that are PETSc's own: their table is PETSc's
+OF_PETSC = {
+    "snes_type",
+    "snes_anderson_m",
+    "snes_anderson_beta",
+    "snes_linesearch_damping",
+    "snes_vi_zero_tolerance",
+    "lagrange_snes_vi_zero_tolerance",
+    "ts_view",
+    "dm_view",
+    "help",
+    "help_options",
+    "version",
+    "h",
+}
+
+
+@pytest.fixture
+def say(launch):
+    """say("-help", "contact") -> stdout, of a run that ends with exit code 0, says nothing else, and frees its memory"""
+
+    def run(*words, ranks=1, stderr=""):
+        done = launch([IMPAKT, *words], ranks, timeout=60, env={**os.environ, "PETSC_OPTIONS": "-malloc_dump"})
+        assert done.returncode == 0, done.stderr
+        assert not complaints(done.stdout + done.stderr)
+        assert done.stderr == stderr
+        return done.stdout
+
+    return run
+
+
+def in_table(text):
+    """Names of the options that a screen lists."""
+    return [match[1] for match in ENTRY.finditer(text)]
+
+
+@pytest.fixture
+def whole_table(say):
+    """Of every topic: its options."""
+    return {topic: in_table(say("-help", topic)) for topic in TOPICS}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("word", ["-help", "--help"])
+def test_help(word, ranks, say):
+    """One screen, once on several ranks: how to start, what to ask for, and what it was built with; nothing of PETSc's."""
+    text = say(word, ranks=ranks)
+    assert len(text.splitlines()) <= 24
+    assert max(map(len, text.splitlines()[:-1])) <= 80  # the last one tells the compiler's flags, however many
+    assert text.count("impakt -options_file FILE") == 2  # by itself and under mpiexec
+    assert re.findall(r"^  (\w+) +\S", text, re.MULTILINE) == ["impakt", "mpiexec", *TOPICS, "all", "markdown"]
+    assert re.search(r"^Impakt \d+\.\d+\.\d+ ", text)
+    assert re.search(r"^PETSc 3\.\d+\.\d+, .*\d.*, HDF5 \d+\.\d+\.\d+$", text, re.MULTILINE)
+    assert "PETSc Team" not in text
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_version(ranks, say):
+    lines = say("-version", ranks=ranks).splitlines()
+    expected = [
+        r"Impakt   \d+\.\d+\.\d+",
+        r"PETSc    3\.\d+\.\d+(, with debugging)?",
+        r"MPI      \S.*\d.*",
+        r"HDF5     \d+\.\d+\.\d+",
+        r"compiler (gcc|clang) \d.*, .*-O\d.*",
+        r"scalars  real, 8 bytes",
+        r"integers [48] bytes",
+    ]
+    assert len(lines) == len(expected)
+    for line, pattern in zip(lines, expected, strict=True):
+        assert re.fullmatch(pattern, line), line
+    assert not re.search(r"[ =]/\w", "\n".join(lines))  # no path of a machine
+
+
+def test_version_is_that_of_the_source(say):
+    """The program, CITATION.cff and the headers name one version."""
+    version = re.search(r"^Impakt +(\S+)$", say("-version"), re.MULTILINE)[1]
+    assert re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)[1] == version
+
+
+def test_help_with_a_run(say):
+    """Asked for beside other options, help comes alone: nothing is run."""
+    assert say("-options_file", "options/impact-high-speed.opts", "-help") == say("-help")
+
+
+@pytest.mark.parametrize(
+    ("topic", "some"),
+    [
+        ("bodies", ["bodies", "<body>_mass_redistribute"]),
+        ("meshes", ["<body>_dm_plex_filename", "<body>_ball_part"]),
+        ("materials", ["<body>_material_type", "<body>_thickness"]),
+        ("loads", ["<body>_boundary_traction_<surface>", "<body>_gravity"]),
+        ("time", ["time_end", "<body>_ts_type"]),
+        ("contact", ["contact_pairs", "contact_type"]),
+        ("obstacles", ["obstacles", "<obstacle>_normal"]),
+        ("schwarz", ["schwarz_snes_type", "contact_swap_sides"]),
+        ("penalty", ["contact_penalty", "penalty_snes_rtol"]),
+        ("lagrange", ["lagrange_snes_type", "contact_augmentation_tolerance"]),
+        ("files", ["options_file", "output_history"]),
+    ],
+)
+def test_topic(topic, some, say):
+    text = say("-help", topic)
+    assert text.startswith(f"{topic}: ")
+    assert set(some) <= set(in_table(text))
+
+
+def test_every_option_has_one_topic(whole_table, say):
+    """The topics together are the whole table, without an option twice."""
+    names = [name for topic in TOPICS for name in whole_table[topic]]
+    assert len(names) > 100
+    assert len(set(names)) == len(names)
+    old = say("-help_options", stderr="impakt: warning: -help_options is the old name of -help all\n")
+    assert in_table(old) == names
+
+
+def test_every_option_that_the_code_reads_is_in_the_table(whole_table):
+    names = {re.sub(r"^<\w+>_", "", name) for options in whole_table.values() for name in options}
+    read = set()
+    for source in (ROOT / "src").rglob("*.c"):
+        read |= set(re.findall(r'"-([a-z][a-z_]*)"', source.read_text()))
+    assert len(read) > 60
+    assert read - OF_PETSC <= names
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_all(ranks, say):
+    """Impakt's options, then those that all programs of PETSc have, and those of integrators and solvers; each once."""
+    text = say("-help", "all", ranks=ranks)
+    ours = in_table(text)
+    assert len(ours) > 100
+    assert len(set(ours)) == len(ours)
+    for line in ("Options of Impakt", "Options for all PETSc programs", "  -<body>_ts_type <", "  -<body>_ksp_type <", "  -<body>_pc_type <", "  -schwarz_snes_type <"):
+        assert text.count(line) == 1, line
+    assert text.index("Options of Impakt") < text.index("Options for all PETSc programs") < text.index("  -<body>_ts_type <")
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_unknown_topic(ranks, launch):
+    done = launch([IMPAKT, "-help", "glue"], ranks, timeout=60)
+    assert done.returncode > 0
+    lines = [line for line in done.stderr.splitlines() if line.startswith("impakt: error")]
+    assert len(lines) == 1
+    assert "-help glue" in lines[0]
+    assert lines[0].endswith("topics are " + ", ".join([*TOPICS, "all", "markdown"]))
+    assert not done.stdout.strip()
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_nothing_given(ranks, launch):
+    """How it is used, where errors go, and an exit code of its own."""
+    done = launch([IMPAKT], ranks, timeout=60)
+    assert done.returncode > 0
+    assert done.stderr.count("  impakt -options_file FILE") == 1
+    assert "error" not in done.stderr.split("-----")[0]  # mpiexec has its say below a line
+    assert not done.stdout.strip()
+
+
+def test_nothing_on_the_command_line(launch, tmp_path):
+    """A run may come as a whole from the variable that PETSc reads."""
+    (tmp_path / "options").symlink_to(ROOT / "options")
+    (tmp_path / "out").mkdir()
+    options = "-options_file options/impact-penalty.opts -time_end -1.9e-4"
+    done = launch([IMPAKT], cwd=tmp_path, timeout=60, env={**os.environ, "PETSC_OPTIONS": options})
+    assert done.returncode == 0, done.stderr
+    assert "FILE" not in done.stderr
