@@ -124,11 +124,8 @@ $(BUILD)/libimpakt.a: $(members) $(BUILD)/members
 $(units): %: %.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
 
-<<<<<<< HEAD
 $(addsuffix .o,$(units)): CPPFLAGS += -Itests/support
-=======
 $(BUILD)/src/sys/help.o: CPPFLAGS += -DIMPAKT_OPTIMISATION='"$(OPTIMISE)"' # -version tells
->>>>>>> wt-words
 
 $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
 	@mkdir -p $(@D)
