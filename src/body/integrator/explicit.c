@@ -117,6 +117,24 @@ static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* a = M^{-1} f with a mass matrix that is not diagonal, where a is prescribed on some rows and on held dofs, whose part of f is their
+   acceleration already: what is prescribed is taken to the right-hand side. f is overwritten. */
+static PetscErrorCode SolveMassPrescribed(Body body, Vec f, PetscReal position, Vec a)
+{
+  Vec prescribed = body->work[1];
+
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(prescribed));
+  PetscCall(BodyCopyHeld(body, f, prescribed));
+  PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, prescribed));
+  PetscCall(BodyZeroHeld(body, prescribed));
+  PetscCall(MatMult(body->mass_matrix, prescribed, a));
+  PetscCall(VecAXPY(f, -1, a));
+  PetscCall(BodySolveMass(body, f, a));
+  PetscCall(VecAXPY(a, 1, prescribed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* `TSCentralDifferenceFn`: held and contact conditions on U, then the acceleration it brings about */
 static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
 {
@@ -141,8 +159,9 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   } else {
     if (!outside) PetscCall(VecZeroEntries(force));
     PetscCall(VecAXPY(force, -1, body->internal_force));
-    PetscCall(BodyAddHeldInertia(body, t, force, A));
-    PetscCall(BodySolveMass(body, force, position, prescribed, A));
+    PetscCall(BodySubtractHeldInertia(body, t, force, A));
+    if (prescribed) PetscCall(SolveMassPrescribed(body, force, position, A));
+    else PetscCall(BodySolveMass(body, force, A));
     PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -174,8 +174,8 @@ static PetscErrorCode ComputeInitialAcceleration(Body body)
   PetscCall(BodyAddExternalForce(body, body->time, 1, force));
   PetscCall(VecNorm(force, NORM_INFINITY, &norm));
   PetscCall(VecZeroEntries(body->state.a));
-  PetscCall(BodyAddHeldInertia(body, body->time, force, body->state.a));
-  if (norm > 0 || body->any_held) PetscCall(BodySolveMass(body, force, 0, PETSC_FALSE, body->state.a));
+  PetscCall(BodySubtractHeldInertia(body, body->time, force, body->state.a));
+  if (norm > 0 || body->any_held) PetscCall(BodySolveMass(body, force, body->state.a));
   if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, NULL, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

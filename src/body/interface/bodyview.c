@@ -221,29 +221,6 @@ PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
 }
 
 /*@
-  BodyGetDimension - dimension of the space that the body lies in
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. dim - 1, 2 or 3: displacements of a node
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyGetDM()`
-@*/
-PetscErrorCode BodyGetDimension(Body body, PetscInt *dim)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(DMGetCoordinateDim(body->dm, dim));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   BodyIsExplicit - whether the body is integrated by central differences
 
   Not Collective

@@ -143,26 +143,3 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/*@
-  BodyGetMass - the mass of the body
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. mass - [kg]
-
-  Level: intermediate
-
-.seealso: `Body`
-@*/
-PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *mass = body->total_mass;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

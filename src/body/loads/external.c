@@ -1,4 +1,4 @@
-/* What loads do to a body: forces from outside, held displacements, and the work of both. */
+/* What loads do to a body: forces from outside, and the work of these and of held displacements. */
 #include <body/layout/bodyimpl.h>
 
 /* f += scale * forces from outside at time t [N] */

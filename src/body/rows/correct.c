@@ -34,7 +34,7 @@ PetscErrorCode BodyAddVelocity(Body body, const PetscScalar impulse[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, impulse));
+  PetscCall(BodySolveMassOfRows(body, impulse, body->work[2]));
   PetscCall(VecAXPY(body->state.v, 1, body->work[2]));
   PetscCall(WriteEnd(body, body->state.v, body->traces.velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,7 +60,7 @@ PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, force));
+  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
   PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
   PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,7 +144,7 @@ PetscErrorCode BodyShiftStart(Body body, const PetscScalar shift[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, shift));
+  PetscCall(BodySolveMassOfRows(body, shift, body->work[2]));
   PetscCall(VecAXPY(body->state.u, 1, body->work[2]));
   PetscCall(VecCopy(body->state.u, body->saved.u));
   PetscCall(BodyInvalidateWindow(body));

@@ -47,7 +47,7 @@ PetscErrorCode BodyAddEndForce(Body body, const PetscScalar force[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, force));
+  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
   PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
   PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, body->work[2]));
   PetscCall(BodyWriteTraces(body, body->substeps));

@@ -4,8 +4,8 @@
 /* With more rows no column is made for each of them */
 #define MAX_PROBED_ROWS 2000
 
-/* work[2] = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank */
-PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[])
+/* change = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank */
+PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[], Vec change)
 {
   PetscScalar *row;
 
@@ -15,7 +15,7 @@ PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[])
   PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
   PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
   PetscCall(BodyZeroHeld(body, body->work[0]));
-  PetscCall(BodySolveMass(body, body->work[0], 0, PETSC_FALSE, body->work[2]));
+  PetscCall(BodySolveMass(body, body->work[0], change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,7 +50,7 @@ static PetscErrorCode ProbeRows(Body body, Mat matrix)
     const PetscInt local = j - rows->begin;
 
     if (local >= 0 && local < rows->local) unit[local] = 1;
-    PetscCall(BodySolveMassOfRows(body, unit));
+    PetscCall(BodySolveMassOfRows(body, unit, body->work[2]));
     if (local >= 0 && local < rows->local) unit[local] = 0;
     PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
     PetscCall(VecGetArrayRead(body->row_vec[0], &moved));
@@ -209,7 +209,7 @@ PetscErrorCode BodyAddImpulse(Body body, const PetscScalar force[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, force));
+  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
   PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
   PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, body->work[2]));
   PetscCall(VecCopy(body->state.v, body->saved.v));
