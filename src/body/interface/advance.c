@@ -181,31 +181,15 @@ PetscErrorCode BodyResetTraces(Body body)
    velocity. The sum of squares hands a NaN of any rank on; a maximum over ranks may lose it. */
 static PetscErrorCode CheckSubstep(Body body)
 {
-  MPI_Comm            comm = PetscObjectComm((PetscObject)body);
-  TSConvergedReason   reason;
-  SNESConvergedReason newton;
-  PetscReal           norm;
-  SNES                snes;
-  PetscInt            iterations;
+  TSConvergedReason reason;
+  PetscReal         norm;
 
   PetscFunctionBegin;
   PetscCall(TSGetConvergedReason(body->ts, &reason));
   PetscCall(VecNorm(body->state.v, NORM_2, &norm));
-  if (!body->is_explicit && !body->linear) {
-    PetscCall(TSGetSNES(body->ts, &snes));
-    PetscCall(SNESGetConvergedReason(snes, &newton));
-    PetscCall(SNESGetIterationNumber(snes, &iterations));
-    if (newton < 0) {
-      PetscCall(BodyCheckInverted(body));
-      SETERRQ(comm, PETSC_ERR_NOT_CONVERGED,
-              "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
-              " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
-              body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[newton], iterations, ((PetscObject)body)->prefix,
-              ((PetscObject)body)->prefix);
-    }
-  }
+  if (body->integrator->ops.checksubstep) PetscCall((*body->integrator->ops.checksubstep)(body));
   if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
-  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), comm, PETSC_ERR_FP,
+  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)body), PETSC_ERR_FP,
              "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
              "); is a time step too large, or a penalty too stiff for it?",
              body->hdr.name, (double)body->time, body->step);
@@ -218,7 +202,7 @@ PetscErrorCode BodyIntegrateWindow(Body body)
   PetscFunctionBegin;
   if (body->step != body->saved_step) PetscCall(BodyRestore(body));
   for (body->substep = 0; body->substep < body->substeps; body->substep++) {
-    if (body->keeps_start) {
+    if (body->substep_start.u) {
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
@@ -226,8 +210,7 @@ PetscErrorCode BodyIntegrateWindow(Body body)
     body->step++;
     body->time = body->saved_time + (body->substep + 1) * body->time_step;
     PetscCall(CheckSubstep(body));
-    if (body->is_explicit) PetscCall(BodyFinishSubstepExplicit(body));
-    else PetscCall(BodyFinishSubstepImplicit(body));
+    PetscCall((*body->integrator->ops.finishsubstep)(body));
     PetscCall(BodyWriteTraces(body, body->substep + 1));
     if (body->substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
   }

@@ -28,8 +28,8 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
 /* Kinetic energy [J], staggered for central differences */
 static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic)
 {
-  const PetscReal    quarter = body->is_explicit ? 0.25 * PetscSqr(body->time_step) : 0;
-  const PetscInt     n       = body->owned_nodes * body->dim;
+  const PetscReal    staggered = body->integrator->staggered * PetscSqr(body->time_step);
+  const PetscInt     n         = body->owned_nodes * body->dim;
   const PetscScalar *v, *a, *p, *inertia;
   PetscReal          sum = 0;
 
@@ -39,11 +39,11 @@ static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic
   for (PetscInt i = 0; i < n; i++) sum += v[i] * p[i];
   PetscCall(VecRestoreArrayRead(momentum, &p));
   PetscCall(VecRestoreArrayRead(body->state.v, &v));
-  if (quarter > 0) {
+  if (staggered > 0) {
     PetscCall(BodyMultiplyMass(body, body->state.a, body->work[1]));
     PetscCall(VecGetArrayRead(body->state.a, &a));
     PetscCall(VecGetArrayRead(body->work[1], &inertia));
-    for (PetscInt i = 0; i < n; i++) sum -= quarter * a[i] * inertia[i];
+    for (PetscInt i = 0; i < n; i++) sum -= staggered * a[i] * inertia[i];
     PetscCall(VecRestoreArrayRead(body->work[1], &inertia));
     PetscCall(VecRestoreArrayRead(body->state.a, &a));
   }
@@ -126,7 +126,7 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(ComputePotential(body, &sums[1]));
-  if (body->is_static) PetscCall(SumMassVelocity(body, sums + 8));
+  if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
   else {
     PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
     for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];

@@ -45,7 +45,6 @@ static PetscErrorCode RewriteStart(Body body)
 PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
 {
   PetscMPIInt *all;
-  Mat          layer_rows;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -57,11 +56,7 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall(PetscFree(all));
-  if (body->solver && body->is_explicit) {
-    PetscCall(BodySetUpLayerRows(body, &layer_rows));
-    PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, changed));
-    PetscCall(MatDestroy(&layer_rows));
-  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, changed));
+  PetscCall((*body->integrator->ops.setrows)(body, changed));
   if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, body->free_rows, changed));
   if (body->response) PetscCall(BodyDestroyResponse(body));
   PetscCall(BodySetConstraints(body));

@@ -9,7 +9,7 @@ PetscErrorCode BodySetUpSubsteps(Body body)
 
   PetscFunctionBegin;
   PetscCheck(body->controller_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
-  if (body->is_explicit || body->requested_step < 0) PetscCall(BodyComputeStableStep(body));
+  if (body->integrator->needs_stable_step || body->requested_step < 0) PetscCall(BodyComputeStableStep(body));
   if (body->requested_step < 0) {
     /* the tolerance keeps a quotient that is a whole number but for round-off from being counted up */
     body->substeps = (PetscInt)PetscCeilReal(body->controller_step / (0.9 * body->stable_step) * (1 - 1e-12));
@@ -27,7 +27,7 @@ PetscErrorCode BodySetUpSubsteps(Body body)
         prefix, (double)step, (double)body->controller_step, (double)(body->controller_step / step));
   }
   body->time_step = body->controller_step / body->substeps;
-  if (body->is_explicit)
+  if (body->integrator->needs_stable_step)
     PetscCheck(body->time_step <= body->stable_step * (1 + 1e-12), comm, PETSC_ERR_USER_INPUT,
                "-%sts_time_step %g s of the explicit body '%s' is larger than its stable step, %.6g s; choose a smaller one, or 'auto'",
                prefix, (double)body->time_step, body->hdr.name, (double)body->stable_step);
@@ -49,8 +49,7 @@ PetscErrorCode BodySetUpTime(Body body)
              ((PetscObject)body)->prefix);
   PetscCall(TSSetMaxTime(body->ts, 1e300));
   PetscCall(TSSetExactFinalTime(body->ts, TS_EXACTFINALTIME_STEPOVER));
-  if (body->is_explicit) PetscCall(BodySetUpExplicit(body));
-  else PetscCall(BodySetUpImplicit(body));
+  PetscCall((*body->integrator->ops.setup)(body));
   PetscCall(TSSetUp(body->ts));
   body->time = body->time_start;
   body->step = 0;

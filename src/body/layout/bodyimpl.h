@@ -4,6 +4,7 @@
 #include <petsc/private/petscimpl.h>
 #include <impakt/private/elementimpl.h>
 #include <solver/constrainedsolver.h>
+#include <body/layout/integrator.h>
 
 /* Displacement, velocity and acceleration of a body: what a restore brings back. */
 typedef struct {
@@ -52,19 +53,17 @@ struct _p_Body {
   PetscReal         total_mass, mass_shift[3]; /* [kg]; how far redistribution has moved the centre of mass [m] */
   Mat               stiffness;                 /* of the undeformed body; NULL until BodyGetStiffness() */
   /* time */
-  TS         ts;
-  PetscBool  is_explicit, is_static;
-  PetscReal  requested_step; /* 0: the controller step; < 0: automatic */
-  PetscReal  controller_step, time_step, time_start;
-  PetscInt   substeps;
-  PetscReal  alpha_m, alpha_f, gamma, beta;
-  PetscReal  stable_step;       /* 0 until BodyComputeStableStep() */
-  PetscReal *zero_displacement; /* of the rank's nodes, while that runs */
+  TS             ts;
+  BodyIntegrator integrator;     /* that goes with it */
+  PetscReal      requested_step; /* 0: the controller step; < 0: automatic */
+  PetscReal      controller_step, time_step, time_start;
+  PetscInt       substeps;
+  PetscReal      stable_step;       /* 0 until BodyComputeStableStep() */
+  PetscReal     *zero_displacement; /* of the rank's nodes, while that runs */
   /* state */
-  BodyState    state, saved, substep_start; /* of the latter, u and v only, and NULL where nobody reads it */
+  BodyState    state, saved, substep_start; /* of the latter, u and v only, and NULL unless loads or the integrator read it */
   PetscReal    time, saved_time;
   PetscInt     step, saved_step;
-  PetscBool    keeps_start;    /* substep_start is there */
   Vec          internal_force; /* at state.u */
   Vec          previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
   PetscBool    swept;          /* previous_u holds such a state */
@@ -72,33 +71,25 @@ struct _p_Body {
   PetscScalar *kept_traces;
   Vec          work[3];
   /* interface rows */
-  Mat               interface;
-  Mat               free_rows;   /* without held dofs; the same matrix where none is held */
-  BodyGram          gram;        /* of prescribed rows that are not orthonormal */
-  const PetscReal  *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
-  BodyRows          rows;
-  BodyCondition    *conditions;             /* local rows */
-  PetscBool        *held;                   /* those that are prescribed, or Robin rows */
-  PetscReal        *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
-  PetscReal        *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
-  PetscInt          n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
-  PetscInt          n_robin;
-  PetscBool         prescribed_mass; /* prescribed nodes carry mass */
-  BodyTractionType  traction;
-  BodyTraces        traces;
-  PetscInt          substep; /* 0 to substeps - 1 */
-  Vec               row_vec[3];
-  Mat               shifted; /* implicit: stiffness + shift mass */
-  PetscReal         shift;
-  PetscReal         force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
-  ConstrainedSolver solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
-  IS                layer_is;
-  Vec               layer_rhs, layer_solution;
-  PetscReal         layer_reach; /* norm of the reference positions, on which round-off of its balance hangs [m] */
-  PetscBool         layer_slow;  /* its last balance took many rounds: the body has turned or changed shape since its matrix was factored */
-  VecScatter        layer_scatter;
-  LayerElements     layer_elements; /* those that touch the massless layer; NULL: no layer on any rank */
-  struct _BodyResponse   *response;
+  Mat                   interface;
+  Mat                   free_rows;   /* without held dofs; the same matrix where none is held */
+  BodyGram              gram;        /* of prescribed rows that are not orthonormal */
+  const PetscReal      *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
+  BodyRows              rows;
+  BodyCondition        *conditions;             /* local rows */
+  PetscBool            *held;                   /* those that are prescribed, or Robin rows */
+  PetscReal            *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
+  PetscReal            *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
+  PetscInt              n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
+  PetscInt              n_robin;
+  PetscBool             prescribed_mass; /* prescribed nodes carry mass */
+  BodyTractionType      traction;
+  BodyTraces            traces;
+  PetscInt              substep; /* 0 to substeps - 1 */
+  Vec                   row_vec[3];
+  ConstrainedSolver     solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
+  LayerElements         layer_elements; /* those that touch the massless layer; NULL: nobody balances it */
+  struct _BodyResponse *response;
   struct _BodyCompliance *compliance;
   struct _BodyProbe      *probe; /* room for the state while unit inputs are tried; NULL until then */
   /* loads */
@@ -141,14 +132,10 @@ PETSC_INTERN PetscErrorCode BodyRedistributeOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
-PETSC_INTERN PetscErrorCode BodySetUpImplicit(Body);
-PETSC_INTERN PetscErrorCode BodySetUpExplicit(Body);
 PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
-PETSC_INTERN PetscErrorCode BodyFinishSubstepImplicit(Body);
-PETSC_INTERN PetscErrorCode BodyFinishSubstepExplicit(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
-PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body);
+PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
 PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
 PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
@@ -172,7 +159,6 @@ PETSC_INTERN PetscErrorCode BodyValidateResponse(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyDestroyResponse(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
-PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
 PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);

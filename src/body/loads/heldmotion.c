@@ -20,7 +20,7 @@ PetscErrorCode BodyPrescribeHeld(Body body, PetscReal t, Vec u, Vec v, Vec a)
 PetscErrorCode BodySubtractHeldInertia(Body body, PetscReal t, Vec f, Vec work)
 {
   PetscFunctionBegin;
-  if (!body->any_held || body->mass_diagonal || body->is_static) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->any_held || body->mass_diagonal || !body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecZeroEntries(body->work[2]));
   PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, body->work[2]));
   PetscCall(MatMult(body->mass_matrix, body->work[2], work));

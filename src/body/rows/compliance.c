@@ -14,7 +14,6 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&c->work[k]));
   PetscCall(PetscFree6(c->place, c->roles, c->mine, c->base_displacement, c->base_force, c->all_roles));
   PetscCall(PetscFree3(c->rows, c->prescribed, c->pivots));
   PetscCall(PetscFree3(c->levels, c->ramp, c->factor));
@@ -36,8 +35,6 @@ PetscErrorCode BodyCreateCompliance(Body body)
                          body->substeps * rows->local, &c->base_displacement, body->substeps * rows->local, &c->base_force, rows->global,
                          &c->all_roles));
   for (PetscInt i = 0; i < rows->global; i++) c->place[i] = -1;
-  if (!body->is_explicit)
-    for (PetscInt k = 0; k < 4; k++) PetscCall(VecDuplicate(body->state.u, &c->work[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -230,7 +227,7 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *exact = (PetscBool)(body->linear && (body->is_explicit || body->is_static || (body->alpha_f == 1 && body->alpha_m == 1)));
+  *exact = (PetscBool)(body->linear && body->integrator->affine);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

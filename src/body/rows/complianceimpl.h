@@ -13,7 +13,6 @@ struct _BodyCompliance {
   PetscScalar *ramp;   /* at the end of the controller step, for a force that rises linearly over it [m/N] */
   PetscBool    ramp_valid;
   PetscScalar *mine; /* work space: of the rows of this rank, for each substep */
-  Vec          work[4];
   /* an integration from which changes are counted: this rank's rows, for each substep */
   PetscScalar *base_displacement, *base_force;
   PetscBool    base_gathered;

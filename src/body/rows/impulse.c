@@ -87,11 +87,11 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->inverse_mass && !body->is_static) {
+  if (body->inverse_mass && body->integrator->has_inertia) {
     PetscCall(MultiplyRows(body, body->inverse_mass, matrix));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCheck(body->is_static || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
+  PetscCheck(!body->integrator->has_inertia || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
              "Body '%s': a mass that is not lumped couples all contact nodes, of which there are %" PetscInt_FMT
              ", more than %d; set -%smass_type lumped, or choose -contact_type schwarz",
              body->hdr.name, rows->global, MAX_PROBED_ROWS, ((PetscObject)body)->prefix);
@@ -99,7 +99,7 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
   PetscCall(MatSetSizes(*matrix, rows->local, rows->local, rows->global, rows->global));
   PetscCall(MatSetType(*matrix, MATAIJ));
   PetscCall(MatSetUp(*matrix));
-  if (!body->is_static) PetscCall(ProbeRows(body, *matrix));
+  if (body->integrator->has_inertia) PetscCall(ProbeRows(body, *matrix));
   PetscCall(MatAssemblyBegin(*matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*matrix, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);

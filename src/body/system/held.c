@@ -64,7 +64,7 @@ PetscErrorCode BodyCheckHeld(Body body)
 
   PetscFunctionBegin;
   PetscCall(BodyAnyRank(body, &layer));
-  if (body->is_static) {
+  if (!body->integrator->has_inertia) {
     PetscCall(IsLoose(body, body->n_held, body->held_dofs, PETSC_FALSE, &loose));
     PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT,
                "Body '%s' is static, but nothing holds it, or not in all directions: it can move or turn as a whole; prescribe more "

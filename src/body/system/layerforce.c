@@ -83,7 +83,7 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
 }
 
 /* From a vector of the body to the nodes of the elements, and from there to the layer */
-static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[])
+static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[], Vec of_layer)
 {
   const PetscInt dim = body->dim;
   PetscInt       rstart, n = 0, *dofs, *from, *to;
@@ -111,7 +111,7 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   }
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, from, PETSC_COPY_VALUES, &is));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, to, PETSC_COPY_VALUES, &to_is));
-  PetscCall(VecScatterCreate(layer->f, is, body->layer_rhs, to_is, &layer->add));
+  PetscCall(VecScatterCreate(layer->f, is, of_layer, to_is, &layer->add));
   PetscCall(ISDestroy(&is));
   PetscCall(ISDestroy(&to_is));
   PetscCall(PetscFree2(from, to));
@@ -142,8 +142,8 @@ static PetscErrorCode FindNear(Body body, LayerElements layer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Needs the vectors of the layer */
-PetscErrorCode BodySetUpLayerElements(Body body)
+/* of_layer: any vector of the layer, one number for each of its dofs */
+PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
 {
   const PetscInt dim = body->dim;
   PetscInt       count, n_nodes, *nodes, *number;
@@ -162,7 +162,7 @@ PetscErrorCode BodySetUpLayerElements(Body body)
   }
   PetscCall(ElementCreateLike(body->element, body->material, &layer->element));
   PetscCall(ElementSetUp(layer->element, count, layer->connectivity, layer->coordinates));
-  PetscCall(CreateScatters(body, layer, n_nodes, nodes));
+  PetscCall(CreateScatters(body, layer, n_nodes, nodes, of_layer));
   PetscCall(FindNear(body, layer));
   PetscCall(PetscFree(nodes));
   PetscCall(PetscFree(number));

@@ -197,7 +197,7 @@ PetscErrorCode BodySolveMass(Body body, Vec f, Vec a)
   PetscScalar *array;
 
   PetscFunctionBegin;
-  if (body->is_static) PetscCall(VecZeroEntries(a));
+  if (!body->integrator->has_inertia) PetscCall(VecZeroEntries(a));
   else if (body->inverse_mass) PetscCall(VecPointwiseMult(a, body->inverse_mass, f));
   else {
     if (!body->mass_solver) PetscCall(BodySetUpMassSolver(body));
