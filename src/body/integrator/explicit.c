@@ -100,6 +100,20 @@ static PetscErrorCode SetRows(Body body, const PetscBool changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Save(Body body)
+{
+  PetscFunctionBegin;
+  if (GetLayer(body)) PetscCall(LayerBalanceSave(GetLayer(body), body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Restore(Body body)
+{
+  PetscFunctionBegin;
+  if (GetLayer(body)) PetscCall(LayerBalanceRestore(GetLayer(body), body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Velocity of massless, held and prescribed nodes */
 static PetscErrorCode FinishSubstep(Body body)
 {
@@ -210,6 +224,8 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
   integrator->ops.setup          = SetUp;
   integrator->ops.setrows        = SetRows;
   integrator->ops.finishsubstep  = FinishSubstep;
+  integrator->ops.save           = Save;
+  integrator->ops.restore        = Restore;
   integrator->ops.destroy        = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,6 +8,8 @@ PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceSetRows(LayerBalance, Body, const PetscBool[]);
 PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, PetscReal, PetscBool, Vec, Vec);
+PETSC_INTERN PetscErrorCode LayerBalanceSave(LayerBalance, Body);
+PETSC_INTERN PetscErrorCode LayerBalanceRestore(LayerBalance, Body);
 PETSC_INTERN PetscErrorCode LayerBalanceApplyUnit(LayerBalance, Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscBool      BodyHasOutsideForce(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyComputeOutsideForce(Body, PetscReal, PetscReal, PetscBool, Vec, Vec);

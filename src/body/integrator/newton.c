@@ -6,9 +6,9 @@
 #include <sys/petsccompat.h>
 
 /* Newton's method for a nonlinear body has converged where the residual is below this part of the forces that it is the balance of, or
-   below its round-off; option -<body>_snes_rtol. Energies and momenta of a run of 1e4 steps are then good to 1e-8. */
+   below its round-off; option -<body>_snes_rtol. What is left over changes momentum in each step: it should not show. */
 #define NEWTON_TOLERANCE 1e-12
-/* At most so many iterations in a substep; option -<body>_snes_max_it. From the last velocity on, 3 to 5 are usual. */
+/* At most so many iterations in a substep; option -<body>_snes_max_it. The falling discs of options/ten-balls.opts take 1 to 4. */
 #define NEWTON_ITERATIONS 50
 /* Where the line search finds no smaller residual, Newton's method has converged if its step is below this part of the displacement: that
    is a few units in the last place; option -<body>_snes_stol */
@@ -169,6 +169,26 @@ static PetscErrorCode SetNearNullSpace(Body body, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A controller step that is made again begins with the same displacement, and has to begin with the same Jacobian too: lagging it, or its
+   factors, from one substep to the next is refused */
+static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
+{
+  static const char *const options[] = {"-snes_lag_jacobian_persists", "-snes_lag_preconditioner_persists"};
+  const char              *prefix    = ((PetscObject)body)->prefix;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 2; i++) {
+    PetscBool persists = PETSC_FALSE;
+
+    PetscCall(PetscOptionsGetBool(NULL, prefix, options[i], &persists, NULL));
+    PetscCheck(!persists, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+               "-%s%s: steps are made several times, and each time must begin with the Jacobian of its own start; leave it out, since "
+               "-%ssnes_lag_jacobian alone lags within a step",
+               prefix, options[i] + 1, prefix);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Newton's method for nonlinear bodies; one iteration of it for linear ones */
 static PetscErrorCode SetUpNewton(Body body, SNES snes)
 {
@@ -179,6 +199,7 @@ static PetscErrorCode SetUpNewton(Body body, SNES snes)
   if (!body->linear) {
     PetscCall(SNESSetTolerances(snes, NEWTON_UNDERFLOW, NEWTON_TOLERANCE, NEWTON_STEP, NEWTON_ITERATIONS, PETSC_CURRENT));
     PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
+    PetscCall(RefuseLagBetweenSubsteps(body));
     PetscCall(SNESSetFromOptions(snes));
     PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
     PetscFunctionReturn(PETSC_SUCCESS);

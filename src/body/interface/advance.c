@@ -1,4 +1,4 @@
-/* Save, restore, and integrate over one controller step. */
+/* Save, keep, and integrate over one controller step. */
 #include <body/layout/bodyimpl.h>
 
 /*@
@@ -43,37 +43,9 @@ PetscErrorCode BodySave(Body body)
   body->saved_step = body->step;
   /* the TS adds its substeps up, with another round-off in the time that loads see than where the window is done again */
   PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
   body->swept = PETSC_FALSE;
   PetscCall(BodyInvalidateWindow(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyRestore - goes back to the state of the last `BodySave()`, bit for bit
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-.seealso: `Body`, `BodySave()`, `BodyIntegrate()`
-@*/
-PetscErrorCode BodyRestore(Body body)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(VecCopy(body->saved.u, body->state.u));
-  PetscCall(VecCopy(body->saved.v, body->state.v));
-  PetscCall(VecCopy(body->saved.a, body->state.a));
-  body->time = body->saved_time;
-  body->step = body->saved_step;
-  if (body->loads) {
-    PetscCall(VecCopy(body->saved_applied, body->applied));
-    body->external_work = body->saved_work;
-  }
-  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

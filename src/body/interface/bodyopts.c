@@ -148,8 +148,8 @@ static PetscErrorCode ComputeInitialAcceleration(Body body)
   PetscReal norm;
 
   PetscFunctionBegin;
-  PetscCall(VecCopy(body->internal_force, force));
-  PetscCall(VecScale(force, -1));
+  PetscCall(VecZeroEntries(force));
+  PetscCall(VecAXPY(force, -1, body->internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
   PetscCall(BodyAddExternalForce(body, body->time, 1, force));
   PetscCall(VecNorm(force, NORM_INFINITY, &norm));
   PetscCall(VecZeroEntries(body->state.a));

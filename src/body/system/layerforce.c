@@ -215,8 +215,7 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(BODY_LayerForce, body, 0, 0, 0));
-  PetscCall(VecScatterBegin(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(BodyGatherLayer(body, u, layer->u));
   PetscCall(VecGetArrayRead(layer->u, &u_array));
   PetscCall(VecGetArrayWrite(layer->f, &f_array));
   PetscCall(PetscArrayzero(f_array, layer->n_dofs));
@@ -230,8 +229,25 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K = tangent stiffness of the layer at displacement u of the body; NULL: undeformed [N/m] */
-PetscErrorCode BodyAssembleLayer(Body body, Vec u, Mat K)
+/* A vector for BodyGatherLayer(), of this rank alone */
+PetscErrorCode BodyCreateLayerVec(Body body, Vec *near)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(body->layer_elements->u, near));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* near = what a vector of the body is on the nodes of the elements that touch the layer */
+PetscErrorCode BodyGatherLayer(Body body, Vec u, Vec near)
+{
+  PetscFunctionBegin;
+  PetscCall(VecScatterBegin(body->layer_elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(body->layer_elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m] */
+PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
 {
   LayerElements      layer = body->layer_elements;
   const PetscInt     nodes = body->element->nodes, n = nodes * body->dim;
@@ -240,18 +256,14 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec u, Mat K)
   const PetscScalar *at;
 
   PetscFunctionBegin;
-  if (u) {
-    PetscCall(VecScatterBegin(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
-  } else PetscCall(VecZeroEntries(layer->u));
   PetscCall(MatZeroEntries(K));
-  PetscCall(VecGetArrayRead(layer->u, &at));
+  PetscCall(VecGetArrayRead(near, &at));
   for (PetscInt e = 0; e < layer->element->count; e++) {
     for (PetscInt i = 0; i < n; i++) dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->dim] * body->dim + i % body->dim];
     PetscCall((*layer->element->ops.stiffness)(layer->element, e, at, element));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES)); /* leaves negative numbers out */
   }
-  PetscCall(VecRestoreArrayRead(layer->u, &at));
+  PetscCall(VecRestoreArrayRead(near, &at));
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,6 +278,7 @@ PetscErrorCode BodyCreateLayerMatrix(Body body, Mat *K)
   PetscCall(MatSetType(*K, MATAIJ));
   PetscCall(MatSetUp(*K));
   PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(BodyAssembleLayer(body, NULL, *K));
+  PetscCall(VecZeroEntries(body->layer_elements->u));
+  PetscCall(BodyAssembleLayer(body, body->layer_elements->u, *K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
