@@ -80,7 +80,7 @@ static inline void row_body_create(RowBody *b, PetscInt shape, Method method, Pe
 /* Under way: one controller step after a start without any pattern */
 static inline void row_body_start(RowBody *b)
 {
-  if (!b->body->is_static) ok(BodySetInitialState(b->body, Moving, NULL));
+  if (b->body->integrator->has_inertia) ok(BodySetInitialState(b->body, Moving, NULL));
   ok(BodyIntegrate(b->body));
   ok(BodySave(b->body));
 }

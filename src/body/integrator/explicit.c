@@ -1,96 +1,13 @@
 /* A body under central differences. */
-#include <body/layout/bodyimpl.h>
+#include "explicitimpl.h"
 
-/* Rounds of chord Newton's method that the layer of a nonlinear body may take, and when it is in balance: the last change, relative to
-   the largest one, or to the displacement and the reference positions of the body, which round-off hangs on */
-#define MAX_BALANCE_ROUNDS 100
-#define SLOW_ROUNDS        20 /* after so many the layer's matrix is made anew before the next balance */
-#define BALANCE_TOLERANCE  1e-12
-#define BALANCE_ROUND_OFF  (4 * PETSC_MACHINE_EPSILON)
+typedef struct {
+  LayerBalance layer; /* NULL: no node is massless, on any rank */
+} BodyExplicit;
 
-/* Whether anything but elements pulls at the body: loads, or contact unless that is left out */
-static PetscBool HasOutsideForce(Body body, PetscBool contact)
+static LayerBalance GetLayer(Body body)
 {
-  return (PetscBool)(body->loads || (contact && body->n_forced));
-}
-
-static PetscErrorCode ComputeOutsideForce(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
-{
-  PetscFunctionBegin;
-  PetscCall(VecZeroEntries(force));
-  PetscCall(BodyAddExternalForce(body, time, 1, force));
-  if (contact) PetscCall(BodyAddContactForce(body, position, 1, u, force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* With contact: under the constraints of the rows; else as if there were no rows */
-static PetscErrorCode SolveLayer(Body body, PetscBool contact)
-{
-  KSP ksp;
-
-  PetscFunctionBegin;
-  if (contact) PetscCall(ConstrainedSolverSolve(body->solver, body->layer_rhs, body->layer_solution));
-  else {
-    PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
-    PetscCall(KSPSolve(ksp, body->layer_rhs, body->layer_solution));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RefactorLayer(Body body, Vec u)
-{
-  KSP ksp;
-  Mat K;
-
-  PetscFunctionBegin;
-  PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
-  PetscCall(KSPGetOperators(ksp, &K, NULL));
-  PetscCall(BodyAssembleLayer(body, u, K));
-  PetscCall(ConstrainedSolverRefactor(body->solver));
-  body->layer_slow = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Displacement of the massless layer by static balance with the rest as it is: K_LL du = (forces - internal force)_L, with prescribed
-   rows held and Robin rows on their springs. One round is exact for linear materials; others repeat it with the factors of the undeformed
-   layer, or, since a body that turns makes these worse (23 degrees are too many), of one as it was when they became slow. `force` becomes
-   that of ComputeOutsideForce(), where there is any. */
-static PetscErrorCode BalanceLayer(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
-{
-  const PetscBool outside = HasOutsideForce(body, contact), linear = (PetscBool)(body->linear || body->linearized),
-                  robin = (PetscBool)(contact && body->n_robin);
-  PetscReal       first = 0, round_off = 0;
-
-  PetscFunctionBegin;
-  if (!linear) {
-    if (body->layer_slow) PetscCall(RefactorLayer(body, u));
-    PetscCall(VecNorm(u, NORM_2, &round_off));
-    round_off = BALANCE_ROUND_OFF * (round_off + body->layer_reach);
-  }
-  if (outside) PetscCall(ComputeOutsideForce(body, time, position, contact, u, force));
-  for (PetscInt round = 0; round < (linear ? 1 : MAX_BALANCE_ROUNDS); round++) {
-    PetscReal change;
-
-    if (round && robin) PetscCall(ComputeOutsideForce(body, time, position, contact, u, force));
-    if (outside) {
-      PetscCall(VecScatterBegin(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
-      PetscCall(VecScatterEnd(body->layer_scatter, force, body->layer_rhs, INSERT_VALUES, SCATTER_FORWARD));
-    } else PetscCall(VecZeroEntries(body->layer_rhs));
-    PetscCall(BodySubtractLayerForce(body, u, body->layer_rhs));
-    PetscCall(SolveLayer(body, contact));
-    PetscCall(VecScatterBegin(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecScatterEnd(body->layer_scatter, body->layer_solution, u, ADD_VALUES, SCATTER_REVERSE));
-    if (linear) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(VecNorm(body->layer_solution, NORM_2, &change));
-    first = PetscMax(first, change);
-    /* what is not a number is told when the substep is over */
-    body->layer_slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
-    if (change <= BALANCE_TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
-          "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or "
-          "-%smass_redistribute false",
-          body->hdr.name, MAX_BALANCE_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+  return ((BodyExplicit *)body->integrator->data)->layer;
 }
 
 /* a = (force - internal force) / m in one pass; without a force, where it is NULL */
@@ -117,22 +34,42 @@ static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* a = M^{-1} f with a mass matrix that is not diagonal, where a is prescribed on some rows and on held dofs, whose part of f is their
+   acceleration already: what is prescribed is taken to the right-hand side. f is overwritten. */
+static PetscErrorCode SolveMassPrescribed(Body body, Vec f, PetscReal position, Vec a)
+{
+  Vec prescribed = body->work[1];
+
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(prescribed));
+  PetscCall(BodyCopyHeld(body, f, prescribed));
+  PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, prescribed));
+  PetscCall(BodyZeroHeld(body, prescribed));
+  PetscCall(MatMult(body->mass_matrix, prescribed, a));
+  PetscCall(VecAXPY(f, -1, a));
+  PetscCall(BodySolveMass(body, f, a));
+  PetscCall(VecAXPY(a, 1, prescribed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* `TSCentralDifferenceFn`: held and contact conditions on U, then the acceleration it brings about */
 static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
 {
-  Body            body       = (Body)ctx;
-  const PetscReal position   = (PetscReal)(body->substep + 1) / body->substeps;
-  const PetscBool prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass), outside = HasOutsideForce(body, PETSC_TRUE);
-  Vec             force = body->work[0];
+  Body               body       = (Body)ctx;
+  const LayerBalance layer      = GetLayer(body);
+  const PetscReal    position   = (PetscReal)(body->substep + 1) / body->substeps;
+  const PetscBool    prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass);
+  const PetscBool    outside    = BodyHasOutsideForce(body, PETSC_TRUE);
+  Vec                force      = body->work[0];
 
   PetscFunctionBegin;
   (void)ts;
   (void)V;
   PetscCall(BodyPrescribeHeld(body, t, U, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
-  if (body->layer_scatter) PetscCall(BalanceLayer(body, t, position, PETSC_TRUE, U, force));
+  if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, PETSC_TRUE, U, force));
   /* Robin rows have moved with the layer */
-  if (outside && (!body->layer_scatter || body->n_robin)) PetscCall(ComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
+  if (outside && (!layer || body->n_robin)) PetscCall(BodyComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
   if (body->inverse_mass) {
     PetscCall(DivideByMass(body, outside ? force : NULL, A));
@@ -141,87 +78,47 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   } else {
     if (!outside) PetscCall(VecZeroEntries(force));
     PetscCall(VecAXPY(force, -1, body->internal_force));
-    PetscCall(BodyAddHeldInertia(body, t, force, A));
-    PetscCall(BodySolveMass(body, force, position, prescribed, A));
+    PetscCall(BodySubtractHeldInertia(body, t, force, A));
+    if (prescribed) PetscCall(SolveMassPrescribed(body, force, position, A));
+    else PetscCall(BodySolveMass(body, force, A));
     PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of the interface as the layer sees them */
-PetscErrorCode BodySetUpLayerRows(Body body, Mat *B)
+static PetscErrorCode SetFromOptions(Body body)
 {
-  IS       rows;
-  PetscInt row_begin;
-
   PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(body->free_rows, &row_begin, NULL));
-  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
-  PetscCall(MatCreateSubMatrix(body->free_rows, rows, body->layer_is, MAT_INITIAL_MATRIX, B));
-  PetscCall(ISDestroy(&rows));
+  PetscCall(TSSetFromOptions(body->ts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The layer's balance, its matrix factored once */
-static PetscErrorCode SetUpLayerBalance(Body body)
+static PetscErrorCode SetRows(Body body, const PetscMPIInt changed[])
 {
-  Mat      K, B;
-  PetscInt rstart, *global;
-  char     prefix[128];
-
   PetscFunctionBegin;
-  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(body->n_layer_dofs, &global));
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) global[i] = rstart + body->layer_dofs[i];
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), body->n_layer_dofs, global, PETSC_OWN_POINTER, &body->layer_is));
-  PetscCall(VecCreate(PetscObjectComm((PetscObject)body), &body->layer_rhs));
-  PetscCall(VecSetSizes(body->layer_rhs, body->n_layer_dofs, PETSC_DETERMINE));
-  PetscCall(VecSetType(body->layer_rhs, VECSTANDARD));
-  PetscCall(VecDuplicate(body->layer_rhs, &body->layer_solution));
-  PetscCall(BodySetUpLayerElements(body));
-  PetscCall(BodyCreateLayerMatrix(body, &K));
-  PetscCall(BodySetUpLayerRows(body, &B));
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, BodyGetSharedCompliance(body), &body->solver));
-  PetscCall(VecNorm(body->positions, NORM_2, &body->layer_reach));
-  PetscCall(VecScatterCreate(body->state.u, body->layer_is, body->layer_rhs, NULL, &body->layer_scatter));
-  PetscCall(MatDestroy(&K));
-  PetscCall(MatDestroy(&B));
+  if (GetLayer(body)) PetscCall(LayerBalanceSetRows(GetLayer(body), body, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BodySetUpExplicit(Body body)
+static PetscErrorCode Save(Body body)
 {
-  PetscInt layer = body->n_layer_dofs;
-
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &layer, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  if (layer) PetscCall(SetUpLayerBalance(body));
-  if (body->mass_matrix) PetscCall(BodySetUpMassSolver(body));
-  PetscCall(TSCentralDifferenceSetAcceleration(body->ts, ComputeAcceleration, body));
-  PetscCall(TSCentralDifferenceSetAccelerationVec(body->ts, body->state.a));
+  if (GetLayer(body)) PetscCall(LayerBalanceSave(GetLayer(body), body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The end of the one substep of a linear body, with other inputs than it was made with: see repeat.c */
-PetscErrorCode BodyRepeatExplicit(Body body)
+static PetscErrorCode Restore(Body body)
 {
-  const PetscReal half = 0.5 * body->time_step;
-
   PetscFunctionBegin;
-  body->substep = 0;
-  PetscCall(VecAXPY(body->state.v, -half, body->state.a));
-  PetscCall(ComputeAcceleration(body->ts, body->time, body->state.u, body->state.v, body->state.a, body));
-  PetscCall(VecAXPY(body->state.v, half, body->state.a));
-  PetscCall(BodyFinishSubstepExplicit(body));
+  if (GetLayer(body)) PetscCall(LayerBalanceRestore(GetLayer(body), body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Velocity of prescribed and massless nodes */
-PetscErrorCode BodyFinishSubstepExplicit(Body body)
+/* Velocity of massless, held and prescribed nodes */
+static PetscErrorCode FinishSubstep(Body body)
 {
   PetscFunctionBegin;
-  if (body->layer_scatter) {
+  if (GetLayer(body)) {
     const PetscScalar *u0, *u1;
     PetscScalar       *v;
 
@@ -240,68 +137,52 @@ PetscErrorCode BodyFinishSubstepExplicit(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyHasFreeRows - whether `BodyComputeFreeRows()` can tell where the rows get
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. has - whether it is explicit, with massless contact nodes, and makes one substep to a controller step
-
-  Level: developer
-
-.seealso: `Body`, `BodyComputeFreeRows()`
-@*/
-PetscErrorCode BodyHasFreeRows(Body body, PetscBool *has)
+/* da = M^{-1} B^T df, dv = dt / 2 da: forces at the end of the substep, where contact nodes have mass, do nothing else */
+static PetscErrorCode RepeatForces(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
+  Vec change = body->work[2];
+
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
-  *has = (PetscBool)(body->is_explicit && body->layer_scatter && body->substeps == 1);
+  (void)displacement;
+  PetscCall(BodySolveMassOfRows(body, force, change));
+  PetscCall(VecAXPY(body->state.a, 1, change));
+  PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyComputeFreeRows - where the rows get at the end of the controller step if no contact acts on any of them
+/* A linear body: the displacement of nodes with mass is known before the end of the substep; the massless layer and prescribed rows are put
+   in place anew, and the acceleration that follows replaces the one before in the velocity */
+static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
+{
+  const PetscReal half = 0.5 * body->time_step;
 
-  Collective
+  PetscFunctionBegin;
+  if (!body->n_prescribed && !body->n_robin && !GetLayer(body)) {
+    PetscCall(RepeatForces(body, force, displacement));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  body->substep = 0;
+  PetscCall(VecAXPY(body->state.v, -half, body->state.a));
+  PetscCall(ComputeAcceleration(body->ts, body->time, body->state.u, body->state.v, body->state.a, body));
+  PetscCall(VecAXPY(body->state.v, half, body->state.a));
+  PetscCall(FinishSubstep(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-  Input Parameter:
-. body - the `Body`, one with `BodyHasFreeRows()`
-
-  Output Parameter:
-. displacement - of this rank's rows [m]
-
-  Level: developer
-
-  Notes:
-  From the saved state, which remains as it is, as do the present one and all traces. The same as the displacement traces of
-  `BodyIntegrate()` under `BODY_FREE` conditions, for the price of the elements that touch the massless layer: central differences
-  know the displacement of all nodes with mass before the step's internal force. Rows must be of contact nodes alone.
-
-.seealso: `Body`, `BodyHasFreeRows()`, `BodyIntegrate()`
-@*/
-PetscErrorCode BodyComputeFreeRows(Body body, PetscScalar displacement[])
+/* Central differences know the displacement of all nodes with mass before the forces of the substep's end, so that the layer's balance
+   alone, without contact, tells where contact nodes get in one substep. Only the displacements that it depends on are computed. */
+static PetscErrorCode ComputeFreeRows(Body body, PetscScalar displacement[])
 {
   const PetscReal    end = body->saved_time + body->time_step, dt = body->time_step;
   const PetscScalar *u, *v, *a, *rows;
   PetscScalar       *moved;
   const PetscInt    *near;
   PetscInt           n;
-  Vec                way = body->work[1]; /* elsewhere it is of no concern */
-  PetscBool          has;
+  Vec                way = body->work[1];
 
   PetscFunctionBegin;
-  PetscCall(BodyHasFreeRows(body, &has));
-  PetscCheck(has, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
-             "Body '%s' is not explicit with massless contact nodes and one substep to a controller step: only integrating tells where its "
-             "rows get; see BodyHasFreeRows()",
-             body->hdr.name);
   BodyGetNearLayer(body, &n, &near);
-  if (!body->linear) PetscCall(VecCopy(body->saved.u, way)); /* the balance takes the size of all of it */
+  if (!body->linear) PetscCall(VecCopy(body->saved.u, way)); /* the tolerance of its balance depends on the norm of all of it */
   PetscCall(VecGetArrayRead(body->saved.u, &u));
   PetscCall(VecGetArrayRead(body->saved.v, &v));
   PetscCall(VecGetArrayRead(body->saved.a, &a));
@@ -316,10 +197,70 @@ PetscErrorCode BodyComputeFreeRows(Body body, PetscScalar displacement[])
   PetscCall(VecRestoreArrayRead(body->saved.v, &v));
   PetscCall(VecRestoreArrayRead(body->saved.u, &u));
   PetscCall(BodyPrescribeHeld(body, end, way, NULL, NULL));
-  PetscCall(BalanceLayer(body, end, 1, PETSC_FALSE, way, body->work[0]));
+  PetscCall(LayerBalanceSolve(GetLayer(body), body, end, 1, PETSC_FALSE, way, body->work[0]));
   PetscCall(MatMult(body->interface, way, body->row_vec[0]));
   PetscCall(VecGetArrayRead(body->row_vec[0], &rows));
   PetscCall(PetscArraycpy(displacement, rows, body->rows.local));
   PetscCall(VecRestoreArrayRead(body->row_vec[0], &rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In one substep the rows answer by the massless layer alone, or, where contact nodes have mass, not at all */
+static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
+{
+  PetscFunctionBegin;
+  if (GetLayer(body)) PetscCall(LayerBalanceApplyUnit(GetLayer(body), body, row, column));
+  else PetscCall(PetscArrayzero(column, body->rows.local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp(Body body)
+{
+  BodyIntegrator integrator = body->integrator;
+  PetscBool      layer      = (PetscBool)(body->n_layer_dofs > 0);
+
+  PetscFunctionBegin;
+  PetscCall(BodyAnyRank(body, &layer));
+  if (layer) PetscCall(LayerBalanceCreate(body, &((BodyExplicit *)integrator->data)->layer));
+  if (body->mass_matrix) PetscCall(BodySetUpMassSolver(body));
+  PetscCall(TSCentralDifferenceSetAcceleration(body->ts, ComputeAcceleration, body));
+  PetscCall(TSCentralDifferenceSetAccelerationVec(body->ts, body->state.a));
+  integrator->reads_start     = layer;
+  integrator->feels_end_force = (PetscBool)(layer || body->substeps > 1);
+  if (layer && body->substeps == 1) integrator->ops.freerows = ComputeFreeRows;
+  if (body->substeps == 1 && body->linear) integrator->ops.repeat = Repeat;
+  else if (body->substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
+  integrator->repeats_prescribed = body->linear;
+  if (body->substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn; /* with more, only making them tells */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
+  PetscCall(PetscFree(body->integrator->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
+{
+  BodyExplicit *explicit;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&explicit));
+  integrator->data               = explicit;
+  integrator->has_inertia        = PETSC_TRUE;
+  integrator->needs_stable_step  = PETSC_TRUE;
+  integrator->divides_by_mass    = PETSC_TRUE;
+  integrator->staggered          = 0.25;
+  integrator->affine             = PETSC_TRUE;
+  integrator->ops.setfromoptions = SetFromOptions;
+  integrator->ops.setup          = SetUp;
+  integrator->ops.setrows        = SetRows;
+  integrator->ops.finishsubstep  = FinishSubstep;
+  integrator->ops.save           = Save;
+  integrator->ops.restore        = Restore;
+  integrator->ops.destroy        = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

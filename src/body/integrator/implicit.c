@@ -1,90 +1,28 @@
-/* A body under TSALPHA2. */
-#include <body/layout/bodyimpl.h>
-#include <sys/petsccompat.h>
+/* A body under TSALPHA2: Newmark's method and its relatives. */
+#include "implicitimpl.h"
 
-/* What a nonlinear residual is measured against: its terms, and the round-off of the largest numbers in it */
-static PetscErrorCode NoteScale(Body body, Vec U, Vec inertia)
-{
-  PetscReal force, stiffness, mass = 0, position = 0;
-
-  PetscFunctionBegin;
-  PetscCall(VecNorm(body->internal_force, NORM_2, &force));
-  /* the internal force is a sum of displacements times stiffnesses, which may cancel: a body that moves as a whole has none */
-  PetscCall(MatGetDiagonal(body->shifted, body->work[2]));
-  PetscCall(VecPointwiseMult(body->work[2], body->work[2], U));
-  PetscCall(VecNorm(body->work[2], NORM_2, &stiffness));
-  if (!body->is_static) {
-    PetscCall(VecNorm(inertia, NORM_2, &mass));
-    /* the acceleration is a difference of displacements over dt^2 */
-    PetscCall(VecPointwiseMult(body->work[2], body->mass_row_sum, U));
-    PetscCall(VecNorm(body->work[2], NORM_2, &position));
-    position *= body->shift;
-  }
-  body->force_scale = force + mass;
-  body->force_floor = 8 * PETSC_MACHINE_EPSILON * (position + force + stiffness);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* The default: Newmark's trapezoidal rule, which conserves energy. TSALPHA2's own is the implicit midpoint rule. */
+#define ALPHA_M 1
+#define ALPHA_F 1
+#define GAMMA   0.5
+#define BETA    0.25
 
 /* F = M A + internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */
 static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
 {
-  Body            body     = (Body)ctx;
-  const PetscReal position = (body->substep + body->alpha_f) / body->substeps;
+  Body                body       = (Body)ctx;
+  const BodyImplicit *implicit   = (const BodyImplicit *)body->integrator->data;
+  const PetscBool     prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass);
 
   PetscFunctionBegin;
   (void)ts;
   (void)V;
   PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
-  if (body->is_static) PetscCall(VecZeroEntries(F));
-  else {
-    const PetscBool prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass);
-
-    /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's, or the load's */
-    if (body->any_held && (prescribed || !body->mass_diagonal)) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
-    if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
-    PetscCall(BodyMultiplyMass(body, A, F));
-  }
-  if (!body->linear) PetscCall(NoteScale(body, U, F));
-  PetscCall(VecAXPY(F, 1, body->internal_force));
-  PetscCall(BodyAddExternalForce(body, t, -1, F));
-  PetscCall(BodyAddContactForce(body, position, -1, U, F));
-  PetscCall(BodyZeroHeld(body, F));
-  PetscCall(BodyPrescribe(body, NULL, position, F));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The effective matrix K + shift M, its held dofs eliminated */
-static PetscErrorCode AssembleShifted(Body body, Vec u)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyAssembleTangent(body, u, body->shifted));
-  if (body->shift > 0 && body->mass_diagonal) {
-    PetscCall(VecCopy(body->mass_diagonal, body->work[0]));
-    PetscCall(VecScale(body->work[0], body->shift));
-    PetscCall(MatDiagonalSet(body->shifted, body->work[0], ADD_VALUES));
-  } else if (body->shift > 0) PetscCall(MatAXPY(body->shifted, body->shift, body->mass_matrix, SAME_NONZERO_PATTERN));
-  PetscCall(BodyEliminateHeld(body, body->shifted));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The matrix of a linear body is constant, and was assembled at set-up */
-static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P,
-                                      void *ctx)
-{
-  Body body = (Body)ctx;
-
-  PetscFunctionBegin;
-  (void)ts;
-  (void)t;
-  (void)V;
-  (void)A;
-  (void)shift_v;
-  (void)shift_a;
-  (void)J;
-  (void)P;
-  if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AssembleShifted(body, U));
-  PetscCall(ConstrainedSolverRefactor(body->solver));
+  /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's, or the load's */
+  if (body->any_held && (prescribed || !body->mass_diagonal)) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
+  if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, (body->substep + implicit->alpha_f) / body->substeps, A));
+  PetscCall(BodyMultiplyMass(body, A, F));
+  PetscCall(BodyImplicitAddForces(body, t, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,143 +35,52 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionBegin;
   (void)ts;
   PetscCall(VecCopy(body->state.a, A0));
-  if (body->linear || body->is_static) PetscCall(VecCopy(X0, X1));
+  if (body->linear) PetscCall(VecCopy(X0, X1));
   else PetscCall(VecWAXPY(X1, body->time_step, V0, X0)); /* a body that turns fast would need many iterations from where it was */
-  PetscCall(BodyPrescribeHeld(body, body->time + body->time_step, X1, NULL, NULL));
-  PetscCall(BodyPrescribe(body, body->traces.displacement_in, (PetscReal)(body->substep + 1) / body->substeps, X1));
+  PetscCall(BodyImplicitPrescribe(body, X1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ApplyConstrainedSolver(PC pc, Vec b, Vec x)
+static PetscErrorCode SetFromOptions(Body body)
 {
-  Body body;
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  const char   *prefix   = ((PetscObject)body)->prefix;
+  TSAdapt       adapt;
 
   PetscFunctionBegin;
-  PetscCall(PCShellGetContext(pc, &body));
-  PetscCall(ConstrainedSolverSolve(body->solver, b, x));
+  PetscCall(TSAlpha2SetParams(body->ts, ALPHA_M, ALPHA_F, GAMMA, BETA));
+  PetscCall(TSGetAdapt(body->ts, &adapt));
+  PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
+  PetscCall(TSSetFromOptions(body->ts));
+  PetscCall(TSAlpha2GetParams(body->ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
+  PetscCheck(implicit->beta > 0 && implicit->alpha_f > 0 && implicit->alpha_m > 0 && implicit->gamma > 0,
+             PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose "
+             "-%sts_type centraldifference",
+             prefix, (double)implicit->alpha_m, (double)implicit->alpha_f, (double)implicit->gamma, (double)implicit->beta, prefix);
+  /* else the force at the stage, within the substep, is what displacements answer to */
+  body->integrator->affine = (PetscBool)(implicit->alpha_f == 1 && implicit->alpha_m == 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One Newton iteration solves a linear body. The residual must still be evaluated at the solution, because velocity and
-   acceleration are by-products of its evaluation. */
-static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
-                                            SNESConvergedReason *reason, void *ctx)
+/* The effective matrix is K + alpha_m / (alpha_f beta dt^2) M */
+static PetscErrorCode SetUp(Body body)
 {
-  PetscFunctionBegin;
-  (void)snes;
-  (void)xnorm;
-  (void)gnorm;
-  (void)ctx;
-  *reason = it ? SNES_CONVERGED_ITS : SNES_CONVERGED_ITERATING;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Newton's method has converged where the residual is small against the forces that it is the balance of */
-static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason,
-                                    void *ctx)
-{
-  Body      body = (Body)ctx;
-  PetscReal rtol, atol;
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  (void)xnorm;
-  (void)gnorm;
-  PetscCall(SNESGetTolerances(snes, &atol, &rtol, NULL, NULL, NULL));
-  *reason = SNES_CONVERGED_ITERATING;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (fnorm <= atol) *reason = SNES_CONVERGED_FNORM_ABS;
-  else if (it && fnorm <= rtol * body->force_scale + body->force_floor) *reason = SNES_CONVERGED_FNORM_RELATIVE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* For CG with multigrid: what the body can do without strain */
-static PetscErrorCode SetNearNullSpace(Body body)
-{
-  MatNullSpace rigid;
-  Vec          coordinates;
-
-  PetscFunctionBegin;
-  if (body->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(body->positions, &coordinates));
-  PetscCall(VecCopy(body->positions, coordinates));
-  PetscCall(VecSetBlockSize(coordinates, body->dim));
-  PetscCall(MatSetBlockSize(body->shifted, body->dim));
-  PetscCall(MatNullSpaceCreateRigidBody(coordinates, &rigid));
-  PetscCall(MatSetNearNullSpace(body->shifted, rigid));
-  PetscCall(MatNullSpaceDestroy(&rigid));
-  PetscCall(VecDestroy(&coordinates));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Newton's method for nonlinear bodies; one iteration of it for linear ones */
-static PetscErrorCode SetUpNewton(Body body, SNES snes)
-{
-  SNESLineSearch line_search;
-
-  PetscFunctionBegin;
-  PetscCall(SNESGetLineSearch(snes, &line_search));
-  if (!body->linear) {
-    PetscCall(SNESSetTolerances(snes, 1e-30, 1e-12, 1e-15, 50, PETSC_CURRENT));
-    PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
-    PetscCall(SNESSetFromOptions(snes));
-    PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(SNESSetLagJacobian(snes, -2));
-  PetscCall(SNESSetLagJacobianPersists(snes, PETSC_TRUE));
-  PetscCall(SNESSetLagPreconditioner(snes, -2));
-  PetscCall(SNESSetLagPreconditionerPersists(snes, PETSC_TRUE));
-  PetscCall(SNESSetConvergenceTest(snes, StopAfterOneIteration, NULL, NULL));
-  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The effective matrix K + alpha_m / (alpha_f beta dt^2) M; of linear bodies, factored once */
-PetscErrorCode BodySetUpImplicit(Body body)
-{
-  const char *prefix = ((PetscObject)body)->prefix;
-  SNES        snes;
-  KSP         ksp;
-  PC          pc;
-  Vec         residual;
-  char        outer[128];
-
-  PetscFunctionBegin;
-  body->shift = body->is_static ? 0 : body->alpha_m / (body->alpha_f * body->beta * PetscSqr(body->time_step));
-  PetscCall(BodyCreateMatrix(body, &body->shifted));
-  PetscCall(AssembleShifted(body, NULL));
-  PetscCall(SetNearNullSpace(body));
-  PetscCall(ConstrainedSolverCreate(body->shifted, body->free_rows, body->dim, prefix, BodyGetSharedCompliance(body), &body->solver));
-
-  PetscCall(BodyCreateVec(body, &residual));
-  PetscCall(TSSetI2Function(body->ts, residual, ComputeResidual, body));
-  PetscCall(TSSetI2Jacobian(body->ts, body->shifted, body->shifted, ComputeJacobian, body));
-  PetscCall(VecDestroy(&residual));
-  PetscCall(TSAlpha2SetPredictor(body->ts, Predict, body));
-  PetscCall(TSGetSNES(body->ts, &snes));
-  PetscCall(SetUpNewton(body, snes));
-  /* BodyIntegrate() tells, with body and time */
-  PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_FALSE));
-  PetscCall(TSSetErrorIfStepFails(body->ts, PETSC_FALSE));
-  PetscCall(SNESGetKSP(snes, &ksp));
-  /* the user's -<body>_ksp_... options are for the solver with the factors, inside */
-  PetscCall(PetscSNPrintf(outer, sizeof(outer), "%sconstrained_", prefix));
-  PetscCall(KSPSetOptionsPrefix(ksp, outer));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetContext(pc, body));
-  PetscCall(PCShellSetApply(pc, ApplyConstrainedSolver));
-  PetscCall(PCShellSetName(pc, "factored effective matrix with contact constraints"));
+  implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time_step));
+  PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
+  /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
+  if (body->prescribed_mass && body->mass_matrix) body->integrator->ops.repeat = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Acceleration by Newmark's formula; velocity and acceleration of prescribed and massless nodes */
-PetscErrorCode BodyFinishSubstepImplicit(Body body)
+static PetscErrorCode FinishSubstep(Body body)
 {
-  const PetscReal    dt = body->time_step, c2 = 1 / (body->beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * body->beta) / (2 * body->beta);
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  const PetscReal    dt = body->time_step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
   const PetscInt     n = body->owned_nodes * body->dim;
   const PetscScalar *u0, *v0, *u1;
   PetscScalar       *v1, *a;
@@ -244,14 +91,7 @@ PetscErrorCode BodyFinishSubstepImplicit(Body body)
   PetscCall(VecGetArrayRead(body->state.u, &u1));
   PetscCall(VecGetArray(body->state.v, &v1));
   PetscCall(VecGetArray(body->state.a, &a));
-  if (body->is_static) {
-    for (PetscInt i = 0; i < n; i++) {
-      v1[i] = (u1[i] - u0[i]) / dt;
-      a[i]  = 0;
-    }
-  } else {
-    for (PetscInt i = 0; i < n; i++) a[i] = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a[i];
-  }
+  for (PetscInt i = 0; i < n; i++) a[i] = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a[i];
   for (PetscInt i = 0; i < body->n_layer_dofs; i++) {
     const PetscInt dof = body->layer_dofs[i];
 
@@ -263,13 +103,156 @@ PetscErrorCode BodyFinishSubstepImplicit(Body body)
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
-  if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, body->state.a));
+  PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, body->state.a));
   if (body->prescribed_mass) {
     const PetscReal position = (PetscReal)(body->substep + 1) / body->substeps;
 
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
   }
-  if (body->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
+  /* the last residual was evaluated at the stage, not at the end of the substep */
+  if (implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* dv = gamma / (beta dt) du, da = du / (beta dt^2); of massless nodes dv = du / dt */
+static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  const PetscReal     dt = body->time_step, to_velocity = implicit->gamma / (implicit->beta * dt);
+  const PetscReal     to_acceleration = 1 / (implicit->beta * dt * dt);
+  const PetscInt      n               = body->owned_nodes * body->dim;
+  Vec                 change          = body->work[2];
+  const PetscScalar  *du;
+  PetscScalar        *v, *a;
+
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitCorrect(body, force, displacement, change));
+  PetscCall(VecGetArrayRead(change, &du));
+  PetscCall(VecGetArray(body->state.v, &v));
+  PetscCall(VecGetArray(body->state.a, &a));
+  for (PetscInt i = 0; i < n; i++) {
+    v[i] += to_velocity * du[i];
+    a[i] += to_acceleration * du[i];
+  }
+  for (PetscInt i = 0; i < body->n_layer_dofs; i++) {
+    const PetscInt dof = body->layer_dofs[i];
+
+    v[dof] += (1 / dt - to_velocity) * du[dof];
+    a[dof] = 0;
+  }
+  PetscCall(VecRestoreArray(body->state.a, &a));
+  PetscCall(VecRestoreArray(body->state.v, &v));
+  PetscCall(VecRestoreArrayRead(change, &du));
+  if (body->prescribed_mass) {
+    PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
+    PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Newmark's formulas; massless nodes, which have no dynamics, have (u1 - u0) / dt and zero instead */
+static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  const PetscReal     dt = body->time_step, beta = implicit->beta, gamma = implicit->gamma;
+  const PetscBool     massless = body->mass_redistribute;
+
+  PetscFunctionBegin;
+  acceleration[0] = massless ? 0 : 1 / (beta * dt * dt);
+  acceleration[1] = massless ? 0 : -1 / (beta * dt);
+  acceleration[2] = massless ? 0 : -(1 - 2 * beta) / (2 * beta);
+  velocity[0]     = massless ? 1 / dt : gamma / (beta * dt);
+  velocity[1]     = massless ? 0 : 1 - gamma / beta;
+  velocity[2]     = massless ? 0 : dt * (1 - gamma / (2 * beta));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The displacement next is that at the end of a substep from u, v and a, which become those at its end */
+static PetscErrorCode MoveOn(Body body)
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  const PetscReal     dt = body->time_step, beta = implicit->beta, gamma = implicit->gamma;
+  const PetscReal     c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
+  const PetscInt      n = body->owned_nodes * body->dim;
+  const PetscScalar  *u1;
+  PetscScalar        *u0, *v0, *a0;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(implicit->next, &u1));
+  PetscCall(VecGetArray(implicit->u, &u0));
+  PetscCall(VecGetArray(implicit->v, &v0));
+  PetscCall(VecGetArray(implicit->a, &a0));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscScalar now = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a0[i];
+
+    v0[i] += dt * ((1 - gamma) * a0[i] + gamma * now);
+    a0[i] = now;
+  }
+  for (PetscInt i = 0; i < body->n_layer_dofs; i++) {
+    const PetscInt dof = body->layer_dofs[i];
+
+    v0[dof] = (u1[dof] - u0[dof]) / dt;
+    a0[dof] = 0;
+  }
+  PetscCall(PetscArraycpy(u0, u1, n));
+  PetscCall(VecRestoreArray(implicit->a, &a0));
+  PetscCall(VecRestoreArray(implicit->v, &v0));
+  PetscCall(VecRestoreArray(implicit->u, &u0));
+  PetscCall(VecRestoreArrayRead(implicit->next, &u1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At rest, for further substeps after the first */
+static PetscErrorCode StartFromRest(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  Vec          *vecs[]   = {&implicit->u, &implicit->v, &implicit->a};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3; k++) {
+    if (!*vecs[k]) PetscCall(VecDuplicate(body->state.u, vecs[k]));
+    PetscCall(VecZeroEntries(*vecs[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Newmark's recursion from rest, with the effective matrix as it is factored; the hat is over after the first substep */
+static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
+{
+  BodyImplicit      *implicit = (BodyImplicit *)body->integrator->data;
+  const PetscReal    dt = body->time_step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
+  const PetscScalar *rows;
+
+  PetscFunctionBegin;
+  if (!implicit->next) PetscCall(VecDuplicate(body->state.u, &implicit->next));
+  PetscCall(ConstrainedSolverApplyUnit(body->solver, row, implicit->next, column));
+  if (body->substeps > 1) PetscCall(StartFromRest(body));
+  for (PetscInt k = 1; k < body->substeps; k++) {
+    PetscCall(MoveOn(body));
+    PetscCall(VecCopy(implicit->a, body->work[1]));
+    PetscCall(VecAXPBYPCZ(body->work[1], c2, c1, c0, implicit->u, implicit->v));
+    PetscCall(BodyMultiplyMass(body, body->work[1], body->work[0]));
+    PetscCall(BodyZeroHeld(body, body->work[0]));
+    PetscCall(ConstrainedSolverSolveFree(body->solver, body->work[0], implicit->next));
+    PetscCall(MatMult(body->interface, implicit->next, body->row_vec[0]));
+    PetscCall(VecGetArrayRead(body->row_vec[0], &rows));
+    PetscCall(PetscArraycpy(column + k * body->rows.local, rows, body->rows.local));
+    PetscCall(VecRestoreArrayRead(body->row_vec[0], &rows));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyIntegratorCreate_Implicit(BodyIntegrator integrator)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitCreate(integrator));
+  integrator->has_inertia          = PETSC_TRUE;
+  integrator->ops.setfromoptions   = SetFromOptions;
+  integrator->ops.setup            = SetUp;
+  integrator->ops.finishsubstep    = FinishSubstep;
+  integrator->ops.repeat           = Repeat;
+  integrator->ops.compliancecolumn = ComputeComplianceColumn;
+  integrator->ops.rates            = GetRates;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

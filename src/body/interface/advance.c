@@ -1,4 +1,4 @@
-/* Save, restore, and integrate over one controller step. */
+/* Save, keep, and integrate over one controller step. */
 #include <body/layout/bodyimpl.h>
 
 /*@
@@ -32,7 +32,7 @@ PetscErrorCode BodySave(Body body)
     }
   }
   if (body->loads) {
-    /* repeated sweeps of one substep may have moved its end by adding responses: the work is found when the step is accepted */
+    /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
     if (body->substeps == 1 && body->step != body->saved_step) PetscCall(BodyAddWork(body, body->substep_start.u));
     PetscCall(VecCopy(body->applied, body->saved_applied));
     body->saved_work = body->external_work;
@@ -41,40 +41,11 @@ PetscErrorCode BodySave(Body body)
   if (body->step != body->saved_step) PetscCall(TSMonitor(body->ts, body->step, body->time, body->state.u));
   body->saved_time = body->time;
   body->saved_step = body->step;
-  /* the TS adds its substeps up, with another round-off in the time that loads see than where the window is done again */
+  /* The TS has added up its substeps, with another round-off than body->time. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
-  body->swept = PETSC_FALSE;
-  BodyInvalidateRepeat(body);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyRestore - goes back to the state of the last `BodySave()`, bit for bit
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-.seealso: `Body`, `BodySave()`, `BodyIntegrate()`
-@*/
-PetscErrorCode BodyRestore(Body body)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(VecCopy(body->saved.u, body->state.u));
-  PetscCall(VecCopy(body->saved.v, body->state.v));
-  PetscCall(VecCopy(body->saved.a, body->state.a));
-  BodyInvalidateRepeat(body);
-  body->time = body->saved_time;
-  body->step = body->saved_step;
-  if (body->loads) {
-    PetscCall(VecCopy(body->saved_applied, body->applied));
-    body->external_work = body->saved_work;
-  }
-  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
+  body->swept   = PETSC_FALSE;
+  body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,12 +111,12 @@ PetscErrorCode BodyReinstate(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(body->kept[i], to[i]));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
-  BodyInvalidateRepeat(body);
+  body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  BodyResetTraces - sets what the body tells its partners, at all times of the controller step, to what it is at its start
+  BodyResetTraces - sets the output traces, at all times of the controller step, to their values at its start
 
   Logically Collective
 
@@ -176,35 +147,19 @@ PetscErrorCode BodyResetTraces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A substep that failed, or NaN or infinity in its solution, told with body, time and step. Whatever is not a number ends up in the
-   velocity. The sum of squares hands a NaN of any rank on; a maximum over ranks may lose it. */
+/* An error that names body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from
+   wherever they arise. Its 2-norm is checked, since a sum over ranks keeps the NaN of one, which a maximum may lose. */
 static PetscErrorCode CheckSubstep(Body body)
 {
-  MPI_Comm            comm = PetscObjectComm((PetscObject)body);
-  TSConvergedReason   reason;
-  SNESConvergedReason newton;
-  PetscReal           norm;
-  SNES                snes;
-  PetscInt            iterations;
+  TSConvergedReason reason;
+  PetscReal         norm;
 
   PetscFunctionBegin;
   PetscCall(TSGetConvergedReason(body->ts, &reason));
   PetscCall(VecNorm(body->state.v, NORM_2, &norm));
-  if (!body->is_explicit && !body->linear) {
-    PetscCall(TSGetSNES(body->ts, &snes));
-    PetscCall(SNESGetConvergedReason(snes, &newton));
-    PetscCall(SNESGetIterationNumber(snes, &iterations));
-    if (newton < 0) {
-      PetscCall(BodyCheckInverted(body));
-      SETERRQ(comm, PETSC_ERR_NOT_CONVERGED,
-              "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
-              " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
-              body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[newton], iterations, ((PetscObject)body)->prefix,
-              ((PetscObject)body)->prefix);
-    }
-  }
+  if (body->integrator->ops.checksubstep) PetscCall((*body->integrator->ops.checksubstep)(body));
   if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
-  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), comm, PETSC_ERR_FP,
+  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)body), PETSC_ERR_FP,
              "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
              "); is a time step too large, or a penalty too stiff for it?",
              body->hdr.name, (double)body->time, body->step);
@@ -217,7 +172,7 @@ PetscErrorCode BodyIntegrateWindow(Body body)
   PetscFunctionBegin;
   if (body->step != body->saved_step) PetscCall(BodyRestore(body));
   for (body->substep = 0; body->substep < body->substeps; body->substep++) {
-    if (body->keeps_start) {
+    if (body->substep_start.u) {
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
@@ -225,8 +180,7 @@ PetscErrorCode BodyIntegrateWindow(Body body)
     body->step++;
     body->time = body->saved_time + (body->substep + 1) * body->time_step;
     PetscCall(CheckSubstep(body));
-    if (body->is_explicit) PetscCall(BodyFinishSubstepExplicit(body));
-    else PetscCall(BodyFinishSubstepImplicit(body));
+    PetscCall((*body->integrator->ops.finishsubstep)(body));
     PetscCall(BodyWriteTraces(body, body->substep + 1));
     if (body->substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
   }

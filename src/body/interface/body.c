@@ -45,7 +45,7 @@ PetscErrorCode BodyFinalizePackage(void)
 }
 
 /*@
-  BodyCreate - creates a body; all about it comes from options with its name as prefix
+  BodyCreate - creates a body, whose mesh, material and integrator come from options that begin with its name
 
   Collective
 
@@ -183,7 +183,7 @@ static PetscErrorCode SetUpRows(Body body)
   PetscCall(
       PetscCalloc4(rows->local, &body->conditions, rows->local, &body->held, rows->local, &body->flexibility, rows->local, &body->robin));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[k]));
-  body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute && !body->is_static);
+  body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute && body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,16 +218,14 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpMass(body));
   PetscCall(BodyCheckHeld(body));
   PetscCall(BodySetUpSubsteps(body));
-  body->keeps_start = (PetscBool)(!body->is_explicit || body->n_layer_dofs > 0 || body->loads);
-  PetscCall(BodyAnyRank(body, &body->keeps_start));
-  if (body->keeps_start) {
-    PetscCall(BodyCreateVec(body, &body->substep_start.u));
-    PetscCall(BodyCreateVec(body, &body->substep_start.v));
-  }
   PetscCall(CreateTraces(body));
   PetscCall(BodyCreateCompliance(body));
   PetscCall(BodySetUpTime(body));
   PetscCall(BodySetUpRepeat(body));
+  if (body->integrator->reads_start || body->loads) {
+    PetscCall(BodyCreateVec(body, &body->substep_start.u));
+    PetscCall(BodyCreateVec(body, &body->substep_start.v));
+  }
   PetscCall(TSViewFromOptions(body->ts, NULL, "-ts_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
@@ -261,12 +259,13 @@ PetscErrorCode BodyDestroy(Body *body)
     Vec   *vecs[]   = {&b->state.u,         &b->state.v,         &b->state.a,        &b->saved.u,     &b->saved.v,    &b->saved.a,
                        &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u,  &b->work[0],    &b->work[1],
                        &b->work[2],         &b->positions,       &b->mass_row_sum,   &b->orphan_mass, &b->applied,    &b->saved_applied,
-                       &b->mass_diagonal,   &b->inverse_mass,    &b->row_vec[0],     &b->row_vec[1],  &b->row_vec[2], &b->layer_rhs,
-                       &b->layer_solution,  &b->kept[0],         &b->kept[1],        &b->kept[2],     &b->kept[3]};
+                       &b->mass_diagonal,   &b->inverse_mass,    &b->row_vec[0],     &b->row_vec[1],  &b->row_vec[2], &b->kept[0],
+                       &b->kept[1],         &b->kept[2],         &b->kept[3]};
     Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
                        &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
 
     PetscCall(BodyDestroyRepeat(b));
+    PetscCall(BodyIntegratorDestroy(b));
     PetscCall(BodyDestroyCompliance(b));
     PetscCall(BodyDestroyProbe(b));
     PetscCall(BodyLoadsDestroy(b));
@@ -275,11 +274,8 @@ PetscErrorCode BodyDestroy(Body *body)
   }
   PetscCall(ConstrainedSolverDestroy(&b->solver));
   PetscCall(ConstrainedSolverDestroy(&b->mass_solver));
-  PetscCall(VecScatterDestroy(&b->layer_scatter));
-  PetscCall(ISDestroy(&b->layer_is));
   PetscCall(MatDestroy(&b->stiffness));
   PetscCall(MatDestroy(&b->mass_matrix));
-  PetscCall(MatDestroy(&b->shifted));
   PetscCall(MatDestroy(&b->interface));
   PetscCall(MatDestroy(&b->free_rows));
   PetscCall(BodyGramDestroy(&b->gram));

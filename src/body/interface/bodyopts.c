@@ -54,52 +54,31 @@ static PetscErrorCode CreateTime(Body body)
   MPI_Comm    comm     = PetscObjectComm((PetscObject)body);
   const char *prefix   = ((PetscObject)body)->prefix;
   char        type[64] = TSALPHA2, full[160];
-  PetscBool   hidden, alpha2;
+  PetscBool   hidden;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
-  PetscCall(PetscStrcmp(type, TSALPHA2, &alpha2));
-  PetscCall(PetscStrcmp(type, TSCENTRALDIFFERENCE, &body->is_explicit));
-  PetscCall(PetscStrcmp(type, TSSTATIC, &body->is_static));
-  PetscCheck(alpha2 || body->is_explicit || body->is_static, comm, PETSC_ERR_ARG_UNKNOWN_TYPE,
-             "Unknown -%sts_type '%s'; known: alpha2 (implicit), centraldifference (explicit), static (without inertia)", prefix, type);
+  PetscCall(BodyIntegratorCreate(body, type));
   PetscCall(ReadTimeStep(body, &hidden));
   PetscCall(TSCreate(comm, &body->ts));
   PetscCall(TSSetOptionsPrefix(body->ts, prefix));
   PetscCall(TSSetDM(body->ts, body->dm));
   PetscCall(TSSetType(body->ts, type));
-  if (alpha2) {
-    TSAdapt adapt;
-
-    /* TSALPHA2's own default is the implicit midpoint rule; ours is Newmark's trapezoidal rule */
-    PetscCall(TSAlpha2SetParams(body->ts, 1, 1, 0.5, 0.25));
-    PetscCall(TSGetAdapt(body->ts, &adapt));
-    PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
-  }
-  PetscCall(TSSetFromOptions(body->ts));
+  PetscCall((*body->integrator->ops.setfromoptions)(body));
   if (hidden) {
     PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
     PetscCall(PetscOptionsSetValue(NULL, full, "auto"));
     PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_time_step", NULL)); /* it has been used */
   }
-  if (!body->is_explicit) {
-    PetscCall(TSAlpha2GetParams(body->ts, &body->alpha_m, &body->alpha_f, &body->gamma, &body->beta));
-    if (body->is_static)
-      PetscCheck(body->alpha_m == 1 && body->alpha_f == 1, comm, PETSC_ERR_USER_INPUT,
-                 "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", prefix);
-    PetscCheck(body->beta > 0 && body->alpha_f > 0 && body->alpha_m > 0 && body->gamma > 0, comm, PETSC_ERR_USER_INPUT,
-               "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose "
-               "-%sts_type centraldifference",
-               prefix, (double)body->alpha_m, (double)body->alpha_f, (double)body->gamma, (double)body->beta, prefix);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mass matrices that are not diagonal have to be factored, which explicit bodies in two and three dimensions do not pay for */
+/* Mass matrices that are not diagonal have to be factored, which a body that divides by the mass in each substep does not pay for in two
+   and three dimensions */
 static PetscErrorCode ReadMass(Body body)
 {
   PetscFunctionBegin;
-  body->mass_type         = body->is_explicit && body->dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
+  body->mass_type         = body->integrator->divides_by_mass && body->dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
   body->mass_redistribute = PETSC_TRUE;
   PetscObjectOptionsBegin((PetscObject)body);
   PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type,
@@ -107,7 +86,7 @@ static PetscErrorCode ReadMass(Body body)
   PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions",
                              body->mass_redistribute, &body->mass_redistribute, NULL));
   PetscOptionsEnd();
-  if (body->is_static) body->mass_redistribute = PETSC_FALSE; /* it has no inertia to move */
+  if (!body->integrator->has_inertia) body->mass_redistribute = PETSC_FALSE; /* there is none to move */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,14 +148,14 @@ static PetscErrorCode ComputeInitialAcceleration(Body body)
   PetscReal norm;
 
   PetscFunctionBegin;
-  PetscCall(VecCopy(body->internal_force, force));
-  PetscCall(VecScale(force, -1));
+  PetscCall(VecZeroEntries(force));
+  PetscCall(VecAXPY(force, -1, body->internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
   PetscCall(BodyAddExternalForce(body, body->time, 1, force));
   PetscCall(VecNorm(force, NORM_INFINITY, &norm));
   PetscCall(VecZeroEntries(body->state.a));
-  PetscCall(BodyAddHeldInertia(body, body->time, force, body->state.a));
-  if (norm > 0 || body->any_held) PetscCall(BodySolveMass(body, force, 0, PETSC_FALSE, body->state.a));
-  if (!body->is_static) PetscCall(BodyPrescribeHeld(body, body->time, NULL, NULL, body->state.a));
+  PetscCall(BodySubtractHeldInertia(body, body->time, force, body->state.a));
+  if (norm > 0 || body->any_held) PetscCall(BodySolveMass(body, force, body->state.a));
+  if (body->integrator->has_inertia) PetscCall(BodyPrescribeHeld(body, body->time, NULL, NULL, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,7 +9,7 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->cell_shape]));
-  if (body->is_explicit) PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->stable_step));
+  if (body->integrator->needs_stable_step) PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->stable_step));
   if (body->mass_shift[0] != 0 || body->mass_shift[1] != 0 || body->mass_shift[2] != 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n",
                                      (double)body->mass_shift[0], (double)body->mass_shift[1], (double)body->mass_shift[2]));
@@ -221,48 +221,26 @@ PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
 }
 
 /*@
-  BodyGetDimension - dimension of the space that the body lies in
+  BodyIsExplicit - whether the body's substeps are bounded by a stable step, as those of central differences are
 
   Not Collective
 
   Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. dim - 1, 2 or 3: displacements of a node
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyGetDM()`
-@*/
-PetscErrorCode BodyGetDimension(Body body, PetscInt *dim)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(DMGetCoordinateDim(body->dm, dim));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyIsExplicit - whether the body is integrated by central differences
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
+. body - the `Body`, after `BodySetFromOptions()`
 
   Output Parameter:
 . is_explicit - `PETSC_TRUE` if so
 
   Level: intermediate
 
-.seealso: `Body`, `TSCENTRALDIFFERENCE`
+.seealso: `Body`, `BodyGetStableStep()`, `TSCENTRALDIFFERENCE`
 @*/
 PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *is_explicit = body->is_explicit;
+  PetscCheck(body->integrator, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
+  *is_explicit = body->integrator->needs_stable_step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -285,7 +263,8 @@ PetscErrorCode BodyIsStatic(Body body, PetscBool *is_static)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *is_static = body->is_static;
+  PetscCheck(body->integrator, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
+  *is_static = (PetscBool)!body->integrator->has_inertia;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -308,7 +287,8 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *redistributed = (PetscBool)(body->mass_redistribute || body->is_static);
+  PetscCheck(body->integrator, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
+  *redistributed = (PetscBool)(body->mass_redistribute || !body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -362,17 +342,17 @@ PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
 @*/
 PetscErrorCode BodyGetNewmark(Body body, PetscReal *v_u, PetscReal *v_v, PetscReal *v_a, PetscReal *a_u, PetscReal *a_v, PetscReal *a_a)
 {
-  const PetscReal dt = body->time_step, beta = body->beta, gamma = body->gamma;
-  const PetscBool massless = (PetscBool)(body->mass_redistribute || body->is_static);
+  PetscReal velocity[3], acceleration[3];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(!body->is_explicit, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
-  *a_u = massless ? 0 : 1 / (beta * dt * dt);
-  *a_v = massless ? 0 : -1 / (beta * dt);
-  *a_a = massless ? 0 : -(1 - 2 * beta) / (2 * beta);
-  *v_u = massless ? 1 / dt : gamma / (beta * dt);
-  *v_v = massless ? 0 : 1 - gamma / beta;
-  *v_a = massless ? 0 : dt * (1 - gamma / (2 * beta));
+  PetscCheck(body->integrator->ops.rates, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
+  PetscCall((*body->integrator->ops.rates)(body, velocity, acceleration));
+  *v_u = velocity[0];
+  *v_v = velocity[1];
+  *v_a = velocity[2];
+  *a_u = acceleration[0];
+  *a_v = acceleration[1];
+  *a_a = acceleration[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,8 +38,8 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
 /* Kinetic energy [J], staggered for central differences */
 static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic)
 {
-  const PetscReal    quarter = body->is_explicit ? 0.25 * PetscSqr(body->time_step) : 0;
-  const PetscInt     n       = body->owned_nodes * body->dim;
+  const PetscReal    staggered = body->integrator->staggered * PetscSqr(body->time_step);
+  const PetscInt     n         = body->owned_nodes * body->dim;
   const PetscScalar *v, *a, *p, *inertia;
   PetscReal          sum;
 
@@ -49,11 +49,11 @@ static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic
   sum = Dot(n, v, p);
   PetscCall(VecRestoreArrayRead(momentum, &p));
   PetscCall(VecRestoreArrayRead(body->state.v, &v));
-  if (quarter > 0) {
+  if (staggered > 0) {
     PetscCall(BodyMultiplyMass(body, body->state.a, body->work[1]));
     PetscCall(VecGetArrayRead(body->state.a, &a));
     PetscCall(VecGetArrayRead(body->work[1], &inertia));
-    sum -= quarter * Dot(n, a, inertia);
+    sum -= staggered * Dot(n, a, inertia);
     PetscCall(VecRestoreArrayRead(body->work[1], &inertia));
     PetscCall(VecRestoreArrayRead(body->state.a, &a));
   }
@@ -139,7 +139,7 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(ComputePotential(body, &sums[1]));
-  if (body->is_static) PetscCall(SumMassVelocity(body, sums + 8));
+  if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
   else {
     PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
     for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
@@ -154,28 +154,5 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
     measures->angular_momentum[d] = sums[5 + d];
     measures->mean_velocity[d]    = sums[8 + d] / body->total_mass;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetMass - the mass of the body
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. mass - [kg]
-
-  Level: intermediate
-
-.seealso: `Body`
-@*/
-PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *mass = body->total_mass;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

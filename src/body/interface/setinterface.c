@@ -1,7 +1,7 @@
-/* Rows of the interface that get new entries while a run goes on. */
+/* New entries for rows of the interface, as contact surfaces slide and turn in the course of a run. */
 #include <body/layout/bodyimpl.h>
 
-/* Rows that have changed, on every rank */
+/* all: for each row of all ranks 1 if it has changed, else 0 */
 static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscMPIInt all[])
 {
   const BodyRows *rows = &body->rows;
@@ -14,7 +14,7 @@ static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a body tells of its rows, at the start of the controller step: from its saved state */
+/* The output traces at the start of the controller step: the new rows of the saved state */
 static PetscErrorCode RewriteStart(Body body)
 {
   const Vec   vecs[]   = {body->saved.u, body->saved.v, body->saved.a};
@@ -33,19 +33,18 @@ static PetscErrorCode RewriteStart(Body body)
   Input Parameters:
 + body    - the `Body`, set up, at the start of a controller step
 . B       - matrix of as many rows as before
-- changed - for each row of this rank, whether it is another than before
+- changed - for each row of this rank, whether its entries differ from those before
 
   Level: developer
 
   Note:
-  No matrix of the body is factored again; what is known of the compliance of rows that have changed is forgotten.
+  No matrix of the body is factored again. Columns of the compliance that belong to rows which have changed are discarded.
 
 .seealso: `Body`, `BodySetInterface()`
 @*/
 PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
 {
   PetscMPIInt *all;
-  Mat          layer_rows;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -56,14 +55,10 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
   PetscCall(PetscMalloc1(body->rows.global, &all));
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
-  if (body->solver && body->is_explicit) {
-    PetscCall(BodySetUpLayerRows(body, &layer_rows));
-    PetscCall(ConstrainedSolverSetRows(body->solver, layer_rows, all));
-    PetscCall(MatDestroy(&layer_rows));
-  } else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, all));
+  PetscCall((*body->integrator->ops.setrows)(body, all));
   if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, body->free_rows, all));
   PetscCall(PetscFree(all));
-  BodyInvalidateRepeat(body);
+  body->repeats = PETSC_FALSE;
   PetscCall(BodySetConstraints(body));
   PetscCall(RewriteStart(body));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,6 +4,7 @@
 #include <petsc/private/petscimpl.h>
 #include <impakt/private/elementimpl.h>
 #include <solver/constrainedsolver.h>
+#include <body/layout/integrator.h>
 
 /* Displacement, velocity and acceleration of a body: what a restore brings back. */
 typedef struct {
@@ -52,19 +53,17 @@ struct _p_Body {
   PetscReal         total_mass, mass_shift[3]; /* [kg]; how far redistribution has moved the centre of mass [m] */
   Mat               stiffness;                 /* of the undeformed body; NULL until BodyGetStiffness() */
   /* time */
-  TS         ts;
-  PetscBool  is_explicit, is_static;
-  PetscReal  requested_step; /* 0: the controller step; < 0: automatic */
-  PetscReal  controller_step, time_step, time_start;
-  PetscInt   substeps;
-  PetscReal  alpha_m, alpha_f, gamma, beta;
-  PetscReal  stable_step;       /* 0 until BodyComputeStableStep() */
-  PetscReal *zero_displacement; /* of the rank's nodes, while that runs */
+  TS             ts;
+  BodyIntegrator integrator;     /* that goes with it */
+  PetscReal      requested_step; /* 0: the controller step; < 0: automatic */
+  PetscReal      controller_step, time_step, time_start;
+  PetscInt       substeps;
+  PetscReal      stable_step;       /* 0 until BodyComputeStableStep() */
+  PetscReal     *zero_displacement; /* of the rank's nodes, while that runs */
   /* state */
-  BodyState    state, saved, substep_start; /* of the latter, u and v only, and NULL where nobody reads it */
+  BodyState    state, saved, substep_start; /* of the latter, u and v only, and NULL unless loads or the integrator read it */
   PetscReal    time, saved_time;
   PetscInt     step, saved_step;
-  PetscBool    keeps_start;    /* substep_start is there */
   Vec          internal_force; /* at state.u */
   Vec          previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
   PetscBool    swept;          /* previous_u holds such a state */
@@ -89,25 +88,18 @@ struct _p_Body {
   BodyTraces        traces;
   PetscInt          substep; /* 0 to substeps - 1 */
   Vec               row_vec[3];
-  Mat               shifted; /* implicit: stiffness + shift mass */
-  PetscReal         shift;
-  PetscReal         force_scale, force_floor; /* of the last residual of a nonlinear body [N] */
-  ConstrainedSolver solver;                   /* implicit: with the shifted matrix; explicit: with the stiffness of the massless layer */
-  IS                layer_is;
-  Vec               layer_rhs, layer_solution;
-  PetscReal         layer_reach; /* norm of the reference positions, on which round-off of its balance hangs [m] */
-  PetscBool         layer_slow;  /* its last balance took many rounds: the body has turned or changed shape since its matrix was factored */
-  VecScatter        layer_scatter;
-  LayerElements     layer_elements; /* those that touch the massless layer; NULL: no layer on any rank */
+  ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
+  LayerElements     layer_elements; /* those that touch the massless layer; NULL: nobody balances it */
   struct _BodyCompliance *compliance;
   struct _BodyRepeat     *repeat;
-  struct _BodyProbe      *probe; /* room for the state while unit inputs are tried; NULL until then */
+  PetscBool repeats; /* the present end state is that of an integration from the saved state, under the present conditions and inputs */
+  struct _BodyProbe *probe; /* room for the state while unit inputs are tried; NULL until then */
   /* loads */
   struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
   PetscInt           n_held;
   PetscBool          any_held;                  /* on any rank */
   const PetscInt    *held_dofs;                 /* owned dofs whose displacement is prescribed; owned by the loads */
-  PetscBool          unloaded;                  /* while responses are probed: no forces from outside, held dofs at zero */
+  PetscBool          unloaded;                  /* while its compliance is probed: no forces from outside, held dofs at zero */
   Vec                applied, saved_applied;    /* forces from outside and reactions of held dofs; NULL without loads [N] */
   PetscReal          external_work, saved_work; /* done by them since the start [J] */
   PetscInt64         total_substeps;
@@ -129,9 +121,10 @@ PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyCheckInverted(Body);
-PETSC_INTERN PetscErrorCode BodyAddHeldInertia(Body, PetscReal, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
 PETSC_INTERN PetscErrorCode BodyZeroHeld(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyCopyHeld(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribeHeld(Body, PetscReal, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddExternalForce(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
@@ -141,23 +134,21 @@ PETSC_INTERN PetscErrorCode BodyRedistributeOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
-PETSC_INTERN PetscErrorCode BodySetUpImplicit(Body);
-PETSC_INTERN PetscErrorCode BodySetUpExplicit(Body);
 PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
-PETSC_INTERN PetscErrorCode BodyFinishSubstepImplicit(Body);
-PETSC_INTERN PetscErrorCode BodyFinishSubstepExplicit(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
-PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body);
+PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
 PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
+PETSC_INTERN PetscErrorCode BodyCreateLayerVec(Body, Vec *);
+PETSC_INTERN PetscErrorCode BodyGatherLayer(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, PetscReal, PetscBool, Vec);
-PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[], Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
@@ -169,12 +160,9 @@ PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
-PETSC_INTERN PetscErrorCode BodyRepeatExplicit(Body);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
-PETSC_INTERN void           BodyInvalidateRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
-PETSC_INTERN PetscErrorCode BodySetUpLayerRows(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
 PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);

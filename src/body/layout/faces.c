@@ -1,5 +1,5 @@
 /* Faces of elements on a surface: nodes, outward normals, and points with which loads are integrated over them. */
-#include <body/loads/loadsimpl.h>
+#include "faces.h"
 #include <impakt/mesh.h>
 
 /* Gauss's rule with two points in each direction */

@@ -1,4 +1,4 @@
-/* What loads do to a body: forces from outside, held displacements, and the work of both. */
+/* What loads do to a body: forces from outside, and the work of these and of held displacements. */
 #include <body/layout/bodyimpl.h>
 
 /* f += scale * forces from outside at time t [N] */
@@ -34,7 +34,7 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
   PetscCall(VecZeroEntries(applied));
   PetscCall(BodyAddExternalForce(body, body->time, 1, applied));
   if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
-  if (body->is_static) PetscCall(VecCopy(body->internal_force, body->work[0]));
+  if (!body->integrator->has_inertia) PetscCall(VecCopy(body->internal_force, body->work[0]));
   else {
     PetscCall(BodyMultiplyMass(body, body->state.a, body->work[0]));
     PetscCall(VecAXPY(body->work[0], 1, body->internal_force));

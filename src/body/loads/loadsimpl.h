@@ -1,17 +1,7 @@
 #pragma once
-#include <body/layout/bodyimpl.h>
-#include <impakt/expression.h>
+#include <body/layout/faces.h>
 
 #define LOADS_NAME_LENGTH 512 /* of options, as PETSc has it */
-#define FACE_MAX_NODES    4
-#define FACE_MAX_POINTS   4
-
-/* Faces of this rank on a surface, in the reference configuration */
-typedef struct {
-  PetscInt   count, nodes, n_points; /* of the rank; of one face */
-  PetscInt  *connectivity;           /* count x nodes: local node numbers */
-  PetscReal *side;                   /* 1, or -1 where the order of the nodes gives the inward normal */
-} BodyFaces;
 
 typedef enum {
   LOAD_STEADY,
@@ -77,6 +67,3 @@ PETSC_INTERN PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyForces(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsReadInitialState(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsCompress(PetscInt, const PetscScalar[], PetscInt, PetscInt, DofValues *);
-PETSC_INTERN PetscErrorCode BodyFacesCreate(Body, const char[], BodyFaces *);
-PETSC_INTERN PetscErrorCode BodyFacesGetPoints(Body, const BodyFaces *, PetscInt, ExpressionPoint[], PetscReal[]);
-PETSC_INTERN PetscErrorCode BodyFacesDestroy(BodyFaces *);

@@ -14,7 +14,6 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&c->work[k]));
   PetscCall(PetscFree6(c->roles, c->mine, c->base_displacement, c->base_force, c->all_roles, c->all_flexibility));
   PetscCall(PetscFree(c->solved));
   PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
@@ -38,8 +37,6 @@ PetscErrorCode BodyCreateCompliance(Body body)
   PetscCall(PetscCalloc6(rows->local, &c->roles, levels, &c->mine, levels, &c->base_displacement, levels, &c->base_force, rows->global,
                          &c->all_roles, rows->global, &c->all_flexibility));
   PetscCall(PetscMalloc1(rows->global, &c->solved));
-  if (!body->is_explicit && body->substeps > 1)
-    for (PetscInt k = 0; k < 4; k++) PetscCall(VecDuplicate(body->state.u, &c->work[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,7 +155,7 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *exact = (PetscBool)(body->linear && (body->is_explicit || body->is_static || (body->alpha_f == 1 && body->alpha_m == 1)));
+  *exact = (PetscBool)(body->linear && body->integrator->affine);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

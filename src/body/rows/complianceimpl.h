@@ -8,7 +8,6 @@ struct _BodyCompliance {
   Compliance
       matrices;      /* a level for each substep: displacement k substeps after a hat of force, of 1 N at the end of the first one [m/N] */
   PetscScalar *mine; /* work space: of the rows of this rank, for each substep */
-  Vec          work[4];
   /* an integration from which changes are counted: this rank's rows, for each substep */
   PetscScalar *base_displacement, *base_force;
   PetscBool    has_base, base_gathered; /* known_displacement and known_force are those, at the matrices' state `gathered_state` */

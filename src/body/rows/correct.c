@@ -10,7 +10,7 @@ static PetscErrorCode WriteEnd(Body body, Vec vec, Trace trace)
 {
   PetscFunctionBegin;
   PetscCall(BodyWriteTrace(body, body->interface, vec, trace, body->substeps));
-  BodyInvalidateRepeat(body);
+  body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,7 +34,7 @@ PetscErrorCode BodyAddVelocity(Body body, const PetscScalar impulse[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, impulse));
+  PetscCall(BodySolveMassOfRows(body, impulse, body->work[2]));
   PetscCall(VecAXPY(body->state.v, 1, body->work[2]));
   PetscCall(WriteEnd(body, body->state.v, body->traces.velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,7 +60,7 @@ PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, force));
+  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
   PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
   PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,9 +144,9 @@ PetscErrorCode BodyShiftStart(Body body, const PetscScalar shift[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, shift));
+  PetscCall(BodySolveMassOfRows(body, shift, body->work[2]));
   PetscCall(VecAXPY(body->state.u, 1, body->work[2]));
   PetscCall(VecCopy(body->state.u, body->saved.u));
-  BodyInvalidateRepeat(body);
+  body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,7 +4,7 @@
 /*@
   BodyFeelsEndForce - whether displacements at the end of the controller step answer to the contact forces there
 
-  Collective
+  Not Collective
 
   Input Parameter:
 . body - the `Body`, set up
@@ -21,7 +21,6 @@ PetscErrorCode BodyFeelsEndForce(Body body, PetscBool *feels)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *feels = (PetscBool)(!body->is_explicit || body->substeps > 1 || body->n_layer_dofs > 0);
-  PetscCall(BodyAnyRank(body, feels));
+  *feels = body->integrator->feels_end_force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,8 +4,8 @@
 /* With more rows no column is made for each of them */
 #define MAX_PROBED_ROWS 2000
 
-/* work[2] = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank */
-PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[])
+/* change = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank */
+PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[], Vec change)
 {
   PetscScalar *row;
 
@@ -15,7 +15,7 @@ PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[])
   PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
   PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
   PetscCall(BodyZeroHeld(body, body->work[0]));
-  PetscCall(BodySolveMass(body, body->work[0], 0, PETSC_FALSE, body->work[2]));
+  PetscCall(BodySolveMass(body, body->work[0], change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,7 +50,7 @@ static PetscErrorCode ProbeRows(Body body, Mat matrix)
     const PetscInt local = j - rows->begin;
 
     if (local >= 0 && local < rows->local) unit[local] = 1;
-    PetscCall(BodySolveMassOfRows(body, unit));
+    PetscCall(BodySolveMassOfRows(body, unit, body->work[2]));
     if (local >= 0 && local < rows->local) unit[local] = 0;
     PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
     PetscCall(VecGetArrayRead(body->row_vec[0], &moved));
@@ -87,11 +87,11 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->inverse_mass && !body->is_static) {
+  if (body->inverse_mass && body->integrator->has_inertia) {
     PetscCall(MultiplyRows(body, body->inverse_mass, matrix));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCheck(body->is_static || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
+  PetscCheck(!body->integrator->has_inertia || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
              "Body '%s': a mass that is not lumped couples all contact nodes, of which there are %" PetscInt_FMT
              ", more than %d; set -%smass_type lumped, or choose -contact_type schwarz",
              body->hdr.name, rows->global, MAX_PROBED_ROWS, ((PetscObject)body)->prefix);
@@ -99,7 +99,7 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
   PetscCall(MatSetSizes(*matrix, rows->local, rows->local, rows->global, rows->global));
   PetscCall(MatSetType(*matrix, MATAIJ));
   PetscCall(MatSetUp(*matrix));
-  if (!body->is_static) PetscCall(ProbeRows(body, *matrix));
+  if (body->integrator->has_inertia) PetscCall(ProbeRows(body, *matrix));
   PetscCall(MatAssemblyBegin(*matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*matrix, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -209,7 +209,7 @@ PetscErrorCode BodyAddImpulse(Body body, const PetscScalar force[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, force));
+  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
   PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
   PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, body->work[2]));
   PetscCall(VecCopy(body->state.v, body->saved.v));

@@ -1,4 +1,4 @@
-/* What a body has to set against a push on its rows: stiffness and wave impedance. */
+/* What a body has to set against a push on its rows: the stiffness of the elements beside them. */
 #include <body/layout/bodyimpl.h>
 
 /*@
@@ -44,57 +44,5 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
     PetscCall(MatRestoreRow(body->interface, rows->begin + i, &n_row, &of_row, &row));
   }
   PetscCall(MatDestroy(&forces));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetImpedance - force for a unit velocity of a plane wave, for each unit of area
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. impedance - sqrt(M rho), M being the modulus of plane waves, lambda + 2 mu [N s/m^3]; of a bar, sqrt(E rho) times its cross-section [N
-s/m]
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyComputeRowStiffness()`, `MaterialGetUniaxialModulus()`
-@*/
-PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
-{
-  PetscReal density, modulus;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(MaterialGetDensity(body->material, &density));
-  if (body->dim == 1) PetscCall(MaterialGetUniaxialModulus(body->material, &modulus));
-  else PetscCall(MaterialGetWaveModulus(body->material, &modulus));
-  *impedance = PetscSqrtReal(modulus * density) * body->element->cross_section;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetCrossSection - what lengths and points of the mesh are multiplied by to give areas
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodySetFromOptions()`
-
-  Output Parameter:
-. cross_section - of bars [m^2]; thickness of plane bodies [m]; 1 in three dimensions
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyGetImpedance()`
-@*/
-PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *cross_section = body->element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -179,7 +179,7 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
   body->n_prescribed = counts[0];
   body->n_forced     = counts[1];
   body->n_robin      = counts[2];
-  BodyInvalidateRepeat(body);
+  body->repeats      = PETSC_FALSE;
   PetscCall(BodySetConstraints(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -195,7 +195,7 @@ PetscErrorCode BodySetConstraints(Body body)
   }
   BodyUnmarkDependent(body, body->held);
   if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held, body->flexibility));
-  if (body->mass_solver && body->is_explicit && body->prescribed_mass) {
+  if (body->mass_solver && body->integrator->divides_by_mass && body->prescribed_mass) {
     for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
     BodyUnmarkDependent(body, body->held);
     PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held, NULL));

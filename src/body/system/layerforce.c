@@ -1,7 +1,7 @@
-/* Forces and stiffness of the elements that touch the massless contact layer: all that its balance takes of a body. */
+/* Forces and stiffness of the elements that touch the massless contact layer: its balance depends on no others. */
 #include <body/layout/bodyimpl.h>
 
-/* Those elements, numbered on their own, and their nodes: arrays that are short where the layer is */
+/* Those elements and their nodes, numbered anew, so that loops and scatters cost what the layer has, not what the body has */
 struct _n_LayerElements {
   Element    element, linearized; /* the latter NULL until BodyPrepareLinearized() */
   PetscInt  *connectivity;
@@ -83,7 +83,7 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
 }
 
 /* From a vector of the body to the nodes of the elements, and from there to the layer */
-static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[])
+static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[], Vec of_layer)
 {
   const PetscInt dim = body->dim;
   PetscInt       rstart, n = 0, *dofs, *from, *to;
@@ -111,7 +111,7 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   }
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, from, PETSC_COPY_VALUES, &is));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, to, PETSC_COPY_VALUES, &to_is));
-  PetscCall(VecScatterCreate(layer->f, is, body->layer_rhs, to_is, &layer->add));
+  PetscCall(VecScatterCreate(layer->f, is, of_layer, to_is, &layer->add));
   PetscCall(ISDestroy(&is));
   PetscCall(ISDestroy(&to_is));
   PetscCall(PetscFree2(from, to));
@@ -142,8 +142,8 @@ static PetscErrorCode FindNear(Body body, LayerElements layer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Needs the vectors of the layer */
-PetscErrorCode BodySetUpLayerElements(Body body)
+/* of_layer: any vector of the layer, one number for each of its dofs */
+PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
 {
   const PetscInt dim = body->dim;
   PetscInt       count, n_nodes, *nodes, *number;
@@ -162,7 +162,7 @@ PetscErrorCode BodySetUpLayerElements(Body body)
   }
   PetscCall(ElementCreateLike(body->element, body->material, &layer->element));
   PetscCall(ElementSetUp(layer->element, count, layer->connectivity, layer->coordinates));
-  PetscCall(CreateScatters(body, layer, n_nodes, nodes));
+  PetscCall(CreateScatters(body, layer, n_nodes, nodes, of_layer));
   PetscCall(FindNear(body, layer));
   PetscCall(PetscFree(nodes));
   PetscCall(PetscFree(number));
@@ -198,7 +198,7 @@ PetscErrorCode BodyLayerLinearize(Body body, Material material)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The owned displacements that the balance of the layer and the rows of contact nodes hang on, rank numbering */
+/* The owned dofs, rank numbering, on which the balance of the layer and the rows of contact nodes depend */
 void BodyGetNearLayer(Body body, PetscInt *n, const PetscInt *dofs[])
 {
   *n    = body->layer_elements->n_near;
@@ -215,8 +215,7 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(BODY_LayerForce, body, 0, 0, 0));
-  PetscCall(VecScatterBegin(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(BodyGatherLayer(body, u, layer->u));
   PetscCall(VecGetArrayRead(layer->u, &u_array));
   PetscCall(VecGetArrayWrite(layer->f, &f_array));
   PetscCall(PetscArrayzero(f_array, layer->n_dofs));
@@ -230,8 +229,25 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K = tangent stiffness of the layer at displacement u of the body; NULL: undeformed [N/m] */
-PetscErrorCode BodyAssembleLayer(Body body, Vec u, Mat K)
+/* A vector for BodyGatherLayer(), of this rank alone */
+PetscErrorCode BodyCreateLayerVec(Body body, Vec *near)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(body->layer_elements->u, near));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* near = what a vector of the body is on the nodes of the elements that touch the layer */
+PetscErrorCode BodyGatherLayer(Body body, Vec u, Vec near)
+{
+  PetscFunctionBegin;
+  PetscCall(VecScatterBegin(body->layer_elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(body->layer_elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m] */
+PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
 {
   LayerElements      layer = body->layer_elements;
   const PetscInt     nodes = body->element->nodes, n = nodes * body->dim;
@@ -240,18 +256,14 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec u, Mat K)
   const PetscScalar *at;
 
   PetscFunctionBegin;
-  if (u) {
-    PetscCall(VecScatterBegin(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(layer->gather, u, layer->u, INSERT_VALUES, SCATTER_FORWARD));
-  } else PetscCall(VecZeroEntries(layer->u));
   PetscCall(MatZeroEntries(K));
-  PetscCall(VecGetArrayRead(layer->u, &at));
+  PetscCall(VecGetArrayRead(near, &at));
   for (PetscInt e = 0; e < layer->element->count; e++) {
     for (PetscInt i = 0; i < n; i++) dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->dim] * body->dim + i % body->dim];
     PetscCall((*layer->element->ops.stiffness)(layer->element, e, at, element));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES)); /* leaves negative numbers out */
   }
-  PetscCall(VecRestoreArrayRead(layer->u, &at));
+  PetscCall(VecRestoreArrayRead(near, &at));
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,6 +278,7 @@ PetscErrorCode BodyCreateLayerMatrix(Body body, Mat *K)
   PetscCall(MatSetType(*K, MATAIJ));
   PetscCall(MatSetUp(*K));
   PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(BodyAssembleLayer(body, NULL, *K));
+  PetscCall(VecZeroEntries(body->layer_elements->u));
+  PetscCall(BodyAssembleLayer(body, body->layer_elements->u, *K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

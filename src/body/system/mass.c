@@ -177,7 +177,6 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscCall(BodyEliminateHeld(body, solvable));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
   PetscCall(ConstrainedSolverCreate(solvable, body->free_rows, body->dim, prefix, NULL, &body->mass_solver));
-  PetscCall(BodySetConstraints(body)); /* rows may be prescribed already */
   PetscCall(MatDestroy(&solvable));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,58 +190,18 @@ PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CopyHeld(Body body, Vec from, Vec to)
+/* a = M^{-1} f, zero on massless nodes. Where the mass matrix is not diagonal, held dofs of f are to be their accelerations, see
+   BodySubtractHeldInertia(). */
+PetscErrorCode BodySolveMass(Body body, Vec f, Vec a)
 {
-  const PetscScalar *source;
-  PetscScalar       *target;
+  PetscScalar *array;
 
   PetscFunctionBegin;
-  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(from, &source));
-  PetscCall(VecGetArray(to, &target));
-  for (PetscInt i = 0; i < body->n_held; i++) target[body->held_dofs[i]] = source[body->held_dofs[i]];
-  PetscCall(VecRestoreArray(to, &target));
-  PetscCall(VecRestoreArrayRead(from, &source));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Takes what held dofs with their acceleration at time t do to the others, through a mass matrix that is not diagonal, out of the force f;
-   on held dofs it becomes that acceleration, for the solver which has rows of the identity there. `work` is overwritten. */
-PetscErrorCode BodyAddHeldInertia(Body body, PetscReal t, Vec f, Vec work)
-{
-  PetscFunctionBegin;
-  if (!body->any_held || body->mass_diagonal || body->is_static) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecZeroEntries(body->work[2]));
-  PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, body->work[2]));
-  PetscCall(MatMult(body->mass_matrix, body->work[2], work));
-  PetscCall(VecAXPY(f, -1, work));
-  PetscCall(CopyHeld(body, body->work[2], f));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* a = M^{-1} f, zero on massless nodes; where `prescribed` is given, with the acceleration of prescribed rows at that
-   position of the controller step. f is that of BodyAddHeldInertia(), and is used as work space. */
-PetscErrorCode BodySolveMass(Body body, Vec f, PetscReal position, PetscBool prescribed, Vec a)
-{
-  PetscFunctionBegin;
-  if (body->is_static) PetscCall(VecZeroEntries(a));
-  else if (body->inverse_mass) {
-    PetscCall(VecPointwiseMult(a, body->inverse_mass, f));
-    if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, a));
-  } else {
-    PetscScalar *array;
-
+  if (!body->integrator->has_inertia) PetscCall(VecZeroEntries(a));
+  else if (body->inverse_mass) PetscCall(VecPointwiseMult(a, body->inverse_mass, f));
+  else {
     if (!body->mass_solver) PetscCall(BodySetUpMassSolver(body));
-    if (prescribed) {
-      PetscCall(VecZeroEntries(body->work[1]));
-      PetscCall(CopyHeld(body, f, body->work[1]));
-      PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->work[1]));
-      PetscCall(BodyZeroHeld(body, body->work[1]));
-      PetscCall(MatMult(body->mass_matrix, body->work[1], a));
-      PetscCall(VecAXPY(f, -1, a));
-    }
     PetscCall(ConstrainedSolverSolve(body->mass_solver, f, a));
-    if (prescribed) PetscCall(VecAXPY(a, 1, body->work[1]));
     PetscCall(VecGetArray(a, &array));
     for (PetscInt i = 0; i < body->n_layer_dofs; i++) array[body->layer_dofs[i]] = 0;
     PetscCall(VecRestoreArray(a, &array));

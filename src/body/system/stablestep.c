@@ -10,13 +10,20 @@
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
 
+/* Iterations: each multiplies the error of an estimate by the ratio of the element's two largest eigenvalues; a larger error is caught by
+   solving exactly for all elements whose estimate is close to the largest one */
 #define POWER_ITERATIONS 24
-/* elements at a time; a multiple of what element loops take in a batch */
+/* Elements at a time; a multiple of what element loops take in a batch */
 #define CHUNK 1024
-/* Those within this factor of the largest estimate are solved for exactly, up to a number of them */
+/* Elements with an estimate above this part of the largest one are solved for exactly, from the top down in bands of this width, relative
+   to it, up to a number of them: exact solutions cost some 100 times as much as an estimate's iteration */
 #define CLOSE     0.8
+#define BAND      0.02
 #define MAX_EXACT 200
-/* Displacement of power iteration, relative to the element: small against nonlinearity, large against round-off */
+/* The first band: estimates of equal elements differ by round-off, which is less than this part of them */
+#define EQUAL 1e-9
+/* Displacement in power iteration, relative to the size of the element: a strain small enough for a nonlinear material to be linear, and
+   large against the round-off of positions */
 #define PROBE_STRAIN 1e-6
 
 static PetscBool IsMassless(Body body, PetscInt node)
@@ -159,8 +166,8 @@ static PetscErrorCode LargestOfLumped(Body body, PetscReal *largest)
   PetscCall(EstimateEigenvalues(body, eigenvalues));
   for (PetscInt e = 0; e < count; e++) top = PetscMax(top, eigenvalues[e]);
   /* from the top down, band by band */
-  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - 1e-9) * top; above > CLOSE * top && n_exact < MAX_EXACT;
-       above = bound, bound -= 0.02 * top)
+  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - EQUAL) * top; above > CLOSE * top && n_exact < MAX_EXACT;
+       above = bound, bound -= BAND * top)
     for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
       if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
       last = eigenvalues[e];

@@ -16,10 +16,8 @@
 */
 #include "rounds.h"
 
-/* Rounds of the active set in one step after which something must be wrong: more than any run of the tests takes, by five times */
-#define MAX_ROUNDS 100
 /* Rounds after which no row leaves any more, so that a step with a set seen twice ends with an answer */
-#define LAST_ROUNDS (MAX_ROUNDS / 2)
+#define LAST_ROUNDS (ROUNDS_MAX / 2)
 
 /* For rows of this rank whose state is in these arrays, which stay where they are */
 PetscErrorCode RoundsCreate(Contact contact, PetscBool active[], const PetscReal force[], const PetscReal gap[], Rounds *rounds)
@@ -32,7 +30,7 @@ PetscErrorCode RoundsCreate(Contact contact, PetscBool active[], const PetscReal
   rounds->gap       = gap;
   rounds->tolerance = contact->tolerance;
   rounds->recheck   = PETSC_TRUE;
-  PetscCall(PetscMalloc1((MAX_ROUNDS + 1) * contact->n_rows, &rounds->tried));
+  PetscCall(PetscMalloc1((ROUNDS_MAX + 1) * contact->n_rows, &rounds->tried));
   PetscCall(PetscCalloc1(contact->n_rows, &rounds->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,8 +60,8 @@ PetscErrorCode RoundsNext(Rounds *rounds)
   const PetscInt n = rounds->contact->n_rows;
 
   PetscFunctionBegin;
-  PetscCheck(rounds->n < MAX_ROUNDS, PetscObjectComm((PetscObject)rounds->contact), PETSC_ERR_NOT_CONVERGED,
-             "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", MAX_ROUNDS);
+  PetscCheck(rounds->n < ROUNDS_MAX, PetscObjectComm((PetscObject)rounds->contact), PETSC_ERR_NOT_CONVERGED,
+             "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", ROUNDS_MAX);
   PetscCall(PetscArraycpy(rounds->tried + rounds->n++ * n, rounds->active, n));
   if (!rounds->cycled || rounds->n < LAST_ROUNDS) PetscFunctionReturn(PETSC_SUCCESS);
   rounds->single = PETSC_FALSE;
@@ -75,6 +73,19 @@ PetscErrorCode RoundsNext(Rounds *rounds)
 const PetscBool *RoundsLast(const Rounds *rounds)
 {
   return rounds->n ? rounds->tried + (rounds->n - 1) * rounds->contact->n_rows : NULL;
+}
+
+/* Whether the active set is another than that of the last round; collective */
+PetscErrorCode RoundsHaveChanged(const Rounds *rounds, PetscBool *changed)
+{
+  const PetscBool *last    = RoundsLast(rounds);
+  int              differs = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < rounds->contact->n_rows; i++) differs |= rounds->active[i] != last[i];
+  PetscCall(ContactOr(rounds->contact, &differs));
+  *changed = (PetscBool)(differs > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether a row penetrates without being active, or is active and pulled */

@@ -2,6 +2,9 @@
 #pragma once
 #include <impakt/private/contactimpl.h>
 
+/* Rounds of the active set in one step after which something must be wrong: more than any run of the tests takes, by five times */
+#define ROUNDS_MAX 100
+
 typedef struct {
   Contact contact; /* borrowed */
   /* of this rank's rows, all borrowed: what is changed, and what is looked at for it */
@@ -24,5 +27,6 @@ PETSC_INTERN PetscErrorCode   RoundsDestroy(Rounds *);
 PETSC_INTERN PetscErrorCode   RoundsBegin(Rounds *);
 PETSC_INTERN PetscErrorCode   RoundsNext(Rounds *);
 PETSC_INTERN PetscErrorCode   RoundsChange(Rounds *);
+PETSC_INTERN PetscErrorCode   RoundsHaveChanged(const Rounds *, PetscBool *);
 PETSC_INTERN const PetscBool *RoundsLast(const Rounds *);
 PETSC_INTERN PetscErrorCode   RoundsBreakCycle(Rounds *, PetscBool *);

@@ -1,6 +1,6 @@
 /* Rounds of the active set on made-up contact problems, gaps = q + S forces, whose rows are shared out to the ranks. */
 #include "support.h"
-#include <contact/impls/schwarz/schwarzimpl.h>
+#include <contact/activeset/rounds.h>
 
 #define MOST_ROWS 10
 
@@ -12,7 +12,7 @@ typedef struct {
 
 typedef struct {
   Contact   contact;
-  Schwarz   schwarz;
+  Rounds    set;
   PetscReal force[MOST_ROWS], gap[MOST_ROWS]; /* of all rows, on every rank */
   PetscInt  rounds;
 } Model;
@@ -26,19 +26,15 @@ static void model_create(PetscInt n, Model *m)
   ok(PetscSplitOwnership(PETSC_COMM_WORLD, &local, &n));
   assert_int_equal(MPI_Exscan(&local, &m->contact->row_begin, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
   m->contact->n_rows = local;
-  m->contact->data   = &m->schwarz;
-  m->schwarz.recheck = PETSC_TRUE;
-  ok(PetscCalloc5(local, &m->contact->active, local, &m->contact->tied, local, &m->contact->force, local, &m->contact->gap, local,
-                  &m->schwarz.rounds.kept));
-  ok(PetscMalloc1((SCHWARZ_MAX_ROUNDS + 1) * local, &m->schwarz.rounds.tried));
+  ok(PetscCalloc4(local, &m->contact->active, local, &m->contact->tied, local, &m->contact->force, local, &m->contact->gap));
+  ok(RoundsCreate(m->contact, m->contact->active, m->contact->force, m->contact->gap, &m->set));
 }
 
 static void model_destroy(Model *m)
 {
-  ok(PetscFree(m->schwarz.rounds.tried));
-  ok(PetscFree5(m->contact->active, m->contact->tied, m->contact->force, m->contact->gap, m->schwarz.rounds.kept));
+  ok(RoundsDestroy(&m->set));
+  ok(PetscFree4(m->contact->active, m->contact->tied, m->contact->force, m->contact->gap));
   m->contact->n_rows = 0;
-  m->contact->data   = NULL;
   ok(ContactDestroy(&m->contact));
 }
 
@@ -74,13 +70,14 @@ static PetscInt step(const Problem *problem, Model *m)
 {
   PetscBool changed = PETSC_TRUE, flips;
 
-  ok(SchwarzBeginRounds(m->contact));
+  ok(RoundsBegin(&m->set));
   for (PetscInt i = 0; i < m->contact->n_rows; i++) m->contact->active[i] = problem->start[m->contact->row_begin + i];
   for (m->rounds = 0; changed; m->rounds++) {
-    ok(SchwarzBeginRound(m->contact));
+    ok(RoundsNext(&m->set));
     solve(problem, m);
-    ok(SchwarzUpdateActiveSet(m->contact, &changed));
-    if (changed) ok(SchwarzBreakCycle(m->contact, &flips));
+    ok(RoundsChange(&m->set));
+    ok(RoundsHaveChanged(&m->set, &changed));
+    if (changed) ok(RoundsBreakCycle(&m->set, &flips));
   }
   return m->contact->counts_made.set_cycles;
 }
@@ -173,7 +170,7 @@ static void fewer_wrong_rows(void **state)
   model_create(9, &model);
   assert_int_equal(step(&problem, &model), 1);
   check(&model, 9, force);
-  between(model.rounds, 1, SCHWARZ_MAX_ROUNDS / 2 - 1);
+  between(model.rounds, 1, ROUNDS_MAX / 2 - 1);
   model_destroy(&model);
 }
 
@@ -189,7 +186,7 @@ static void a_long_way_ends(void **state)
   assert_int_equal(step(&problem, &model), 1);
   check(&model, 3, circle_force);
   for (PetscInt i = 3; i < 10; i++) assert_true(model.gap[i] >= -1e-12);
-  between(model.rounds, SCHWARZ_MAX_ROUNDS / 2, SCHWARZ_MAX_ROUNDS / 2 + 10);
+  between(model.rounds, ROUNDS_MAX / 2, ROUNDS_MAX / 2 + 10);
   model_destroy(&model);
 }
 

@@ -7,14 +7,14 @@
 /* of the gaps, by conjugate gradients, relative: near what factors leave; and what may be left where round-off keeps them from it */
 #define GAP_TOLERANCE 1e-14
 #define WORST_GAP     1e-9
-#define MAX_ROUNDS    100
 
 PetscErrorCode ComplementarityDestroy(Complementarity *problem)
 {
   PetscFunctionBegin;
   PetscCall(InterfaceOperatorDestroy(&problem->S));
   PetscCall(MatDestroy(&problem->compliance));
-  PetscCall(PetscFree5(problem->gaps, problem->forces, problem->active, problem->mine, problem->marks));
+  PetscCall(PetscFree6(problem->gaps, problem->forces, problem->active, problem->mine, problem->closed, problem->marks));
+  PetscCall(RoundsDestroy(&problem->rounds));
   PetscCall(VecDestroy(&problem->force_vec));
   PetscCall(VecDestroy(&problem->gap_vec));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,7 +89,9 @@ PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
   const PetscInt          n        = contact->n_rows;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc5(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->marks));
+  PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->closed, n,
+                         &problem->marks));
+  PetscCall(RoundsCreate(contact, problem->active, problem->forces, problem->closed, &problem->rounds));
   PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
   PetscCall(VecDuplicate(problem->force_vec, &problem->gap_vec));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &problem->S));
@@ -111,12 +113,11 @@ PetscErrorCode ComplementaritySolveActive(Contact contact, Complementarity *prob
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows whose gap stays below -tolerance under the forces join, rows that are pulled leave; whether any does */
-static PetscErrorCode ChangeActive(Contact contact, PetscReal tolerance, Complementarity *problem, PetscBool *changed)
+/* Gaps of all rows under the forces, zero being those of active rows but for round-off */
+static PetscErrorCode ComputeClosed(Contact contact, Complementarity *problem)
 {
   const PetscScalar *moved;
   PetscScalar       *force;
-  int                any = 0;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(problem->force_vec, &force));
@@ -124,30 +125,29 @@ static PetscErrorCode ChangeActive(Contact contact, PetscReal tolerance, Complem
   PetscCall(VecRestoreArrayWrite(problem->force_vec, &force));
   PetscCall(MatMult(problem->compliance, problem->force_vec, problem->gap_vec));
   PetscCall(VecGetArrayRead(problem->gap_vec, &moved));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    if (contact->tied[i] || !(problem->active[i] ? problem->forces[i] < 0 : problem->gaps[i] + moved[i] < -tolerance)) continue;
-    problem->active[i] = (PetscBool)!problem->active[i];
-    any                = 1;
-  }
+  for (PetscInt i = 0; i < contact->n_rows; i++) problem->closed[i] = problem->gaps[i] + moved[i];
   PetscCall(VecRestoreArrayRead(problem->gap_vec, &moved));
-  PetscCall(ContactOr(contact, &any));
-  *changed = (PetscBool)(any > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Starts from all negative gaps, and those that are tied */
 PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Complementarity *problem)
 {
-  PetscBool changed = PETSC_TRUE;
+  PetscBool changed = PETSC_TRUE, flips;
 
   PetscFunctionBegin;
+  problem->rounds.tolerance = tolerance;
+  PetscCall(RoundsBegin(&problem->rounds));
   for (PetscInt i = 0; i < contact->n_rows; i++) problem->active[i] = (PetscBool)(contact->tied[i] || problem->gaps[i] < 0);
-  for (PetscInt round = 0; changed; round++) {
-    PetscCheck(round < MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-               "The active set of the Lagrange multipliers has changed %d times in one step", MAX_ROUNDS);
+  while (changed) {
+    PetscCall(RoundsNext(&problem->rounds));
     PetscCall(ComplementaritySolveActive(contact, problem));
-    PetscCall(ChangeActive(contact, tolerance, problem, &changed));
-    if (changed) contact->counts_made.set_changes++;
+    PetscCall(ComputeClosed(contact, problem));
+    PetscCall(RoundsChange(&problem->rounds));
+    PetscCall(RoundsHaveChanged(&problem->rounds, &changed));
+    if (!changed) break;
+    contact->counts_made.set_changes++;
+    PetscCall(RoundsBreakCycle(&problem->rounds, &flips));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

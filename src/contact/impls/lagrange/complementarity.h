@@ -2,6 +2,7 @@
    src/contact/impls. */
 #pragma once
 #include <impakt/private/contactimpl.h>
+#include <contact/activeset/rounds.h>
 #include <contact/compliance/interfaceoperator.h>
 
 typedef struct {
@@ -11,6 +12,8 @@ typedef struct {
   PetscScalar   *gaps, *forces;
   PetscBool     *active; /* rows with a force */
   PetscScalar   *mine;   /* work space */
+  PetscScalar   *closed; /* gaps under the forces */
+  Rounds         rounds;
   InterfaceMark *marks;
   PetscBool      current; /* those of C with S as it is */
   Vec            force_vec, gap_vec;

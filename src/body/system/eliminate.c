@@ -1,19 +1,7 @@
-/* Degrees of freedom whose displacement the user prescribes: put in, zeroed, and taken out of matrices. */
+/* Degrees of freedom whose displacement the user prescribes (held dofs), taken out of vectors and matrices. */
 #include <body/layout/bodyimpl.h>
 
-/* Held dofs of any of u, v, a at time t */
-PetscErrorCode BodyPrescribeHeld(Body body, PetscReal t, Vec u, Vec v, Vec a)
-{
-  PetscFunctionBegin;
-  if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
-  if (body->unloaded) {
-    if (u) PetscCall(BodyZeroHeld(body, u));
-    if (v) PetscCall(BodyZeroHeld(body, v));
-    if (a) PetscCall(BodyZeroHeld(body, a));
-  } else PetscCall(BodyLoadsPrescribe(body, t, u, v, a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
+/* Held dofs of a vector become zero */
 PetscErrorCode BodyZeroHeld(Body body, Vec vec)
 {
   PetscScalar *array;
@@ -23,6 +11,22 @@ PetscErrorCode BodyZeroHeld(Body body, Vec vec)
   PetscCall(VecGetArray(vec, &array));
   for (PetscInt i = 0; i < body->n_held; i++) array[body->held_dofs[i]] = 0;
   PetscCall(VecRestoreArray(vec, &array));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Held dofs of a vector become those of another */
+PetscErrorCode BodyCopyHeld(Body body, Vec from, Vec to)
+{
+  const PetscScalar *source;
+  PetscScalar       *target;
+
+  PetscFunctionBegin;
+  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(from, &source));
+  PetscCall(VecGetArray(to, &target));
+  for (PetscInt i = 0; i < body->n_held; i++) target[body->held_dofs[i]] = source[body->held_dofs[i]];
+  PetscCall(VecRestoreArray(to, &target));
+  PetscCall(VecRestoreArrayRead(from, &source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

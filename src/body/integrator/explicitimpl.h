@@ -1,0 +1,15 @@
+/* Central differences: what they need beside the TS. Private to src/body/integrator. */
+#pragma once
+#include <body/layout/bodyimpl.h>
+
+typedef struct _n_LayerBalance *LayerBalance;
+
+PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
+PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);
+PETSC_INTERN PetscErrorCode LayerBalanceSetRows(LayerBalance, Body, const PetscMPIInt[]);
+PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, PetscReal, PetscBool, Vec, Vec);
+PETSC_INTERN PetscErrorCode LayerBalanceSave(LayerBalance, Body);
+PETSC_INTERN PetscErrorCode LayerBalanceRestore(LayerBalance, Body);
+PETSC_INTERN PetscErrorCode LayerBalanceApplyUnit(LayerBalance, Body, PetscInt, PetscScalar[]);
+PETSC_INTERN PetscBool      BodyHasOutsideForce(Body, PetscBool);
+PETSC_INTERN PetscErrorCode BodyComputeOutsideForce(Body, PetscReal, PetscReal, PetscBool, Vec, Vec);

@@ -1,0 +1,215 @@
+/*
+   The massless contact layer of an explicit body: where it is follows from static balance with the rest of the body as it is,
+
+     K_LL du = (forces - internal force)_L,
+
+   with prescribed rows held and Robin rows on their springs. One round is exact for a linear material. Others repeat it by chord Newton's
+   method: with the factors of the undeformed layer or, since these become worse as the body turns (they fail at 23 degrees), of the layer
+   as it was when they had become slow.
+*/
+#include "explicitimpl.h"
+
+/* Rounds that the balance of a nonlinear layer may take */
+#define MAX_ROUNDS 100
+/* A balance that takes so many is slow. With new factors, a block that turns by half a degree in a step (tests/unit/body_repeat.c) takes
+   3 to 6 rounds at first. */
+#define SLOW_ROUNDS 20
+/* The layer is in balance when its last change is below this part of the largest one in this balance, */
+#define TOLERANCE 1e-12
+/* or below this part of the norm of displacements and reference positions of all nodes, whose round-off is part of any change */
+#define ROUND_OFF (4 * PETSC_MACHINE_EPSILON)
+
+struct _n_LayerBalance {
+  IS         dofs;          /* of the layer, numbers in the vectors of the body */
+  Vec        rhs, solution; /* of the layer */
+  VecScatter scatter;       /* from a vector of the body */
+  PetscReal  reach;         /* norm of the reference positions of all nodes [m] */
+  /* of nonlinear bodies */
+  PetscBool slow;         /* the last balance was */
+  Vec       point, saved; /* where the factors are made, and where those were that the controller step began with [m] */
+  PetscBool changed;      /* these are not the same */
+};
+
+/* With contact: under the constraints of the rows; else as if there were no rows */
+static PetscErrorCode SolveLayer(LayerBalance layer, Body body, PetscBool contact)
+{
+  KSP ksp;
+
+  PetscFunctionBegin;
+  if (contact) PetscCall(ConstrainedSolverSolve(body->solver, layer->rhs, layer->solution));
+  else {
+    PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
+    PetscCall(KSPSolve(ksp, layer->rhs, layer->solution));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The factors at layer->point */
+static PetscErrorCode Refactor(LayerBalance layer, Body body)
+{
+  KSP ksp;
+  Mat K;
+
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
+  PetscCall(KSPGetOperators(ksp, &K, NULL));
+  PetscCall(BodyAssembleLayer(body, layer->point, K));
+  PetscCall(ConstrainedSolverRefactor(body->solver));
+  layer->slow = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The state of the body has become the start of the next controller step */
+PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body)
+{
+  PetscFunctionBegin;
+  if (layer->slow) {
+    PetscCall(BodyGatherLayer(body, body->state.u, layer->point));
+    PetscCall(Refactor(layer, body));
+    layer->changed = PETSC_TRUE;
+  }
+  if (layer->changed) PetscCall(VecCopy(layer->point, layer->saved));
+  layer->changed = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The controller step begins again */
+PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body)
+{
+  PetscFunctionBegin;
+  layer->slow = PETSC_FALSE;
+  if (!layer->changed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCopy(layer->saved, layer->point));
+  PetscCall(Refactor(layer, body));
+  layer->changed = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the layer in u into balance at a time, with contact or, to see where it would get, as if there were none. Where there are forces
+   from outside or of contact, `force` becomes their sum, with Robin rows where they were before the last round; else it is left alone. */
+PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
+{
+  const PetscBool outside = BodyHasOutsideForce(body, contact), linear = (PetscBool)(body->linear || body->linearized),
+                  robin = (PetscBool)(contact && body->n_robin);
+  PetscReal       first = 0, round_off = 0;
+
+  PetscFunctionBegin;
+  if (!linear) {
+    if (contact && layer->slow) {
+      PetscCall(BodyGatherLayer(body, u, layer->point));
+      PetscCall(Refactor(layer, body));
+      layer->changed = PETSC_TRUE;
+    }
+    PetscCall(VecNorm(u, NORM_2, &round_off));
+    round_off = ROUND_OFF * (round_off + layer->reach);
+  }
+  if (outside) PetscCall(BodyComputeOutsideForce(body, time, position, contact, u, force));
+  for (PetscInt round = 0; round < (linear ? 1 : MAX_ROUNDS); round++) {
+    PetscReal change;
+
+    if (round && robin) PetscCall(BodyComputeOutsideForce(body, time, position, contact, u, force));
+    if (outside) {
+      PetscCall(VecScatterBegin(layer->scatter, force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
+      PetscCall(VecScatterEnd(layer->scatter, force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
+    } else PetscCall(VecZeroEntries(layer->rhs));
+    PetscCall(BodySubtractLayerForce(body, u, layer->rhs));
+    PetscCall(SolveLayer(layer, body, contact));
+    PetscCall(VecScatterBegin(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecScatterEnd(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
+    if (linear) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(VecNorm(layer->solution, NORM_2, &change));
+    first = PetscMax(first, change);
+    /* what is not a number is told when the substep is over */
+    if (contact) layer->slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
+    if (change <= TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
+          "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or "
+          "-%smass_redistribute false",
+          body->hdr.name, MAX_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+}
+
+/* Displacement of this rank's rows under a unit force on one row of any rank [m/N] */
+PetscErrorCode LayerBalanceApplyUnit(LayerBalance layer, Body body, PetscInt row, PetscScalar displacement[])
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverApplyUnit(body->solver, row, layer->solution, displacement));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows of the interface as the layer sees them */
+static PetscErrorCode CreateRows(LayerBalance layer, Body body, Mat *B)
+{
+  IS       rows;
+  PetscInt row_begin;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(body->free_rows, &row_begin, NULL));
+  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
+  PetscCall(MatCreateSubMatrix(body->free_rows, rows, layer->dofs, MAT_INITIAL_MATRIX, B));
+  PetscCall(ISDestroy(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayerBalanceSetRows(LayerBalance layer, Body body, const PetscMPIInt changed[])
+{
+  Mat B;
+
+  PetscFunctionBegin;
+  PetscCall(CreateRows(layer, body, &B));
+  PetscCall(ConstrainedSolverSetRows(body->solver, B, changed));
+  PetscCall(MatDestroy(&B));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With the factors of the undeformed layer, in body->solver */
+PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
+{
+  MPI_Comm     comm = PetscObjectComm((PetscObject)body);
+  Mat          K, B;
+  PetscInt     rstart, *global;
+  char         prefix[128];
+  LayerBalance layer;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(balance));
+  layer = *balance;
+  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(body->n_layer_dofs, &global));
+  for (PetscInt i = 0; i < body->n_layer_dofs; i++) global[i] = rstart + body->layer_dofs[i];
+  PetscCall(ISCreateGeneral(comm, body->n_layer_dofs, global, PETSC_OWN_POINTER, &layer->dofs));
+  PetscCall(VecCreate(comm, &layer->rhs));
+  PetscCall(VecSetSizes(layer->rhs, body->n_layer_dofs, PETSC_DETERMINE));
+  PetscCall(VecSetType(layer->rhs, VECSTANDARD));
+  PetscCall(VecDuplicate(layer->rhs, &layer->solution));
+  PetscCall(BodySetUpLayerElements(body, layer->rhs));
+  PetscCall(BodyCreateLayerMatrix(body, &K));
+  PetscCall(CreateRows(layer, body, &B));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
+  PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, BodyGetSharedCompliance(body), &body->solver));
+  PetscCall(VecNorm(body->positions, NORM_2, &layer->reach));
+  PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
+  PetscCall(MatDestroy(&K));
+  PetscCall(MatDestroy(&B));
+  if (!body->linear) {
+    PetscCall(BodyCreateLayerVec(body, &layer->point));
+    PetscCall(VecZeroEntries(layer->point));
+    PetscCall(VecDuplicate(layer->point, &layer->saved));
+    PetscCall(VecCopy(layer->point, layer->saved));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
+{
+  PetscFunctionBegin;
+  if (!*layer) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ISDestroy(&(*layer)->dofs));
+  PetscCall(VecDestroy(&(*layer)->rhs));
+  PetscCall(VecDestroy(&(*layer)->solution));
+  PetscCall(VecDestroy(&(*layer)->point));
+  PetscCall(VecDestroy(&(*layer)->saved));
+  PetscCall(VecScatterDestroy(&(*layer)->scatter));
+  PetscCall(PetscFree(*layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,324 @@
+/*
+   The equations of one substep of a body on TSALPHA2, with inertia or without, and how they are solved: by Newton's method with the
+   factored effective matrix K + shift M, in one iteration for a linear body, whose matrix is constant.
+*/
+#include "implicitimpl.h"
+#include <sys/petsccompat.h>
+
+/* Newton's method for a nonlinear body has converged where the residual is below this part of the forces that it is the balance of, or
+   below its round-off; option -<body>_snes_rtol. What is left over changes momentum in each step: it should not show. */
+#define NEWTON_TOLERANCE 1e-12
+/* At most so many iterations in a substep; option -<body>_snes_max_it. The falling discs of options/ten-balls.opts take 1 to 4. */
+#define NEWTON_ITERATIONS 50
+/* Where the line search finds no smaller residual, Newton's method has converged if its step is below this part of the displacement: that
+   is a few units in the last place; option -<body>_snes_stol */
+#define NEWTON_STEP 1e-15
+/* Absolute tolerance [N]; option -<body>_snes_atol. Not a force in anyone's units: the square of a smaller number underflows. */
+#define NEWTON_UNDERFLOW 1e-150
+/* What a sum of a few products loses, in units of the largest number in it: a node belongs to some 8 elements */
+#define ROUND_OFF (8 * PETSC_MACHINE_EPSILON)
+
+/* Sizes of a nonlinear residual: of the forces that it is the balance of, and of the round-off of the largest numbers in it; `inertia` is
+   M A, or NULL */
+static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  Vec           product  = body->work[2];
+  PetscReal     force, stiffness, mass = 0, position = 0;
+
+  PetscFunctionBegin;
+  PetscCall(VecNorm(body->internal_force, NORM_2, &force));
+  /* the internal force is a sum of displacements times stiffnesses, which may cancel: a body that moves as a whole has none */
+  PetscCall(MatGetDiagonal(implicit->matrix, product));
+  PetscCall(VecPointwiseMult(product, product, U));
+  PetscCall(VecNorm(product, NORM_2, &stiffness));
+  if (inertia) {
+    PetscCall(VecNorm(inertia, NORM_2, &mass));
+    /* the acceleration is a difference of displacements over dt^2 */
+    PetscCall(VecPointwiseMult(product, body->mass_row_sum, U));
+    PetscCall(VecNorm(product, NORM_2, &position));
+    position *= implicit->shift;
+  }
+  implicit->terms     = force + mass;
+  implicit->round_off = ROUND_OFF * (position + force + stiffness);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The residual from the inertia M A, or zero, in F: internal force at U less forces from outside at time t and of contact, with held dofs
+   and prescribed rows projected out */
+PetscErrorCode BodyImplicitAddForces(Body body, PetscReal t, Vec U, Vec F)
+{
+  const BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  const PetscReal     position = (body->substep + implicit->alpha_f) / body->substeps;
+
+  PetscFunctionBegin;
+  if (!body->linear) PetscCall(NoteTerms(body, U, body->integrator->has_inertia ? F : NULL));
+  PetscCall(VecAXPY(F, 1, body->internal_force));
+  PetscCall(BodyAddExternalForce(body, t, -1, F));
+  PetscCall(BodyAddContactForce(body, position, -1, U, F));
+  PetscCall(BodyZeroHeld(body, F));
+  PetscCall(BodyPrescribe(body, NULL, position, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Held dofs and prescribed rows of a displacement at the end of the substep */
+PetscErrorCode BodyImplicitPrescribe(Body body, Vec U)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyPrescribeHeld(body, body->time + body->time_step, U, NULL, NULL));
+  PetscCall(BodyPrescribe(body, body->traces.displacement_in, (PetscReal)(body->substep + 1) / body->substeps, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The effective matrix K + shift M, its held dofs eliminated */
+static PetscErrorCode AssembleMatrix(Body body, Vec u)
+{
+  const BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  PetscCall(BodyAssembleTangent(body, u, implicit->matrix));
+  if (implicit->shift > 0 && body->mass_diagonal) {
+    PetscCall(VecCopy(body->mass_diagonal, body->work[0]));
+    PetscCall(VecScale(body->work[0], implicit->shift));
+    PetscCall(MatDiagonalSet(implicit->matrix, body->work[0], ADD_VALUES));
+  } else if (implicit->shift > 0) PetscCall(MatAXPY(implicit->matrix, implicit->shift, body->mass_matrix, SAME_NONZERO_PATTERN));
+  PetscCall(BodyEliminateHeld(body, implicit->matrix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The matrix of a linear body is constant, and was assembled at set-up */
+static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P,
+                                      void *ctx)
+{
+  Body body = (Body)ctx;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  (void)V;
+  (void)A;
+  (void)shift_v;
+  (void)shift_a;
+  (void)J;
+  (void)P;
+  if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AssembleMatrix(body, U));
+  PetscCall(ConstrainedSolverRefactor(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyConstrainedSolver(PC pc, Vec b, Vec x)
+{
+  Body body;
+
+  PetscFunctionBegin;
+  PetscCall(PCShellGetContext(pc, &body));
+  PetscCall(ConstrainedSolverSolve(body->solver, b, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One Newton iteration solves a linear body. The residual must still be evaluated at the solution, because velocity and
+   acceleration are by-products of its evaluation. */
+static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                            SNESConvergedReason *reason, void *ctx)
+{
+  PetscFunctionBegin;
+  (void)snes;
+  (void)xnorm;
+  (void)gnorm;
+  (void)ctx;
+  *reason = it ? SNES_CONVERGED_ITS : SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Newton's method has converged where the residual is small against the forces that it is the balance of */
+static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason,
+                                    void *ctx)
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)((Body)ctx)->integrator->data;
+  PetscReal           rtol, atol;
+
+  PetscFunctionBegin;
+  (void)xnorm;
+  (void)gnorm;
+  PetscCall(SNESGetTolerances(snes, &atol, &rtol, NULL, NULL, NULL));
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
+  else if (fnorm <= atol) *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (it && fnorm <= rtol * implicit->terms + implicit->round_off) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For CG with multigrid: what the body can do without strain */
+static PetscErrorCode SetNearNullSpace(Body body, Mat A)
+{
+  MatNullSpace rigid;
+  Vec          coordinates;
+
+  PetscFunctionBegin;
+  if (body->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(body->positions, &coordinates));
+  PetscCall(VecCopy(body->positions, coordinates));
+  PetscCall(VecSetBlockSize(coordinates, body->dim));
+  PetscCall(MatSetBlockSize(A, body->dim));
+  PetscCall(MatNullSpaceCreateRigidBody(coordinates, &rigid));
+  PetscCall(MatSetNearNullSpace(A, rigid));
+  PetscCall(MatNullSpaceDestroy(&rigid));
+  PetscCall(VecDestroy(&coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A controller step that is made again begins with the same displacement, and has to begin with the same Jacobian too: lagging it, or its
+   factors, from one substep to the next is refused */
+static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
+{
+  static const char *const options[] = {"-snes_lag_jacobian_persists", "-snes_lag_preconditioner_persists"};
+  const char              *prefix    = ((PetscObject)body)->prefix;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 2; i++) {
+    PetscBool persists = PETSC_FALSE;
+
+    PetscCall(PetscOptionsGetBool(NULL, prefix, options[i], &persists, NULL));
+    PetscCheck(!persists, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+               "-%s%s: steps are made several times, and each time must begin with the Jacobian of its own start; leave it out, since "
+               "-%ssnes_lag_jacobian alone lags within a step",
+               prefix, options[i] + 1, prefix);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Newton's method for nonlinear bodies; one iteration of it for linear ones */
+static PetscErrorCode SetUpNewton(Body body, SNES snes)
+{
+  SNESLineSearch line_search;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetLineSearch(snes, &line_search));
+  if (!body->linear) {
+    PetscCall(SNESSetTolerances(snes, NEWTON_UNDERFLOW, NEWTON_TOLERANCE, NEWTON_STEP, NEWTON_ITERATIONS, PETSC_CURRENT));
+    PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
+    PetscCall(RefuseLagBetweenSubsteps(body));
+    PetscCall(SNESSetFromOptions(snes));
+    PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SNESSetLagJacobian(snes, -2));
+  PetscCall(SNESSetLagJacobianPersists(snes, PETSC_TRUE));
+  PetscCall(SNESSetLagPreconditioner(snes, -2));
+  PetscCall(SNESSetLagPreconditionerPersists(snes, PETSC_TRUE));
+  PetscCall(SNESSetConvergenceTest(snes, StopAfterOneIteration, NULL, NULL));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+  PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The effective matrix and its factors, which a linear body keeps for good, and the callbacks of the TS and its SNES; shift is known */
+PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  const char   *prefix   = ((PetscObject)body)->prefix;
+  SNES          snes;
+  KSP           ksp;
+  PC            pc;
+  Vec           vec;
+  char          outer[128];
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateMatrix(body, &implicit->matrix));
+  PetscCall(AssembleMatrix(body, NULL));
+  PetscCall(SetNearNullSpace(body, implicit->matrix));
+  PetscCall(ConstrainedSolverCreate(implicit->matrix, body->free_rows, body->dim, prefix, BodyGetSharedCompliance(body), &body->solver));
+
+  PetscCall(BodyCreateVec(body, &vec));
+  PetscCall(TSSetI2Function(body->ts, vec, residual, body));
+  PetscCall(TSSetI2Jacobian(body->ts, implicit->matrix, implicit->matrix, ComputeJacobian, body));
+  PetscCall(VecDestroy(&vec));
+  PetscCall(TSAlpha2SetPredictor(body->ts, predictor, body));
+  PetscCall(TSGetSNES(body->ts, &snes));
+  PetscCall(SetUpNewton(body, snes));
+  if (!body->linear || !body->integrator->affine || body->substeps > 1) body->integrator->ops.repeat = NULL;
+  /* BodyImplicitCheckSubstep() tells, with body and time */
+  PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_FALSE));
+  PetscCall(TSSetErrorIfStepFails(body->ts, PETSC_FALSE));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  /* the user's -<body>_ksp_... options are for the solver with the factors, inside */
+  PetscCall(PetscSNPrintf(outer, sizeof(outer), "%sconstrained_", prefix));
+  PetscCall(KSPSetOptionsPrefix(ksp, outer));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, body));
+  PetscCall(PCShellSetApply(pc, ApplyConstrainedSolver));
+  PetscCall(PCShellSetName(pc, "factored effective matrix with contact constraints"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the displacement at the end of the one substep of a linear body: A du = B^T df with prescribed rows at B du = dx, A being the
+   effective matrix; and the internal force with it */
+PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar force[], const PetscScalar displacement[], Vec du)
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverCorrect(body->solver, force, displacement, du));
+  PetscCall(VecAXPY(body->state.u, 1, du));
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Newton's method that did not converge, with body, time and what to do. A linear body takes one iteration, which cannot fail. */
+PetscErrorCode BodyImplicitCheckSubstep(Body body)
+{
+  SNESConvergedReason reason;
+  PetscInt            iterations;
+  SNES                snes;
+
+  PetscFunctionBegin;
+  if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TSGetSNES(body->ts, &snes));
+  PetscCall(SNESGetConvergedReason(snes, &reason));
+  PetscCall(SNESGetIterationNumber(snes, &iterations));
+  if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyCheckInverted(body));
+  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
+          "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
+          " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
+          body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[reason], iterations, ((PetscObject)body)->prefix,
+          ((PetscObject)body)->prefix);
+}
+
+/* What both have in common */
+PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
+{
+  BodyImplicit *implicit;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&implicit));
+  integrator->data               = implicit;
+  integrator->reads_start        = PETSC_TRUE;
+  integrator->feels_end_force    = PETSC_TRUE;
+  integrator->repeats_prescribed = PETSC_TRUE;
+  integrator->ops.setrows        = BodyImplicitSetRows;
+  integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
+  integrator->ops.destroy        = BodyImplicitDestroy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyImplicitDestroy(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  Vec          *vecs[]   = {&implicit->u, &implicit->v, &implicit->a, &implicit->next};
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
+  PetscCall(MatDestroy(&implicit->matrix));
+  PetscCall(PetscFree(body->integrator->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

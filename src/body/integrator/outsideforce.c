@@ -1,0 +1,19 @@
+/* All forces on the nodes of an explicit body but the internal ones. */
+#include "explicitimpl.h"
+
+/* Whether there are any: from loads or, where it is counted, of contact */
+PetscBool BodyHasOutsideForce(Body body, PetscBool contact)
+{
+  return (PetscBool)(body->loads || (contact && body->n_forced));
+}
+
+/* The force from outside at a time and, where it is counted, that of contact at a position (0 to 1) in the controller step [N]; u: the
+   displacement, on which springs of Robin rows depend */
+PetscErrorCode BodyComputeOutsideForce(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
+{
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(force));
+  PetscCall(BodyAddExternalForce(body, time, 1, force));
+  if (contact) PetscCall(BodyAddContactForce(body, position, 1, u, force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,115 @@
+/* A body under TSSTATIC: static balance at the end of each substep. It has a velocity, by the change of its displacement, for contact to
+   see, but neither mass nor acceleration. */
+#include "implicitimpl.h"
+
+/* F = internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */
+static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
+{
+  Body body = (Body)ctx;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)V;
+  (void)A;
+  PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
+  PetscCall(VecZeroEntries(F));
+  PetscCall(BodyImplicitAddForces(body, t, U, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* First iterate: the last displacement with held dofs and prescribed rows in place */
+static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
+{
+  Body body = (Body)ctx;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)V0;
+  PetscCall(VecCopy(body->state.a, A0));
+  PetscCall(VecCopy(X0, X1));
+  PetscCall(BodyImplicitPrescribe(body, X1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetFromOptions(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  PetscCall(TSSetFromOptions(body->ts));
+  PetscCall(TSAlpha2GetParams(body->ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
+  PetscCheck(implicit->alpha_m == 1 && implicit->alpha_f == 1 && implicit->gamma > 0 && implicit->beta > 0,
+             PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", ((PetscObject)body)->prefix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The velocity is the mean of the substep */
+static PetscErrorCode FinishSubstep(Body body)
+{
+  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscScalar *u0, *u1;
+  PetscScalar       *v1;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
+  PetscCall(VecGetArrayRead(body->state.u, &u1));
+  PetscCall(VecGetArrayWrite(body->state.v, &v1));
+  for (PetscInt i = 0; i < n; i++) v1[i] = (u1[i] - u0[i]) / body->time_step;
+  PetscCall(VecRestoreArrayWrite(body->state.v, &v1));
+  PetscCall(VecRestoreArrayRead(body->state.u, &u1));
+  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
+  PetscCall(VecZeroEntries(body->state.a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
+{
+  Vec change = body->work[2];
+
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitCorrect(body, force, displacement, change));
+  PetscCall(VecAXPY(body->state.v, 1 / body->time_step, change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3; k++) velocity[k] = acceleration[k] = 0;
+  velocity[0] = 1 / body->time_step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* When the hat is over, the body is back where it was */
+static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (!implicit->next) PetscCall(VecDuplicate(body->state.u, &implicit->next));
+  PetscCall(ConstrainedSolverApplyUnit(body->solver, row, implicit->next, column));
+  PetscCall(PetscArrayzero(column + body->rows.local, (body->substeps - 1) * body->rows.local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator integrator)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitCreate(integrator));
+  integrator->affine               = PETSC_TRUE;
+  integrator->ops.setfromoptions   = SetFromOptions;
+  integrator->ops.setup            = SetUp;
+  integrator->ops.finishsubstep    = FinishSubstep;
+  integrator->ops.repeat           = Repeat;
+  integrator->ops.compliancecolumn = ComputeComplianceColumn;
+  integrator->ops.rates            = GetRates;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,181 @@
+/* What follows from mesh and material alone: mass, size, stiffness and wave impedance. */
+#include <body/layout/bodyimpl.h>
+
+/*@
+  BodyGetDimension - dimension of the space that the body lies in
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. dim - 1, 2 or 3: displacements of a node
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetDM()`
+@*/
+PetscErrorCode BodyGetDimension(Body body, PetscInt *dim)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(DMGetCoordinateDim(body->dm, dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetMass - the mass of the body
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. mass - [kg]
+
+  Level: intermediate
+
+.seealso: `Body`
+@*/
+PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *mass = body->total_mass;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetCrossSection - what lengths and points of the mesh are multiplied by to give areas
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetFromOptions()`
+
+  Output Parameter:
+. cross_section - of bars [m^2]; thickness of plane bodies [m]; 1 in three dimensions
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyGetImpedance()`
+@*/
+PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  *cross_section = body->element->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Measure of all cells (length, area or volume), and their number, on all ranks together */
+static PetscErrorCode SumCells(Body body, PetscReal sums[2])
+{
+  PetscInt cstart, cend;
+
+  PetscFunctionBegin;
+  sums[0] = 0;
+  PetscCall(DMPlexGetHeightStratum(body->dm, 0, &cstart, &cend));
+  for (PetscInt cell = cstart; cell < cend; cell++) {
+    PetscReal measure;
+
+    PetscCall(DMPlexComputeCellGeometryFVM(body->dm, cell, &measure, NULL, NULL));
+    sums[0] += measure;
+  }
+  sums[1] = cend - cstart;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetElementSize - edge length of the elements, from their mean volume
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with its mesh
+
+  Output Parameter:
+. size - edge of the line, square or cube with the mean volume of the elements; of simplices, of that which holds 2 or 6 of them [m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetDM()`
+@*/
+PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
+{
+  PetscReal sums[2];
+  PetscBool simplex;
+  PetscInt  dim;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(DMPlexIsSimplex(body->dm, &simplex));
+  PetscCall(SumCells(body, sums));
+  if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
+  *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetImpedance - force for a unit velocity of a plane wave, for each unit of area
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. impedance - sqrt(M rho) [N s/m^3], M = lambda + 2 mu being the modulus of plane waves; of a bar, sqrt(E rho) times its cross-section
+              [N s/m]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyComputeRowStiffness()`, `MaterialGetUniaxialModulus()`
+@*/
+PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
+{
+  PetscReal density, modulus;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(MaterialGetDensity(body->material, &density));
+  if (body->dim == 1) PetscCall(MaterialGetUniaxialModulus(body->material, &modulus));
+  else PetscCall(MaterialGetWaveModulus(body->material, &modulus));
+  *impedance = PetscSqrtReal(modulus * density) * body->element->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetElementStiffness - stiffness of an element against pressure on one of its faces
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with its mesh and material
+
+  Output Parameter:
+. stiffness - modulus of plane waves over edge length [N/m^3], times the cross-sectional area in one dimension [N/m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetElementSize()`, `BodyGetImpedance()`
+@*/
+PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
+{
+  PetscReal impedance, density, size, cross_section;
+  PetscInt  dim;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyGetImpedance(body, &impedance));
+  PetscCall(MaterialGetDensity(body->material, &density));
+  PetscCall(BodyGetElementSize(body, &size));
+  PetscCall(BodyGetCrossSection(body, &cross_section));
+  PetscCall(BodyGetDimension(body, &dim));
+  *stiffness = PetscSqr(impedance / cross_section) / density / size * (dim == 1 ? cross_section : 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,58 @@
+/*
+   How a body goes through one substep: the operations that an integrator brings, and the properties by which the rest of src/body knows it.
+   Nobody asks which integrator a body has. One for each body, found by the type of the body's TS; src/body/integrator/README.md says how to
+   add one.
+*/
+#pragma once
+#include <impakt/body.h>
+
+typedef struct _n_BodyIntegrator *BodyIntegrator;
+
+/* Those marked (NULL) may be missing */
+typedef struct {
+  PetscErrorCode (*setfromoptions)(Body); /* sets the defaults of the TS, calls TSSetFromOptions(), reads and checks its parameters */
+  PetscErrorCode (*setup)(Body);          /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
+  PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* the rows that are marked, of all ranks, have new entries */
+  PetscErrorCode (*checksubstep)(
+      Body); /* (NULL) after TSStep(): an error that says why where the equations of the substep were not solved */
+  PetscErrorCode (*finishsubstep)(Body); /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever
+                                            else of the state the TS leaves undone */
+  PetscErrorCode (*repeat)(Body, const PetscScalar[],
+                           const PetscScalar[]); /* (NULL) after the one substep of a controller step: moves
+                 its end state to the present inputs, given by how much more force acts on forced and Robin rows [N],
+                 and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
+  PetscErrorCode (*save)(Body);                  /* (NULL) the present state has become the saved one */
+  PetscErrorCode (*restore)(Body); /* (NULL) the saved state is there again: what the integrator remembers must be as it was then, so that
+                                      the same integration gives the same bits */
+  PetscErrorCode (*freerows)(Body, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of the controller step if no
+                                                      contact acts on any, without integrating [m]; may be set in setup() */
+  PetscErrorCode (*compliancecolumn)(Body, PetscInt, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of each substep,
+                                                                        substeps x rows, after a hat of force on one row of any rank: 1 N at
+                                                                        the end of the first substep, 0 at its start and at the end of the
+                                                                        second [m]; may be set in setup() */
+  PetscErrorCode (*rates)(Body, PetscReal[3], PetscReal[3]);         /* (NULL) of rows: velocity and acceleration at the end of a substep as
+                                                                        multiples of u1 - u0, v0 and a0 */
+  PetscErrorCode (*destroy)(Body);                                   /* frees `data`; the body may not have been set up */
+} BodyIntegratorOps;
+
+struct _n_BodyIntegrator {
+  BodyIntegratorOps ops;
+  void             *data;
+  /* known from creation on */
+  PetscBool has_inertia;       /* false: neither mass nor acceleration means anything, and the state has no kinetic energy */
+  PetscBool needs_stable_step; /* substeps are bounded by 2 / omega_max */
+  PetscBool divides_by_mass;   /* each substep divides by the mass, so that factoring it has to be paid for */
+  PetscReal staggered;         /* the energy that the scheme conserves has 1/2 (v'Mv - staggered dt^2 a'Ma) for kinetic energy */
+  /* known after setfromoptions() */
+  PetscBool affine; /* for linear materials, displacements at the ends of substeps are affine in the contact forces at these ends alone */
+  /* known after setup() */
+  PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
+  PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
+  PetscBool feels_end_force;    /* displacements at the end of the controller step answer to the contact forces there */
+};
+
+PETSC_INTERN PetscErrorCode BodyIntegratorCreate(Body, const char[]);
+PETSC_INTERN PetscErrorCode BodyIntegratorDestroy(Body);
+PETSC_INTERN PetscErrorCode BodyIntegratorCreate_Implicit(BodyIntegrator);
+PETSC_INTERN PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator);
+PETSC_INTERN PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator);
