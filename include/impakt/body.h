@@ -154,6 +154,7 @@ PETSC_EXTERN PetscErrorCode BodyCountUnknown(Body, PetscInt, const PetscInt[], P
 PETSC_EXTERN PetscErrorCode BodyGetComplianceFlops(Body, PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode BodySetBase(Body);
 PETSC_EXTERN PetscErrorCode BodySetFreeBase(Body);
+PETSC_EXTERN PetscErrorCode BodySetRestBase(Body);
 PETSC_EXTERN PetscErrorCode BodySetRoles(Body, const BodyCondition[]);
 PETSC_EXTERN PetscErrorCode BodyRespond(Body);
 PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);

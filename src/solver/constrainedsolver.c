@@ -338,6 +338,7 @@ PetscErrorCode ConstrainedSolverExtend(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
   if (s->global <= FEW_ROWS) {
+    s->fresh[j] = (PetscBool)(s->fresh[j] && ComplianceKnows(s->compliance, j)); /* its owner may have forgotten it */
     PetscCall(MakeColumn(s, j));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -29,12 +29,13 @@ PetscErrorCode BodySetUpRepeat(Body body)
 
 /* What comes in at the end of the controller step is the present state's from now on; `changes`: by how much that is more than before, on
    the rows that it counts for */
-static PetscErrorCode TakeInputs(Body body)
+static PetscErrorCode TakeInputs(Body body, PetscBool *any)
 {
   const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
   struct _BodyRepeat *repeat   = body->repeat;
 
   PetscFunctionBegin;
+  *any = PETSC_FALSE;
   for (PetscInt k = 0; k < 2; k++) {
     PetscScalar *values;
 
@@ -45,6 +46,7 @@ static PetscErrorCode TakeInputs(Body body)
 
       repeat->changes[k][i] = counts ? values[i] - repeat->inputs[k][i] : 0;
       repeat->inputs[k][i]  = values[i];
+      if (repeat->changes[k][i] != 0) *any = PETSC_TRUE;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -53,9 +55,11 @@ static PetscErrorCode TakeInputs(Body body)
 /* A whole integration has just been done */
 PetscErrorCode BodyNoteInputs(Body body)
 {
+  PetscBool any;
+
   PetscFunctionBegin;
   if (!body->integrator->ops.repeat || !body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TakeInputs(body));
+  PetscCall(TakeInputs(body, &any));
   /* rows of one node that are not orthonormal are prescribed by least squares, which has no simple change */
   body->repeats = (PetscBool)(!body->n_prescribed || (body->integrator->repeats_prescribed && !body->any_oblique));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -64,11 +68,15 @@ PetscErrorCode BodyNoteInputs(Body body)
 /* Moves the end state of this controller step to the inputs as they are now, if that can be done */
 PetscErrorCode BodyRepeat(Body body, PetscBool *done)
 {
+  PetscBool any;
+
   PetscFunctionBegin;
   *done = body->repeats;
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TakeInputs(body));
-  PetscCall((*body->integrator->ops.repeat)(body, body->repeat->changes[0], body->repeat->changes[1]));
+  PetscCall(TakeInputs(body, &any));
+  PetscCall(BodyAnyRank(body, &any));
+  /* without a change the state stays as it is, bit for bit; nodes with mass may yet be given another velocity */
+  if (any || body->prescribed_mass) PetscCall((*body->integrator->ops.repeat)(body, body->repeat->changes[0], body->repeat->changes[1]));
   PetscCall(BodyWriteTraces(body, body->substeps));
   body->total_substeps += body->substeps;
   PetscFunctionReturn(PETSC_SUCCESS);

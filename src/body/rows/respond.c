@@ -69,6 +69,34 @@ PetscErrorCode BodySetFreeBase(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BodySetRestBase - takes rest without forces as what `BodyRespond()` counts changes from
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Level: developer
+
+  Note:
+  For differences of responses, in which the base does not matter.
+
+.seealso: `Body`, `BodySetBase()`
+@*/
+PetscErrorCode BodySetRestBase(Body body)
+{
+  struct _BodyCompliance *c = body->compliance;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscArrayzero(c->base_displacement, body->substeps * body->rows.local));
+  PetscCall(PetscArrayzero(c->base_force, body->substeps * body->rows.local));
+  c->base_gathered = PETSC_FALSE;
+  c->has_base      = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The force on each prescribed or Robin row by what its displacement is to be at the end of a substep */
 static PetscErrorCode FactorSolved(Body body)
 {

@@ -272,7 +272,7 @@ PetscErrorCode InterfaceOperatorGather(InterfaceOperator op, const PetscScalar m
    to its own: the compliance of springs between both sides */
 PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[], const PetscReal diagonal[])
 {
-  PetscScalar *listed = op->listed[0], *S;
+  PetscScalar *listed = op->listed[1], *S; /* the first may be what is solved for */
   PetscBool    singular;
 
   PetscFunctionBegin;

@@ -98,7 +98,10 @@ static PetscErrorCode AssembleChain(Contact contact)
   PetscFunctionBegin;
   if (!jacobian->probe[0])
     for (PetscInt k = 0; k < 2; k++) PetscCall(VecDuplicate(schwarz->outer.x, &jacobian->probe[k]));
-  if (before != STEP_CONDENSED) PetscCall(SchwarzSetRoles(contact));
+  if (before != STEP_CONDENSED) {
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRestBase(contact->bodies[b]));
+    PetscCall(SchwarzSetRoles(contact));
+  }
   schwarz->step = STEP_CONDENSED;
   for (PetscInt column = -1; column < size; column++) {
     const PetscScalar *values;
