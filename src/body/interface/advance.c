@@ -32,7 +32,7 @@ PetscErrorCode BodySave(Body body)
     }
   }
   if (body->loads) {
-    /* repeated sweeps of one substep may have moved its end by adding responses: the work is found when the step is accepted */
+    /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
     if (body->substeps == 1 && body->step != body->saved_step) PetscCall(BodyAddWork(body, body->substep_start.u));
     PetscCall(VecCopy(body->applied, body->saved_applied));
     body->saved_work = body->external_work;
@@ -41,7 +41,7 @@ PetscErrorCode BodySave(Body body)
   if (body->step != body->saved_step) PetscCall(TSMonitor(body->ts, body->step, body->time, body->state.u));
   body->saved_time = body->time;
   body->saved_step = body->step;
-  /* the TS adds its substeps up, with another round-off in the time that loads see than where the window is done again */
+  /* The TS has added up its substeps, with another round-off than body->time. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
   body->swept = PETSC_FALSE;
@@ -116,7 +116,7 @@ PetscErrorCode BodyReinstate(Body body)
 }
 
 /*@
-  BodyResetTraces - sets what the body tells its partners, at all times of the controller step, to what it is at its start
+  BodyResetTraces - sets the output traces, at all times of the controller step, to their values at its start
 
   Logically Collective
 
@@ -149,8 +149,8 @@ PetscErrorCode BodyResetTraces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A substep that failed, or NaN or infinity in its solution, told with body, time and step. Whatever is not a number ends up in the
-   velocity. The sum of squares hands a NaN of any rank on; a maximum over ranks may lose it. */
+/* An error that names body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from
+   wherever they arise. Its 2-norm is checked, since a sum over ranks keeps the NaN of one, which a maximum may lose. */
 static PetscErrorCode CheckSubstep(Body body)
 {
   TSConvergedReason reason;

@@ -45,7 +45,7 @@ PetscErrorCode BodyFinalizePackage(void)
 }
 
 /*@
-  BodyCreate - creates a body; all about it comes from options with its name as prefix
+  BodyCreate - creates a body, whose mesh, material and integrator come from options that begin with its name
 
   Collective
 

@@ -129,8 +129,8 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 . body - the `Body`
 
   Output Parameter:
-. impedance - sqrt(M rho), M being the modulus of plane waves, lambda + 2 mu [N s/m^3]; of a bar, sqrt(E rho) times its cross-section [N
-s/m]
+. impedance - sqrt(M rho) [N s/m^3], M = lambda + 2 mu being the modulus of plane waves; of a bar, sqrt(E rho) times its cross-section
+              [N s/m]
 
   Level: intermediate
 
@@ -150,7 +150,7 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
 }
 
 /*@
-  BodyGetElementStiffness - what an element has to set against pressure
+  BodyGetElementStiffness - stiffness of an element against pressure on one of its faces
 
   Collective
 

@@ -1,7 +1,7 @@
-/* Rows of the interface that get new entries while a run goes on. */
+/* New entries for rows of the interface, as contact surfaces slide and turn in the course of a run. */
 #include <body/layout/bodyimpl.h>
 
-/* Rows that have changed, on every rank */
+/* all: for each row of all ranks 1 if it has changed, else 0 */
 static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscMPIInt all[])
 {
   const BodyRows *rows = &body->rows;
@@ -14,7 +14,7 @@ static PetscErrorCode GatherChanged(Body body, const PetscBool changed[], PetscM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a body tells of its rows, at the start of the controller step: from its saved state */
+/* The output traces at the start of the controller step: the new rows of the saved state */
 static PetscErrorCode RewriteStart(Body body)
 {
   const Vec   vecs[]   = {body->saved.u, body->saved.v, body->saved.a};
@@ -33,12 +33,12 @@ static PetscErrorCode RewriteStart(Body body)
   Input Parameters:
 + body    - the `Body`, set up, at the start of a controller step
 . B       - matrix of as many rows as before
-- changed - for each row of this rank, whether it is another than before
+- changed - for each row of this rank, whether its entries differ from those before
 
   Level: developer
 
   Note:
-  No matrix of the body is factored again; what is known of the compliance of rows that have changed is forgotten.
+  No matrix of the body is factored again. Columns of the compliance that belong to rows which have changed are discarded.
 
 .seealso: `Body`, `BodySetInterface()`
 @*/

@@ -1,6 +1,19 @@
 /* Substeps, and the TS of a body. */
 #include <body/layout/bodyimpl.h>
 
+/* What -<body>_ts_time_step auto takes of the stable step: the stable step is that of the undeformed body, and a nonlinear one may stiffen
+ */
+#define SAFETY 0.9
+/* Quotients and steps that agree to this part, relative, differ by round-off */
+#define ROUND_OFF 1e-12
+/* A substep given with a few digits, as 3.333333e-7 for a third of 1e-6, divides the controller step if it misses it by this part at most
+ */
+#define DIVIDES 1e-6
+/* More substeps to a controller step are a mistake, and overflow integers */
+#define MAX_SUBSTEPS 1e9
+/* For TSSetMaxTime() [s]: no end, since the controller has one; PETSc takes PETSC_MAX_REAL for a time that was not set */
+#define NO_END (0.5 * PETSC_MAX_REAL)
+
 /* A whole number of substeps to the controller step */
 PetscErrorCode BodySetUpSubsteps(Body body)
 {
@@ -11,24 +24,24 @@ PetscErrorCode BodySetUpSubsteps(Body body)
   PetscCheck(body->controller_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
   if (body->integrator->needs_stable_step || body->requested_step < 0) PetscCall(BodyComputeStableStep(body));
   if (body->requested_step < 0) {
-    /* the tolerance keeps a quotient that is a whole number but for round-off from being counted up */
-    body->substeps = (PetscInt)PetscCeilReal(body->controller_step / (0.9 * body->stable_step) * (1 - 1e-12));
+    /* a quotient that is a whole number but for round-off is not rounded up to the next one */
+    body->substeps = (PetscInt)PetscCeilReal(body->controller_step / (SAFETY * body->stable_step) * (1 - ROUND_OFF));
   } else {
     const PetscReal step = body->requested_step > 0 ? body->requested_step : body->controller_step;
 
-    PetscCheck(body->controller_step / step < 1e9, comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(body->controller_step / step < MAX_SUBSTEPS, comm, PETSC_ERR_USER_INPUT,
                "-%sts_time_step %g s is too small for the controller step -time_step %g s", prefix, (double)step,
                (double)body->controller_step);
     body->substeps = (PetscInt)PetscFloorReal(0.5 + body->controller_step / step);
     PetscCheck(
-        body->substeps > 0 && PetscAbsReal(body->substeps * step - body->controller_step) <= 1e-6 * body->controller_step, comm,
+        body->substeps > 0 && PetscAbsReal(body->substeps * step - body->controller_step) <= DIVIDES * body->controller_step, comm,
         PETSC_ERR_USER_INPUT,
         "-%sts_time_step %g s does not divide the controller step -time_step %g s (ratio %.9g); choose a whole fraction of it, or 'auto'",
         prefix, (double)step, (double)body->controller_step, (double)(body->controller_step / step));
   }
   body->time_step = body->controller_step / body->substeps;
   if (body->integrator->needs_stable_step)
-    PetscCheck(body->time_step <= body->stable_step * (1 + 1e-12), comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(body->time_step <= body->stable_step * (1 + ROUND_OFF), comm, PETSC_ERR_USER_INPUT,
                "-%sts_time_step %g s of the explicit body '%s' is larger than its stable step, %.6g s; choose a smaller one, or 'auto'",
                prefix, (double)body->time_step, body->hdr.name, (double)body->stable_step);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -47,7 +60,7 @@ PetscErrorCode BodySetUpTime(Body body)
   PetscCheck(none, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_adapt_type: adaptive substeps within a controller step are not supported; leave it at none",
              ((PetscObject)body)->prefix);
-  PetscCall(TSSetMaxTime(body->ts, 1e300));
+  PetscCall(TSSetMaxTime(body->ts, NO_END));
   PetscCall(TSSetExactFinalTime(body->ts, TS_EXACTFINALTIME_STEPOVER));
   PetscCall((*body->integrator->ops.setup)(body));
   PetscCall(TSSetUp(body->ts));

@@ -142,7 +142,7 @@ PetscErrorCode BodySetUpLayout(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether it is so on any rank */
+/* Logical or over all ranks */
 PetscErrorCode BodyAnyRank(Body body, PetscBool *any)
 {
   int value = *any ? 1 : 0; /* a PetscBool is of different size in different versions of PETSc */

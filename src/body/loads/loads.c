@@ -1,4 +1,4 @@
-/* Loads of a body, from options: what is prescribed on its surfaces, and forces from outside. */
+/* Loads of a body from options: displacements that are prescribed on its surfaces, forces from outside, and its initial state. */
 #include "loadsimpl.h"
 
 /* PetscStrToArray() would skip it */
@@ -129,11 +129,14 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
 
   Options Database Keys:
 + -<body>_boundary_displacement a,b                  - surfaces, or node sets, with prescribed displacements
-. -<body>_boundary_displacement_<surface> ux,uy,uz   - those displacements: for each component an expression in x, y, z, t [m], or the word
-`free` . -<body>_boundary_traction a,b                      - surfaces with tractions . -<body>_boundary_traction_<surface> tx,ty,tz       -
-those tractions: expressions in x, y, z, t, nx, ny, nz [Pa] per area of the reference configuration . -<body>_gravity gx,gy,gz - constant
-acceleration of all mass [m/s^2] . -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the
-reference configuration . -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
+. -<body>_boundary_displacement_<surface> ux,uy,uz   - these displacements: for each component an expression in x, y, z, t [m], or the
+                                                       word `free`
+. -<body>_boundary_traction a,b                      - surfaces with tractions
+. -<body>_boundary_traction_<surface> tx,ty,tz       - these tractions: expressions in x, y, z, t, nx, ny, nz [Pa] per area of the
+                                                       reference configuration
+. -<body>_gravity gx,gy,gz                           - constant acceleration of all mass [m/s^2]
+. -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the reference configuration
+. -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
 - -<body>_initial_velocity vx,vy,vz                  - expressions in x, y, z [m/s], default 0
 
   Level: intermediate

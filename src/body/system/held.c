@@ -1,9 +1,11 @@
-/* Whether what is held of a body holds it as a whole. */
+/* Whether the displacements that are held, or the nodes with mass, keep a body from moving as if it were rigid. */
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
 
-#define MAX_RIGID 6
-/* Smallest eigenvalue of the Gram matrix below, relative to the largest, at which a motion counts as free; its round-off is 1e-15 */
+#define MAX_RIGID 6 /* rigid motions in three dimensions */
+/* A rigid motion is free if the smallest eigenvalue of the Gram matrix of all rigid motions on the fixed dofs is below this part of the
+   largest one. Round-off makes 1e-15 of it; two held nodes hold the body if they are more
+   than some 1e-5 of its size apart, the square root of this. */
 #define FREE 1e-10
 
 /* Rigid motions of a node at r: translations, then rotations about the axes (in two dimensions: about the third) */
@@ -17,7 +19,8 @@ static PetscReal RigidMotion(PetscInt dim, PetscInt motion, const PetscReal r[3]
   return 0;
 }
 
-/* Adds what a fixed dof keeps each rigid motion from, as products of motions; lengths relative to the body's size */
+/* Adds to the Gram matrix of the rigid motions what they are at a fixed dof; positions relative to the body's size, for it to have no unit
+ */
 static void AddFixed(Body body, PetscInt dof, const PetscReal box[6], PetscReal size, PetscInt n, PetscReal gram[])
 {
   const PetscInt dim = body->dim, component = dof % dim;
@@ -28,7 +31,8 @@ static void AddFixed(Body body, PetscInt dof, const PetscReal box[6], PetscReal 
     for (PetscInt b = 0; b < n; b++) gram[a * n + b] += RigidMotion(dim, a, r, component) * RigidMotion(dim, b, r, component);
 }
 
-/* Whether some rigid motion of the body leaves all of these owned dofs in place, those of all ranks together */
+/* Whether some rigid motion leaves all fixed dofs in place: those of the list, which is of owned dofs, ascending, or all others; of all
+   ranks together */
 static PetscErrorCode IsLoose(Body body, PetscInt n_fixed, const PetscInt fixed[], PetscBool others, PetscBool *loose)
 {
   MPI_Comm       comm = PetscObjectComm((PetscObject)body);
@@ -53,9 +57,9 @@ static PetscErrorCode IsLoose(Body body, PetscInt n_fixed, const PetscInt fixed[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Errors where a body can move or turn without its matrix noticing: a static one by too few held displacements, since contact forces are
-   found from what the body does under them alone; one with a massless layer by too few nodes with mass. Factors of such a matrix need not
-   show that it is singular. */
+/* An error where a body can move as if it were rigid and its matrix is singular for that: a static body with too few held displacements
+   (contact does not count, because contact forces are found with the matrix of the body alone), or a massless layer that too few nodes with
+   mass hold. Factors of a singular matrix need not show that it is. */
 PetscErrorCode BodyCheckHeld(Body body)
 {
   MPI_Comm    comm   = PetscObjectComm((PetscObject)body);

@@ -1,7 +1,7 @@
-/* Forces and stiffness of the elements that touch the massless contact layer: all that its balance takes of a body. */
+/* Forces and stiffness of the elements that touch the massless contact layer: its balance depends on no others. */
 #include <body/layout/bodyimpl.h>
 
-/* Those elements, numbered on their own, and their nodes: arrays that are short where the layer is */
+/* Those elements and their nodes, numbered anew, so that loops and scatters cost what the layer has, not what the body has */
 struct _n_LayerElements {
   Element    element, linearized; /* the latter NULL until BodyPrepareLinearized() */
   PetscInt  *connectivity;
@@ -198,7 +198,7 @@ PetscErrorCode BodyLayerLinearize(Body body, Material material)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The owned displacements that the balance of the layer and the rows of contact nodes hang on, rank numbering */
+/* The owned dofs, rank numbering, on which the balance of the layer and the rows of contact nodes depend */
 void BodyGetNearLayer(Body body, PetscInt *n, const PetscInt *dofs[])
 {
   *n    = body->layer_elements->n_near;

@@ -10,13 +10,19 @@
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
 
+/* Estimates come from below, the closer the more iterations; the elements that come out on top are solved for exactly afterwards */
 #define POWER_ITERATIONS 24
-/* elements at a time; a multiple of what element loops take in a batch */
+/* Elements at a time; a multiple of what element loops take in a batch */
 #define CHUNK 1024
-/* Those within this factor of the largest estimate are solved for exactly, up to a number of them */
+/* Elements with an estimate above this part of the largest one are solved for exactly, from the top down in bands of this width, relative
+   to it, up to a number of them, for that costs much more than an estimate */
 #define CLOSE     0.8
+#define BAND      0.02
 #define MAX_EXACT 200
-/* Displacement of power iteration, relative to the element: small against nonlinearity, large against round-off */
+/* The first band: estimates of equal elements differ by round-off, which is less than this part of them */
+#define EQUAL 1e-9
+/* Displacement in power iteration, relative to the size of the element: a strain small enough for a nonlinear material to be linear, and
+   large against the round-off of positions */
 #define PROBE_STRAIN 1e-6
 
 static PetscBool IsMassless(Body body, PetscInt node)
@@ -159,8 +165,8 @@ static PetscErrorCode LargestOfLumped(Body body, PetscReal *largest)
   PetscCall(EstimateEigenvalues(body, eigenvalues));
   for (PetscInt e = 0; e < count; e++) top = PetscMax(top, eigenvalues[e]);
   /* from the top down, band by band */
-  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - 1e-9) * top; above > CLOSE * top && n_exact < MAX_EXACT;
-       above = bound, bound -= 0.02 * top)
+  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - EQUAL) * top; above > CLOSE * top && n_exact < MAX_EXACT;
+       above = bound, bound -= BAND * top)
     for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
       if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
       last = eigenvalues[e];
