@@ -1,5 +1,5 @@
 #pragma once
-#include <impakt/body.h>
+#include <impakt/private/bodyrows.h>
 #include <impakt/tssecondorder.h>
 #include <petsc/private/petscimpl.h>
 #include <impakt/private/elementimpl.h>
