@@ -4,7 +4,6 @@
 #include <impakt/material.h>
 #include <petscts.h>
 #include <petscdmplex.h>
-#include <impakt/trace.h>
 
 /*S
    Body - one deformable body, integrated on its own
@@ -22,21 +21,6 @@ typedef struct _p_Body *Body;
 PETSC_EXTERN PetscClassId BODY_CLASSID;
 
 /*E
-   BodyCondition - what a row of the interface means to a body in this controller step
-
-   Values:
-+ `BODY_FREE`       - nothing: the row is not of this body, or not in contact
-. `BODY_PRESCRIBED` - displacement, velocity and acceleration of the row follow their input traces
-. `BODY_FORCED`     - the force in its input trace acts along the row
-- `BODY_ROBIN`      - the force in its input trace less that of a spring between the row and a fixed point acts along the row
-
-   Level: developer
-
-.seealso: `BodySetConditions()`, `BodySetRobin()`
-E*/
-typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyCondition;
-
-/*E
    BodyMassType - how the mass of an element is put on its nodes
 
    Values:
@@ -50,20 +34,6 @@ typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyConditi
 E*/
 typedef enum { BODY_MASS_LUMPED, BODY_MASS_CONSISTENT, BODY_MASS_AVERAGED } BodyMassType;
 PETSC_EXTERN const char *const BodyMassTypes[];
-
-/*E
-   BodyTractionType - which nodal force of the prescribed nodes is handed to the partner
-
-   Values:
-+ `BODY_TRACTION_INTERNAL` - internal force only (Hoy, Tezaur, Mota)
-- `BODY_TRACTION_REACTION` - with the inertia of the nodes: the force that really holds them
-
-   Level: intermediate
-
-.seealso: `BodySetTractionType()`
-E*/
-typedef enum { BODY_TRACTION_INTERNAL, BODY_TRACTION_REACTION } BodyTractionType;
-PETSC_EXTERN const char *const BodyTractionTypes[];
 
 /*S
    BodyMeasures - energies and momentum of a body at the current time
@@ -82,20 +52,6 @@ typedef struct {
   PetscBool loaded;              /* whether forces from outside, held displacements or obstacles act at all */
 } BodyMeasures;
 
-/*S
-   BodyTraces - the waveforms through which a body and its partners talk, one level for each substep
-
-   Level: developer
-
-.seealso: `BodyGetTraces()`, `BodyIntegrate()`
-S*/
-typedef struct {
-  Trace displacement_in, velocity_in, acceleration_in; /* of prescribed rows: read by BodyIntegrate() [m, m/s, m/s^2] */
-  Trace force_in;                                      /* on forced and Robin rows: read by BodyIntegrate() [N] */
-  Trace displacement, velocity, acceleration;          /* of all rows: written by BodyIntegrate() */
-  Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
-} BodyTraces;
-
 PETSC_EXTERN PetscErrorCode BodyRegisterAll(void);
 PETSC_EXTERN PetscErrorCode BodyFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode BodyCreate(MPI_Comm, const char[], Body *);
@@ -105,11 +61,6 @@ PETSC_EXTERN PetscErrorCode BodyView(Body, PetscViewer);
 PETSC_EXTERN PetscErrorCode BodyDestroy(Body *);
 
 PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
-PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
-PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
-PETSC_EXTERN PetscErrorCode BodySetTractionType(Body, BodyTractionType);
-PETSC_EXTERN PetscErrorCode BodySetRowWeights(Body, const PetscReal[]);
-PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *),
                                                 void *);
 
@@ -125,50 +76,8 @@ PETSC_EXTERN PetscErrorCode BodyGetDimension(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyIsExplicit(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsStatic(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsRedistributed(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyGetHeldDofs(Body, PetscInt *, const PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyGetMeasures(Body, BodyMeasures *);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDouble *);
-
-PETSC_EXTERN PetscErrorCode BodySave(Body);
-PETSC_EXTERN PetscErrorCode BodyRestore(Body);
-PETSC_EXTERN PetscErrorCode BodyKeep(Body);
-PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
-PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
-PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
-PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
-PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyComputeFreeRows(Body, PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
-PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
-PETSC_EXTERN PetscErrorCode BodyUpdateInterface(Body, Mat, const PetscBool[]);
-PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
-PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
-PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);
-PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyCountUnknown(Body, PetscInt, const PetscInt[], PetscInt *);
-PETSC_EXTERN PetscErrorCode BodyGetComplianceFlops(Body, PetscLogDouble *);
-PETSC_EXTERN PetscErrorCode BodySetBase(Body);
-PETSC_EXTERN PetscErrorCode BodySetFreeBase(Body);
-PETSC_EXTERN PetscErrorCode BodySetRestBase(Body);
-PETSC_EXTERN PetscErrorCode BodySetRoles(Body, const BodyCondition[]);
-PETSC_EXTERN PetscErrorCode BodyRespond(Body);
-PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
-PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
-PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyGetCrossSection(Body, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);
-PETSC_EXTERN PetscErrorCode BodyBoundForwardCompliance(Body, PetscReal[]);
-PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, Mat *);
-PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyGetElementStiffness(Body, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyAddVelocity(Body, const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyAddAcceleration(Body, const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, const PetscBool[]);
-PETSC_EXTERN PetscErrorCode BodyShiftStart(Body, const PetscScalar[]);

@@ -1,5 +1,6 @@
 #pragma once
 #include <impakt/contact.h>
+#include <impakt/private/bodyrows.h>
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-#include <impakt/body.h>
+#include <impakt/private/bodyrows.h>
 #include <impakt/tssecondorder.h>
 #include <petsc/private/petscimpl.h>
 #include <impakt/private/elementimpl.h>
@@ -58,8 +58,7 @@ struct _p_Body {
   PetscReal      requested_step; /* 0: the controller step; < 0: automatic */
   PetscReal      controller_step, time_step, time_start;
   PetscInt       substeps;
-  PetscReal      stable_step;       /* 0 until BodyComputeStableStep() */
-  PetscReal     *zero_displacement; /* of the rank's nodes, while that runs */
+  PetscReal      stable_step; /* 0 until BodyComputeStableStep() */
   /* state */
   BodyState    state, saved, substep_start; /* of the latter, u and v only, and NULL unless loads or the integrator read it */
   PetscReal    time, saved_time;

@@ -4,7 +4,8 @@
 
 #define MAX_RIGID 6 /* rigid motions in three dimensions */
 /* A rigid motion is free if the smallest eigenvalue of the Gram matrix of all rigid motions on the fixed dofs is below this part of the
-   largest one. Round-off makes 1e-15 of it; two nodes 1e-5 of the body apart still hold it. */
+   largest one. Round-off makes 1e-15 of it; two held nodes hold the body if they are more
+   than some 1e-5 of its size apart, the square root of this. */
 #define FREE 1e-10
 
 /* Rigid motions of a node at r: translations, then rotations about the axes (in two dimensions: about the third) */

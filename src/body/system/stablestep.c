@@ -10,13 +10,12 @@
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
 
-/* Iterations: each multiplies the error of an estimate by the ratio of the element's two largest eigenvalues; a larger error is caught by
-   solving exactly for all elements whose estimate is close to the largest one */
+/* Estimates come from below, the closer the more iterations; the elements that come out on top are solved for exactly afterwards */
 #define POWER_ITERATIONS 24
 /* Elements at a time; a multiple of what element loops take in a batch */
 #define CHUNK 1024
 /* Elements with an estimate above this part of the largest one are solved for exactly, from the top down in bands of this width, relative
-   to it, up to a number of them: exact solutions cost some 100 times as much as an estimate's iteration */
+   to it, up to a number of them, for that costs much more than an estimate */
 #define CLOSE     0.8
 #define BAND      0.02
 #define MAX_EXACT 200
@@ -31,8 +30,9 @@ static PetscBool IsMassless(Body body, PetscInt node)
   return (PetscBool)(body->mass_redistribute && body->in_layer[node]);
 }
 
-/* Largest eigenvalue of one element, its massless nodes held, which holds whether they are free or prescribed */
-static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, PetscReal *largest)
+/* Largest eigenvalue of one element with its massless nodes held, which is a bound whether they are free or prescribed; zero: a
+   displacement of this rank's nodes */
+static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscScalar zero[], PetscReal *largest)
 {
   const PetscInt *nodes = body->connectivity + e * body->element->nodes;
   const PetscInt  n     = body->element->nodes * body->dim;
@@ -43,7 +43,7 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, PetscReal *lar
 
   PetscFunctionBegin;
   *largest = 0;
-  PetscCall((*body->element->ops.stiffness)(body->element, e, body->zero_displacement, K));
+  PetscCall((*body->element->ops.stiffness)(body->element, e, zero, K));
   PetscCall(BodyGetElementMass(body, e, M));
   for (PetscInt i = 0; i < n; i++)
     if (!IsMassless(body, nodes[i / body->dim])) kept[n_kept++] = i;
@@ -155,7 +155,7 @@ static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LargestOfLumped(Body body, PetscReal *largest)
+static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], PetscReal *largest)
 {
   const PetscInt count = body->element->count;
   PetscReal     *eigenvalues, top = 0, exact, last = -1;
@@ -171,7 +171,7 @@ static PetscErrorCode LargestOfLumped(Body body, PetscReal *largest)
     for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
       if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
       last = eigenvalues[e];
-      PetscCall(GetElementEigenvalue(body, e, &exact));
+      PetscCall(GetElementEigenvalue(body, e, zero, &exact));
       *largest = PetscMax(*largest, exact);
       n_exact++;
     }
@@ -182,20 +182,21 @@ static PetscErrorCode LargestOfLumped(Body body, PetscReal *largest)
 /* 2 / omega_max, from below */
 PetscErrorCode BodyComputeStableStep(Body body)
 {
-  PetscReal largest = 0;
+  PetscReal    largest = 0;
+  PetscScalar *zero;
 
   PetscFunctionBegin;
   if (body->stable_step > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(body->local_nodes * body->dim, &body->zero_displacement));
-  if (body->mass_type == BODY_MASS_LUMPED && body->dim > 1) PetscCall(LargestOfLumped(body, &largest));
+  PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
+  if (body->mass_type == BODY_MASS_LUMPED && body->dim > 1) PetscCall(LargestOfLumped(body, zero, &largest));
   else
     for (PetscInt e = 0; e < body->element->count; e++) {
       PetscReal eigenvalue;
 
-      PetscCall(GetElementEigenvalue(body, e, &eigenvalue));
+      PetscCall(GetElementEigenvalue(body, e, zero, &eigenvalue));
       largest = PetscMax(largest, eigenvalue);
     }
-  PetscCall(PetscFree(body->zero_displacement));
+  PetscCall(PetscFree(zero));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
   body->stable_step = 2 / PetscSqrtReal(largest);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,7 @@
 /* ranks: 1 */
 /* Nothing is allocated in the time loop: the C library's allocator is replaced by one that counts. */
 #include <impakt.h>
+#include <impakt/private/bodyrows.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>

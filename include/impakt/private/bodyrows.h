@@ -1,0 +1,106 @@
+/*
+   What contact methods ask of a body: rows of its displacements, what they mean in a controller step, and how they answer to forces. For
+   those who write a contact method; a user of bodies needs <impakt/body.h> alone.
+*/
+#pragma once
+#include <impakt/body.h>
+#include <impakt/trace.h>
+
+/*E
+   BodyCondition - what a row of the interface means to a body in this controller step
+
+   Values:
++ `BODY_FREE`       - nothing: the row is not of this body, or not in contact
+. `BODY_PRESCRIBED` - displacement, velocity and acceleration of the row follow their input traces
+. `BODY_FORCED`     - the force in its input trace acts along the row
+- `BODY_ROBIN`      - the force in its input trace less that of a spring between the row and a fixed point acts along the row
+
+   Level: developer
+
+.seealso: `BodySetConditions()`, `BodySetRobin()`
+E*/
+typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyCondition;
+
+/*E
+   BodyTractionType - which nodal force of the prescribed nodes is handed to the partner
+
+   Values:
++ `BODY_TRACTION_INTERNAL` - internal force only (Hoy, Tezaur, Mota)
+- `BODY_TRACTION_REACTION` - with the inertia of the nodes: the force that really holds them
+
+   Level: intermediate
+
+.seealso: `BodySetTractionType()`
+E*/
+typedef enum { BODY_TRACTION_INTERNAL, BODY_TRACTION_REACTION } BodyTractionType;
+PETSC_EXTERN const char *const BodyTractionTypes[];
+
+/*S
+   BodyTraces - what goes into the rows of a body and comes out of them in a controller step, at the ends of its substeps
+
+   Level: developer
+
+.seealso: `BodyGetTraces()`, `BodyIntegrate()`
+S*/
+typedef struct {
+  Trace displacement_in, velocity_in, acceleration_in; /* of prescribed rows: read by BodyIntegrate() [m, m/s, m/s^2] */
+  Trace force_in;                                      /* on forced and Robin rows: read by BodyIntegrate() [N] */
+  Trace displacement, velocity, acceleration;          /* of all rows: written by BodyIntegrate() */
+  Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
+} BodyTraces;
+
+/* Mesh and material, as contact methods scale by them */
+PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetElementStiffness(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetCrossSection(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetHeldDofs(Body, PetscInt *, const PetscInt *[]);
+
+/* Rows, set up once and given new entries later */
+PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
+PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
+PETSC_EXTERN PetscErrorCode BodyUpdateInterface(Body, Mat, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodySetRowWeights(Body, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodySetTractionType(Body, BodyTractionType);
+PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
+
+/* One controller step */
+PETSC_EXTERN PetscErrorCode BodySave(Body);
+PETSC_EXTERN PetscErrorCode BodyRestore(Body);
+PETSC_EXTERN PetscErrorCode BodyKeep(Body);
+PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
+PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
+PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
+PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
+PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
+PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyComputeFreeRows(Body, PetscScalar[]);
+
+/* Displacements of rows under contact forces: the interface compliance */
+PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
+PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
+PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);
+PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyCountUnknown(Body, PetscInt, const PetscInt[], PetscInt *);
+PETSC_EXTERN PetscErrorCode BodyGetComplianceFlops(Body, PetscLogDouble *);
+PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
+PETSC_EXTERN PetscErrorCode BodySetBase(Body);
+PETSC_EXTERN PetscErrorCode BodySetFreeBase(Body);
+PETSC_EXTERN PetscErrorCode BodySetRestBase(Body);
+PETSC_EXTERN PetscErrorCode BodySetRoles(Body, const BodyCondition[]);
+PETSC_EXTERN PetscErrorCode BodyRespond(Body);
+PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
+
+/* Forces and impulses on rows that act at one end of a step, and corrections of the state there */
+PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);
+PETSC_EXTERN PetscErrorCode BodyBoundForwardCompliance(Body, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, Mat *);
+PETSC_EXTERN PetscErrorCode BodyAddVelocity(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyAddAcceleration(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodyShiftStart(Body, const PetscScalar[]);
