@@ -27,13 +27,14 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 PetscErrorCode BodyCreateCompliance(Body body)
 {
   const BodyRows         *rows   = &body->rows;
-  const PetscInt          levels = body->substeps * rows->local;
+  const PetscInt          levels = body->time.substeps * rows->local;
   struct _BodyCompliance *c;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&body->compliance));
   c = body->compliance;
-  PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->substeps, &c->matrices));
+  PetscCall(
+      ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
   PetscCall(PetscCalloc6(rows->local, &c->roles, levels, &c->mine, levels, &c->base_displacement, levels, &c->base_force, rows->global,
                          &c->all_roles, rows->global, &c->all_flexibility));
   PetscCall(PetscMalloc1(rows->global, &c->solved));
@@ -44,7 +45,7 @@ PetscErrorCode BodyCreateCompliance(Body body)
    since the outer iteration wants one that stays as it is from sweep to sweep */
 Compliance BodyGetSharedCompliance(Body body)
 {
-  return body->linear ? body->compliance->matrices : NULL;
+  return body->model.linear ? body->compliance->matrices : NULL;
 }
 
 /*@
@@ -128,8 +129,8 @@ PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *plac
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyExtendCompliance() first");
-  PetscCheck(level >= -1 && level < body->substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
-             "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->substeps);
+  PetscCheck(level >= -1 && level < body->time.substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->time.substeps);
   ComplianceGetRows(c->matrices, NULL, NULL, place);
   if (level < 0) PetscCall(ComplianceGetRamp(c->matrices, leading, matrix));
   else ComplianceGetMatrix(c->matrices, level, leading, matrix);
@@ -155,7 +156,7 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *exact = (PetscBool)(body->linear && body->integrator->affine);
+  *exact = (PetscBool)(body->model.linear && body->integrator->affine);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

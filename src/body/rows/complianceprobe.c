@@ -10,12 +10,12 @@ static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
 
   PetscFunctionBegin;
   PetscCall(BodySetUnitForce(body, row));
-  if (local >= 0 && local < body->rows.local) body->conditions[local] = BODY_FORCED;
+  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FORCED;
   PetscCall(BodyRestore(body));
   PetscCall(BodyIntegrateWindow(body));
-  body->total_substeps -= body->substeps;
-  if (local >= 0 && local < body->rows.local) body->conditions[local] = BODY_FREE;
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  body->statistics.substeps -= body->time.substeps;
+  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FREE;
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &values));
     PetscCall(PetscArraycpy(c->mine + k * body->rows.local, values, body->rows.local));
   }
@@ -25,30 +25,30 @@ static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
 /* A body whose integrator has no column to offer is integrated: at rest, with all rows free but the one in hand */
 static PetscErrorCode ProbeByIntegrating(Body body, PetscInt n, const PetscInt rows[])
 {
-  const PetscInt counts[3] = {body->n_prescribed, body->n_forced, body->n_robin};
+  const PetscInt counts[3] = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};
   BodyCondition *kept;
 
   PetscFunctionBegin;
   PetscCall(BodyBeginProbe(body));
   PetscCall(PetscMalloc1(body->rows.local, &kept));
-  PetscCall(PetscArraycpy(kept, body->conditions, body->rows.local));
-  PetscCall(PetscArrayzero(body->conditions, body->rows.local));
-  body->n_prescribed = body->n_robin = 0;
-  body->n_forced                     = 1;
+  PetscCall(PetscArraycpy(kept, body->rows.conditions, body->rows.local));
+  PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));
+  body->rows.n_prescribed = body->rows.n_robin = 0;
+  body->rows.n_forced                          = 1;
   PetscCall(BodySetConstraints(body));
   PetscCall(BodyPrepareLinearized(body));
-  body->linearized = (PetscBool)!body->linear;
+  body->model.linearized = (PetscBool)!body->model.linear;
   for (PetscInt i = 0; i < n; i++) {
     if (ComplianceKnows(body->compliance->matrices, rows[i])) continue;
     PetscCall(IntegrateUnderUnitForce(body, rows[i]));
-    PetscCall(ComplianceSetColumn(body->compliance->matrices, rows[i], body->substeps, body->compliance->mine));
+    PetscCall(ComplianceSetColumn(body->compliance->matrices, rows[i], body->time.substeps, body->compliance->mine));
   }
-  body->linearized = PETSC_FALSE;
+  body->model.linearized = PETSC_FALSE;
   PetscCall(BodyEndProbe(body));
-  PetscCall(PetscArraycpy(body->conditions, kept, body->rows.local));
-  body->n_prescribed = counts[0];
-  body->n_forced     = counts[1];
-  body->n_robin      = counts[2];
+  PetscCall(PetscArraycpy(body->rows.conditions, kept, body->rows.local));
+  body->rows.n_prescribed = counts[0];
+  body->rows.n_forced     = counts[1];
+  body->rows.n_robin      = counts[2];
   PetscCall(BodySetConstraints(body));
   PetscCall(PetscFree(kept));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -57,7 +57,7 @@ static PetscErrorCode ProbeByIntegrating(Body body, PetscInt n, const PetscInt r
 /* Columns of the rows that are not known yet. With one substep the body's solver has them, where its compliance is this one. */
 PetscErrorCode BodyProbeCompliance(Body body, PetscInt n, const PetscInt rows[])
 {
-  const PetscBool shares = (PetscBool)(body->substeps == 1 && body->solver && BodyGetSharedCompliance(body));
+  const PetscBool shares = (PetscBool)(body->time.substeps == 1 && body->solver && BodyGetSharedCompliance(body));
 
   PetscFunctionBegin;
   if (!body->integrator->ops.compliancecolumn) {
@@ -69,7 +69,7 @@ PetscErrorCode BodyProbeCompliance(Body body, PetscInt n, const PetscInt rows[])
     if (shares) PetscCall(ConstrainedSolverExtend(body->solver, rows[i]));
     else {
       PetscCall((*body->integrator->ops.compliancecolumn)(body, rows[i], body->compliance->mine));
-      PetscCall(ComplianceSetColumn(body->compliance->matrices, rows[i], body->substeps, body->compliance->mine));
+      PetscCall(ComplianceSetColumn(body->compliance->matrices, rows[i], body->time.substeps, body->compliance->mine));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -39,9 +39,9 @@ static PetscErrorCode TakeInputs(Body body, PetscBool *any)
   for (PetscInt k = 0; k < 2; k++) {
     PetscScalar *values;
 
-    PetscCall(TraceGetLevel(traces[k], body->substeps, &values));
+    PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
     for (PetscInt i = 0; i < body->rows.local; i++) {
-      const BodyCondition condition = body->conditions[i];
+      const BodyCondition condition = body->rows.conditions[i];
       const PetscBool     counts    = (PetscBool)(k ? condition == BODY_PRESCRIBED : condition == BODY_FORCED || condition == BODY_ROBIN);
 
       repeat->changes[k][i] = counts ? values[i] - repeat->inputs[k][i] : 0;
@@ -61,7 +61,7 @@ PetscErrorCode BodyNoteInputs(Body body)
   if (!body->integrator->ops.repeat || !body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TakeInputs(body, &any));
   /* rows of one node that are not orthonormal are prescribed by least squares, which has no simple change */
-  body->repeats = (PetscBool)(!body->n_prescribed || (body->integrator->repeats_prescribed && !body->any_oblique));
+  body->repeats = (PetscBool)(!body->rows.n_prescribed || (body->integrator->repeats_prescribed && !body->rows.any_oblique));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -76,8 +76,8 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   PetscCall(TakeInputs(body, &any));
   PetscCall(BodyAnyRank(body, &any));
   /* without a change the state stays as it is, bit for bit; nodes with mass may yet be given another velocity */
-  if (any || body->prescribed_mass) PetscCall((*body->integrator->ops.repeat)(body, body->repeat->changes[0], body->repeat->changes[1]));
-  PetscCall(BodyWriteTraces(body, body->substeps));
-  body->total_substeps += body->substeps;
+  if (any || body->rows.have_mass) PetscCall((*body->integrator->ops.repeat)(body, body->repeat->changes[0], body->repeat->changes[1]));
+  PetscCall(BodyWriteTraces(body, body->time.substeps));
+  body->statistics.substeps += body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,12 +33,12 @@ PetscErrorCode BodySetBase(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   c = body->compliance;
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.force_in, k + 1, &force));
     for (PetscInt i = 0; i < body->rows.local; i++) {
       c->base_displacement[k * body->rows.local + i] = displacement[i];
-      c->base_force[k * body->rows.local + i]        = body->conditions[i] == BODY_FORCED ? force[i] : 0;
+      c->base_force[k * body->rows.local + i]        = body->rows.conditions[i] == BODY_FORCED ? force[i] : 0;
     }
   }
   c->base_gathered = PETSC_FALSE;
@@ -90,8 +90,8 @@ PetscErrorCode BodySetRestBase(Body body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(PetscArrayzero(c->base_displacement, body->substeps * body->rows.local));
-  PetscCall(PetscArrayzero(c->base_force, body->substeps * body->rows.local));
+  PetscCall(PetscArrayzero(c->base_displacement, body->time.substeps * body->rows.local));
+  PetscCall(PetscArrayzero(c->base_force, body->time.substeps * body->rows.local));
   c->base_gathered = PETSC_FALSE;
   c->has_base      = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -171,7 +171,7 @@ PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
   PetscCall(PetscArrayzero(c->all_flexibility, rows->global));
   if (robin) {
     for (PetscInt i = 0; i < rows->local; i++)
-      if (roles[i] == BODY_ROBIN) c->all_flexibility[rows->begin + i] = 1 / body->robin[i];
+      if (roles[i] == BODY_ROBIN) c->all_flexibility[rows->begin + i] = 1 / body->rows.robin[i];
     if (rows->size > 1)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->all_flexibility, (PetscMPIInt)rows->global, MPIU_REAL, MPIU_SUM,
                                  PetscObjectComm((PetscObject)body)));
@@ -190,7 +190,7 @@ static PetscErrorCode MakeRoom(Body body)
   ComplianceGetRows(c->matrices, &n, NULL, NULL);
   if (n <= c->room) PetscFunctionReturn(PETSC_SUCCESS);
   c->room = PetscMin(body->rows.global, PetscMax(n, 2 * c->room));
-  size    = body->substeps * c->room;
+  size    = body->time.substeps * c->room;
   PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
   PetscCall(PetscMalloc6(size, &c->known_displacement, size, &c->known_force, size, &c->input, size, &c->force, size, &c->displacement,
                          c->room, &c->rhs));
@@ -209,18 +209,18 @@ static PetscErrorCode GatherInputs(Body body)
   PetscFunctionBegin;
   PetscCall(MakeRoom(body));
   if (!c->base_gathered || c->gathered_state != ComplianceGetState(c->matrices)) {
-    PetscCall(ComplianceGather(c->matrices, body->substeps, c->base_displacement, c->known_displacement));
-    PetscCall(ComplianceGather(c->matrices, body->substeps, c->base_force, c->known_force));
+    PetscCall(ComplianceGather(c->matrices, body->time.substeps, c->base_displacement, c->known_displacement));
+    PetscCall(ComplianceGather(c->matrices, body->time.substeps, c->base_force, c->known_force));
     c->base_gathered  = PETSC_TRUE;
     c->gathered_state = ComplianceGetState(c->matrices);
   }
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement_in, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.force_in, k + 1, &force));
     for (PetscInt i = 0; i < local; i++)
       c->mine[k * local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FREE ? 0 : force[i];
   }
-  PetscCall(ComplianceGather(c->matrices, body->substeps, c->mine, c->input));
+  PetscCall(ComplianceGather(c->matrices, body->time.substeps, c->mine, c->input));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -293,9 +293,9 @@ PetscErrorCode BodyRespond(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(c && c->has_base, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetBase() first");
   PetscCall(GatherInputs(body));
-  for (PetscInt k = 0; k < body->substeps; k++) PetscCall(RespondSubstep(body, k));
+  for (PetscInt k = 0; k < body->time.substeps; k++) PetscCall(RespondSubstep(body, k));
   ComplianceGetRows(c->matrices, &n, NULL, &place);
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscScalar *displacement, *reaction;
 
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &displacement));

@@ -27,21 +27,21 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   if (!rows->global) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetStiffness(body, &K));
-  PetscCall(MatMatMult(body->interface, K, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &forces));
+  PetscCall(MatMatMult(body->rows.matrix, K, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &forces));
   for (PetscInt i = 0; i < rows->local; i++) {
     const PetscInt    *of_forces, *of_row;
     const PetscScalar *force, *row;
     PetscInt           n_forces, n_row;
 
     stiffness[i] = 0;
-    PetscCall(MatGetRow(body->interface, rows->begin + i, &n_row, &of_row, &row));
+    PetscCall(MatGetRow(body->rows.matrix, rows->begin + i, &n_row, &of_row, &row));
     PetscCall(MatGetRow(forces, rows->begin + i, &n_forces, &of_forces, &force));
     for (PetscInt k = 0, l = 0; k < n_row; k++) {
       while (l < n_forces && of_forces[l] < of_row[k]) l++;
       if (l < n_forces && of_forces[l] == of_row[k]) stiffness[i] += PetscRealPart(force[l] * row[k]);
     }
     PetscCall(MatRestoreRow(forces, rows->begin + i, &n_forces, &of_forces, &force));
-    PetscCall(MatRestoreRow(body->interface, rows->begin + i, &n_row, &of_row, &row));
+    PetscCall(MatRestoreRow(body->rows.matrix, rows->begin + i, &n_row, &of_row, &row));
   }
   PetscCall(MatDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
