@@ -157,18 +157,18 @@ static void forgets_rows(void **state)
 /* Rows of all the bodies' nodes as NodeRows has them, along other directions */
 static Mat turn_rows(RowBody *b, const PetscReal directions[])
 {
-  const PetscInt  dim = b->body->dim;
+  const PetscInt  dim = b->body->mesh.dim;
   PetscInt        n;
   const PetscInt *columns;
   Mat             B;
 
-  ok(MatDuplicate(b->body->interface, MAT_COPY_VALUES, &B));
+  ok(MatDuplicate(b->body->rows.matrix, MAT_COPY_VALUES, &B));
   for (PetscInt i = 0; i < b->rows.local; i++) {
     PetscInt first = -1, row = b->body->rows.begin + i;
 
-    ok(MatGetRow(b->body->interface, row, &n, &columns, NULL));
+    ok(MatGetRow(b->body->rows.matrix, row, &n, &columns, NULL));
     first = columns[0] - columns[0] % dim;
-    ok(MatRestoreRow(b->body->interface, row, &n, &columns, NULL));
+    ok(MatRestoreRow(b->body->rows.matrix, row, &n, &columns, NULL));
     for (PetscInt d = 0; d < dim; d++) ok(MatSetValue(B, row, first + d, directions[3 * b->rows.which[i] + d], INSERT_VALUES));
   }
   ok(MatAssemblyBegin(B, MAT_FINAL_ASSEMBLY));

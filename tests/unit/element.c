@@ -136,15 +136,15 @@ static void get_dense(Body body, PetscBool mass, PetscReal matrix[])
   Mat                K;
 
   ok(BodyGetStiffness(body, &K));
-  ok(VecDuplicate(body->positions, &e));
-  ok(VecDuplicate(body->positions, &product));
+  ok(VecDuplicate(body->mesh.positions, &e));
+  ok(VecDuplicate(body->mesh.positions, &product));
   ok(VecGetLocalSize(e, &n));
   for (PetscInt j = 0; j < NODES; j++) {
-    ok(VecGetArrayRead(body->positions, &x));
+    ok(VecGetArrayRead(body->mesh.positions, &x));
     ok(VecGetArray(e, &unit));
     for (PetscInt i = 0; i < n; i++) unit[i] = PetscAbsReal(x[i] - j) < 1e-9;
     ok(VecRestoreArray(e, &unit));
-    ok(VecRestoreArrayRead(body->positions, &x));
+    ok(VecRestoreArrayRead(body->mesh.positions, &x));
     if (mass) ok(BodyMultiplyMass(body, e, product));
     else ok(MatMult(K, e, product));
     for (PetscInt i = 0; i < NODES; i++) matrix[i * NODES + j] = value_at(body, product, i);

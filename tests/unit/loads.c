@@ -237,9 +237,9 @@ static PetscReal fingerprint(Body body, Vec f)
   ok(VecGetArrayRead(positions, &x));
   ok(VecGetArrayRead(f, &values));
   for (PetscInt i = 0; i < n; i++) {
-    PetscReal phase = i % body->dim;
+    PetscReal phase = i % body->mesh.dim;
 
-    for (PetscInt d = 0; d < body->dim; d++) phase += (3 + 4 * d) * x[i / body->dim * body->dim + d];
+    for (PetscInt d = 0; d < body->mesh.dim; d++) phase += (3 + 4 * d) * x[i / body->mesh.dim * body->mesh.dim + d];
     sum += (2 + PetscSinReal(phase)) * values[i];
   }
   ok(VecRestoreArrayRead(f, &values));

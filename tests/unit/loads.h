@@ -54,10 +54,10 @@ static inline Total total_of(Body body, Vec f)
   ok(VecGetArrayRead(positions, &x));
   ok(VecGetArrayRead(f, &values));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt node = i / body->dim;
+    const PetscInt node = i / body->mesh.dim;
 
-    total.force[i % body->dim] += values[i];
-    for (PetscInt d = 0; d < body->dim; d++) total.moment[d][i % body->dim] += x[node * body->dim + d] * values[i];
+    total.force[i % body->mesh.dim] += values[i];
+    for (PetscInt d = 0; d < body->mesh.dim; d++) total.moment[d][i % body->mesh.dim] += x[node * body->mesh.dim + d] * values[i];
   }
   ok(VecRestoreArrayRead(f, &values));
   ok(VecRestoreArrayRead(positions, &x));

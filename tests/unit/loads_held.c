@@ -8,11 +8,11 @@ static PetscReal component_at(Body body, Vec vec, const PetscReal x[], PetscInt 
   PetscReal          value = 1e30;
 
   ok(VecGetArrayRead(vec, &values));
-  for (PetscInt node = 0; node < body->owned_nodes; node++) {
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     PetscReal distance = 0;
 
-    for (PetscInt d = 0; d < body->dim; d++) distance += PetscAbsReal(body->coordinates[node * body->dim + d] - x[d]);
-    if (distance < 1e-9) value = values[node * body->dim + component];
+    for (PetscInt d = 0; d < body->mesh.dim; d++) distance += PetscAbsReal(body->mesh.coordinates[node * body->mesh.dim + d] - x[d]);
+    if (distance < 1e-9) value = values[node * body->mesh.dim + component];
   }
   ok(VecRestoreArrayRead(vec, &values));
   assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPIU_REAL, MPI_MIN, PETSC_COMM_WORLD), 0);
@@ -26,7 +26,7 @@ static PetscInt count_held(Body body)
 
   ok(BodyLoadsGetHeld(body, &n, &dofs));
   for (PetscInt i = 0; i < n; i++) {
-    assert_true(dofs[i] >= 0 && dofs[i] < body->owned_nodes * body->dim);
+    assert_true(dofs[i] >= 0 && dofs[i] < body->mesh.owned_nodes * body->mesh.dim);
     if (i) assert_true(dofs[i] > dofs[i - 1]);
   }
   assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);

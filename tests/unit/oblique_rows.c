@@ -112,12 +112,12 @@ static PetscReal end_displacement(Body body)
 
   ok(BodyGetSolution(body, &u, NULL, NULL));
   ok(VecGetLocalSize(u, &n));
-  ok(VecGetArrayRead(body->positions, &position));
+  ok(VecGetArrayRead(body->mesh.positions, &position));
   ok(VecGetArrayRead(u, &values));
   for (PetscInt dof = 0; dof < n; dof += 2)
     if (PetscAbsReal(position[dof] - 2) + PetscAbsReal(position[dof + 1] - 1.5) < 1e-9) value = values[dof];
   ok(VecRestoreArrayRead(u, &values));
-  ok(VecRestoreArrayRead(body->positions, &position));
+  ok(VecRestoreArrayRead(body->mesh.positions, &position));
   return sum_over_ranks(value);
 }
 

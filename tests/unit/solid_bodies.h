@@ -109,7 +109,7 @@ typedef struct {
 /* The rows of a body in more dimensions; the nodes, at x[3 i], must be contact nodes by their own call */
 static inline void set_node_rows(Body body, PetscInt n, const PetscReal x[], const PetscReal direction[], NodeRows *rows)
 {
-  const PetscInt     dim = body->dim;
+  const PetscInt     dim = body->mesh.dim;
   const PetscScalar *position;
   PetscInt           begin, size, first;
   PetscInt           node[MAX_NODE_ROWS];
@@ -118,9 +118,9 @@ static inline void set_node_rows(Body body, PetscInt n, const PetscReal x[], con
   assert_true(n <= MAX_NODE_ROWS);
   rows->n     = n;
   rows->local = 0;
-  ok(VecGetLocalSize(body->positions, &size));
-  ok(VecGetOwnershipRange(body->positions, &first, NULL));
-  ok(VecGetArrayRead(body->positions, &position));
+  ok(VecGetLocalSize(body->mesh.positions, &size));
+  ok(VecGetOwnershipRange(body->mesh.positions, &first, NULL));
+  ok(VecGetArrayRead(body->mesh.positions, &position));
   for (PetscInt k = 0; k < size / dim; k++)
     for (PetscInt i = 0; i < n; i++) {
       PetscReal distance = 0;
@@ -130,7 +130,7 @@ static inline void set_node_rows(Body body, PetscInt n, const PetscReal x[], con
       node[rows->local]          = k;
       rows->which[rows->local++] = i;
     }
-  ok(VecRestoreArrayRead(body->positions, &position));
+  ok(VecRestoreArrayRead(body->mesh.positions, &position));
   assert_int_equal((PetscInt)sum_over_ranks(rows->local), n);
   ok(MatCreateAIJ(PETSC_COMM_WORLD, rows->local, size, n, PETSC_DETERMINE, dim, NULL, dim, NULL, &B));
   ok(MatGetOwnershipRange(B, &begin, NULL));

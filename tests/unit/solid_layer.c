@@ -53,15 +53,15 @@ static void get_imbalance(Body body, PetscReal *left, PetscReal *largest)
   ok(BodyComputeInternalForce(body, body->state.u, f));
   ok(VecNorm(f, NORM_INFINITY, largest));
   ok(VecCopy(f, rest));
-  ok(BodyAddExternalForce(body, body->time, -1, rest));
+  ok(BodyAddExternalForce(body, body->state.time, -1, rest));
   ok(VecGetArrayRead(rest, &internal));
   *left = 0;
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) *left = PetscMax(*left, PetscAbsReal(internal[body->layer_dofs[i]]));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) *left = PetscMax(*left, PetscAbsReal(internal[body->layer.dofs[i]]));
   ok(VecRestoreArrayRead(rest, &internal));
   ok(VecDestroy(&f));
   ok(VecDestroy(&rest));
   assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, left, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD), 0);
-  assert_int_equal(MPI_Allreduce(&body->n_layer_dofs, &layer, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+  assert_int_equal(MPI_Allreduce(&body->layer.n_dofs, &layer, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
   assert_true(layer > 0);
 }
 
@@ -147,7 +147,7 @@ static void is_in_balance_in_flight(void **state)
       ok(BodyGetMeasures(body, &after));
       get_imbalance(body, &left, &largest);
       between(left, 0, 1e-12);
-      for (PetscInt d = 0; d < body->dim; d++)
+      for (PetscInt d = 0; d < body->mesh.dim; d++)
         near(after.momentum[d], before.momentum[d], 1e-11); /* round-off of 100 kg m/s, and such forces over 5 s */
       bar_destroy(&body, options);
     }
@@ -194,7 +194,7 @@ static void keeps_the_energy(void **state)
         between(most - least, 0, 2e-3 * first);
         near(halves[1], halves[0], 5e-4 * first);
       }
-      for (PetscInt d = 0; d < body->dim; d++) near(after.momentum[d], before.momentum[d], 1e-12);
+      for (PetscInt d = 0; d < body->mesh.dim; d++) near(after.momentum[d], before.momentum[d], 1e-12);
       bar_destroy(&body, options);
     }
 }

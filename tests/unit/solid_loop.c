@@ -187,11 +187,11 @@ static void of_any_motion_are_sums_over_nodes(void **state)
         ok(VecDot(body->state.u, Ku, &uKu));
         ok(VecGetArrayRead(Mv, &p));
         ok(VecGetArrayRead(body->state.u, &u));
-        for (PetscInt node = 0; node < body->owned_nodes; node++) {
+        for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
           PetscReal x[3] = {0}, q[3] = {0};
 
           for (PetscInt d = 0; d < dim; d++) {
-            x[d] = body->coordinates[node * dim + d] + u[node * dim + d];
+            x[d] = body->mesh.coordinates[node * dim + d] + u[node * dim + d];
             q[d] = p[node * dim + d];
             momentum[d] += q[d];
           }
@@ -204,7 +204,7 @@ static void of_any_motion_are_sums_over_nodes(void **state)
         for (PetscInt d = 0; d < 3; d++) {
           near(measures.momentum[d], sum_over_ranks(momentum[d]), 1e-12);
           near(measures.angular_momentum[d], sum_over_ranks(angular[d]), 1e-12);
-          near(measures.mean_velocity[d], sum_over_ranks(momentum[d]) / body->total_mass, 1e-13);
+          near(measures.mean_velocity[d], sum_over_ranks(momentum[d]) / body->mass.total, 1e-13);
         }
         near(measures.kinetic, 0.5 * vMv - (i ? 1e-6 / 8 * aMa : 0), 1e-12);
         assert_true(!i || 1e-6 / 8 * aMa > 1e-9);

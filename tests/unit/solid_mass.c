@@ -16,21 +16,21 @@ static Moments moments_of(Body body)
   Moments            moments = {0};
   const PetscScalar *mass;
 
-  ok(VecGetArrayRead(body->mass_row_sum, &mass));
-  for (PetscInt node = 0; node < body->owned_nodes; node++) {
-    const PetscReal m = mass[node * body->dim];
+  ok(VecGetArrayRead(body->mass.row_sum, &mass));
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
+    const PetscReal m = mass[node * body->mesh.dim];
 
-    for (PetscInt d = 1; d < body->dim; d++)
-      near(mass[node * body->dim + d], m, 1e-14 * PetscAbsReal(m)); /* the same sums in another order */
+    for (PetscInt d = 1; d < body->mesh.dim; d++)
+      near(mass[node * body->mesh.dim + d], m, 1e-14 * PetscAbsReal(m)); /* the same sums in another order */
     moments.mass += m;
-    for (PetscInt d = 0; d < body->dim; d++) {
-      const PetscReal x = body->coordinates[node * body->dim + d];
+    for (PetscInt d = 0; d < body->mesh.dim; d++) {
+      const PetscReal x = body->mesh.coordinates[node * body->mesh.dim + d];
 
       moments.first[d] += m * x;
       moments.second[d] += m * x * x;
     }
   }
-  ok(VecRestoreArrayRead(body->mass_row_sum, &mass));
+  ok(VecRestoreArrayRead(body->mass.row_sum, &mass));
   assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &moments, 7, MPIU_REAL, MPI_SUM, PetscObjectComm((PetscObject)body)), 0);
   return moments;
 }
@@ -45,18 +45,18 @@ static void check_layer(Body body)
   ok(BodyCreateVec(body, &layer));
   ok(BodyCreateVec(body, &image));
   ok(VecGetArray(layer, &x));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++)
-    x[i] = body->in_layer[i / body->dim] ? scattered(&body->coordinates[i], 1, 0) : 0;
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++)
+    x[i] = body->layer.contains[i / body->mesh.dim] ? scattered(&body->mesh.coordinates[i], 1, 0) : 0;
   ok(VecRestoreArray(layer, &x));
   ok(BodyMultiplyMass(body, layer, image));
   ok(VecGetArrayRead(image, &y));
-  ok(VecGetArrayRead(body->mass_row_sum, &mass));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) {
+  ok(VecGetArrayRead(body->mass.row_sum, &mass));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) {
     near(y[i], 0, 0);
-    if (body->in_layer[i / body->dim]) near(mass[i], 0, 0);
+    if (body->layer.contains[i / body->mesh.dim]) near(mass[i], 0, 0);
     else assert_true(mass[i] > 0);
   }
-  ok(VecRestoreArrayRead(body->mass_row_sum, &mass));
+  ok(VecRestoreArrayRead(body->mass.row_sum, &mass));
   ok(VecRestoreArrayRead(image, &y));
   ok(VecDestroy(&layer));
   ok(VecDestroy(&image));
@@ -72,10 +72,10 @@ static void compare(Body moved, Body whole, PetscReal size)
   assert_true(redistributed);
   /* sums of some hundred terms */
   near(after.mass, before.mass, 1e-13 * before.mass);
-  near(moved->total_mass, before.mass, 1e-13 * before.mass);
-  for (PetscInt d = 0; d < moved->dim; d++)
-    near(moved->mass_shift[d], after.first[d] / after.mass - before.first[d] / before.mass, 1e-13 * size);
-  for (PetscInt d = 0; d < 3; d++) near(whole->mass_shift[d], 0, 0);
+  near(moved->mass.total, before.mass, 1e-13 * before.mass);
+  for (PetscInt d = 0; d < moved->mesh.dim; d++)
+    near(moved->mass.shift[d], after.first[d] / after.mass - before.first[d] / before.mass, 1e-13 * size);
+  for (PetscInt d = 0; d < 3; d++) near(whole->mass.shift[d], 0, 0);
 }
 
 #define MATERIAL "-density 3 -youngs_modulus 5 -poissons_ratio 0.2 "
@@ -132,14 +132,14 @@ static void of_a_layer_is_kept(void **state)
         pair_set_up(&pair);
         check_layer(pair.moved);
         compare(pair.moved, pair.whole, 2);
-        near(pair.moved->total_mass, 9, 1e-13 * 9);
-        assert_true(pair.moved->mass_shift[axis] < -1e-3); /* inwards */
-        assert_true(!pair.moved->orphan_mass);
+        near(pair.moved->mass.total, 9, 1e-13 * 9);
+        assert_true(pair.moved->mass.shift[axis] < -1e-3); /* inwards */
+        assert_true(!pair.moved->mass.orphans);
         if (kind == 0 || kind == 2) { /* a mirror image of itself */
-          for (PetscInt d = 0; d < axis; d++) near(pair.moved->mass_shift[d], 0, 1e-13);
+          for (PetscInt d = 0; d < axis; d++) near(pair.moved->mass.shift[d], 0, 1e-13);
         }
         if (kind == 0 && type == 0)
-          near(pair.moved->mass_shift[1], -9. / 6 * 0.5 / 9, 1e-13); /* half a row of elements of height 0.5 m moves by that */
+          near(pair.moved->mass.shift[1], -9. / 6 * 0.5 / 9, 1e-13); /* half a row of elements of height 0.5 m moves by that */
         pair_destroy(&pair);
       }
 }
@@ -236,7 +236,7 @@ static void check_alone(Body body, const char text[], PetscInt n_sides)
   ok(BodySetUp(body));
   alone = moments_of(body);
   near(together.mass, alone.mass, 1e-13 * alone.mass);
-  for (PetscInt d = 0; d < body->dim; d++) {
+  for (PetscInt d = 0; d < body->mesh.dim; d++) {
     near(together.first[d], alone.first[d], 1e-13 * 2 * alone.mass);
     near(together.second[d], alone.second[d], 1e-13 * 4 * alone.mass);
   }
@@ -263,10 +263,10 @@ static void of_elements_without_inner_nodes_goes_to_their_neighbours(void **stat
         check_layer(pair.moved);
         compare(pair.moved, pair.whole, 2);
         check_alone(pair.moved, full, n_sides);
-        if (pair.moved->orphan_mass) orphaned++;
+        if (pair.moved->mass.orphans) orphaned++;
         /* corners of quadrilaterals and hexahedra are met by elements with an inner node */
-        if (kind == 0 || kind == 2) assert_true(!pair.moved->orphan_mass);
-        else if (n_sides == 2 * kind_dim[kind]) assert_true(pair.moved->orphan_mass != NULL);
+        if (kind == 0 || kind == 2) assert_true(!pair.moved->mass.orphans);
+        else if (n_sides == 2 * kind_dim[kind]) assert_true(pair.moved->mass.orphans != NULL);
         pair_destroy(&pair);
       }
   assert_true(orphaned >= 2 * TYPES);
@@ -290,9 +290,9 @@ static void of_all_elements_is_at_a_few_inner_nodes(void **state)
       pair_set_up(&pair);
       check_layer(pair.moved);
       compare(pair.moved, pair.whole, 1);
-      ok(VecMax(pair.moved->mass_row_sum, NULL, &largest));
+      ok(VecMax(pair.moved->mass.row_sum, NULL, &largest));
       if (kind == 0 || kind == 2) near(largest, dim == 2 ? 1.5 : 0.75, 3e-13);
-      for (PetscInt d = 0; d < dim; d++) near(pair.moved->mass_shift[d], 0, 1e-13); /* a half turn brings the mesh onto itself */
+      for (PetscInt d = 0; d < dim; d++) near(pair.moved->mass.shift[d], 0, 1e-13); /* a half turn brings the mesh onto itself */
       pair_destroy(&pair);
     }
 }

@@ -43,7 +43,7 @@ static PetscInt get_residuals(Body body, const PetscReal **residuals)
   PetscReal *history;
   SNES       snes;
 
-  ok(TSGetSNES(body->ts, &snes));
+  ok(TSGetSNES(body->time.ts, &snes));
   ok(SNESGetConvergenceHistory(snes, &history, NULL, &n));
   ok(SNESGetIterationNumber(snes, &iterations));
   assert_int_equal(n, iterations + 1);
@@ -69,7 +69,7 @@ static void converges_quadratically(void **state)
         (void)snprintf(more, sizeof(more), "%s -ts_type %s", loads[kind_dim[kind] - 2], integrators[i]);
         options = create(&body, kind, material, 0.2, more);
         ok(BodySetUp(body));
-        ok(TSGetSNES(body->ts, &snes));
+        ok(TSGetSNES(body->time.ts, &snes));
         ok(SNESSetConvergenceHistory(snes, NULL, NULL, 20, PETSC_TRUE));
         for (PetscInt k = 0; k < 8; k++) {
           const PetscReal *residuals;
@@ -144,7 +144,7 @@ static void follows_prescribed_rows(void **state)
         create_rows(body, kind, &rows);
         ok(BodySetUp(body));
         ok(BodyGetTraces(body, &traces));
-        ok(TSGetSNES(body->ts, &snes));
+        ok(TSGetSNES(body->time.ts, &snes));
         ok(SNESSetConvergenceHistory(snes, NULL, NULL, 20, PETSC_TRUE));
         condition_rows(body, &rows, BODY_PRESCRIBED);
         for (PetscInt k = 0; k < 10; k++) {
@@ -172,13 +172,13 @@ typedef struct {
 
 static void get_result(Body body, PetscInt substeps, Result *result)
 {
-  const Vec   vecs[]   = {body->state.u, body->state.v, body->state.a, body->internal_force};
+  const Vec   vecs[]   = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
 
   memset(result, 0, sizeof(*result));
-  result->n    = body->owned_nodes * body->dim;
+  result->n    = body->mesh.owned_nodes * body->mesh.dim;
   result->rows = body->rows.local;
-  result->work = body->external_work;
+  result->work = body->state.external_work;
   assert_true(result->n <= 512);
   for (PetscInt k = 0; k < 4; k++) {
     const PetscScalar *array;
@@ -254,8 +254,8 @@ static void repeats_a_window_bit_for_bit(void **state)
             get_result(bodies[1], substeps, &again);
             same(&first, &again, rounded ? 1e-11 : 0);
             for (PetscInt b = 0; b < 2; b++) ok(BodySave(bodies[b])); /* where one substep's work is found */
-            assert_true(bodies[0]->external_work != 0);
-            near(bodies[1]->external_work, bodies[0]->external_work,
+            assert_true(bodies[0]->state.external_work != 0);
+            near(bodies[1]->state.external_work, bodies[0]->state.external_work,
                  1e-12); /* round-off of forces of 1 N and ways of 1 cm, and what Newton's method leaves */
           }
           bar_destroy(&bodies[1], options[1]);

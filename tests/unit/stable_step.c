@@ -40,12 +40,12 @@ static PetscReal compute_stable_step(Body body)
   Mat                stiffness;
 
   ok(BodyGetStiffness(body, &stiffness));
-  ok(VecDuplicate(body->positions, &e));
-  ok(VecDuplicate(body->positions, &Ke));
+  ok(VecDuplicate(body->mesh.positions, &e));
+  ok(VecDuplicate(body->mesh.positions, &Ke));
   ok(VecGetLocalSize(e, &n));
   assert_true(n <= MAX_DOFS);
-  assert_non_null(body->mass_diagonal);
-  ok(VecGetArrayRead(body->mass_diagonal, &mass));
+  assert_non_null(body->mass.diagonal);
+  ok(VecGetArrayRead(body->mass.diagonal, &mass));
   for (PetscInt j = 0; j < n; j++) {
     ok(VecZeroEntries(e));
     ok(VecSetValue(e, j, 1 / PetscSqrtReal(mass[j]), INSERT_VALUES));
@@ -56,7 +56,7 @@ static PetscReal compute_stable_step(Body body)
     for (PetscInt i = 0; i < n; i++) K[j * n + i] = product[i] / PetscSqrtReal(mass[i]);
     ok(VecRestoreArrayRead(Ke, &product));
   }
-  ok(VecRestoreArrayRead(body->mass_diagonal, &mass));
+  ok(VecRestoreArrayRead(body->mass.diagonal, &mass));
   ok(VecDestroy(&e));
   ok(VecDestroy(&Ke));
   ok(PetscBLASIntCast(n, &size));
@@ -68,15 +68,15 @@ static PetscReal compute_stable_step(Body body)
 /* The same of the worst element on its own */
 static PetscReal compute_stable_step_of_elements(Body body)
 {
-  const PetscInt n                   = body->element->nodes * body->dim;
+  const PetscInt n                   = body->model.element->nodes * body->mesh.dim;
   PetscReal      zero[3 * MAX_NODES] = {0}, largest = 0;
 
-  for (PetscInt e = 0; e < body->element->count; e++) {
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscScalar  K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], work[8 * ELEMENT_MAX_DOFS];
     PetscReal    eigenvalues[ELEMENT_MAX_DOFS];
     PetscBLASInt one = 1, size, lwork = 8 * ELEMENT_MAX_DOFS, info;
 
-    ok((*body->element->ops.stiffness)(body->element, e, zero, K));
+    ok((*body->model.element->ops.stiffness)(body->model.element, e, zero, K));
     ok(BodyGetElementMass(body, e, M));
     ok(PetscBLASIntCast(n, &size));
     LAPACKsygv_(&one, "N", "L", &size, K, &size, M, &size, eigenvalues, work, &lwork, &info);

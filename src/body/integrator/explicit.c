@@ -13,13 +13,13 @@ static LayerBalance GetLayer(Body body)
 /* a = (force - internal force) / m in one pass; without a force, where it is NULL */
 static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
 {
-  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *internal, *inverse, *outside;
   PetscScalar       *a;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->internal_force, &internal));
-  PetscCall(VecGetArrayRead(body->inverse_mass, &inverse));
+  PetscCall(VecGetArrayRead(body->state.internal_force, &internal));
+  PetscCall(VecGetArrayRead(body->mass.inverse, &inverse));
   PetscCall(VecGetArrayWrite(A, &a));
   if (force) {
     PetscCall(VecGetArrayRead(force, &outside));
@@ -29,8 +29,8 @@ static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
     for (PetscInt i = 0; i < n; i++) a[i] = -internal[i] * inverse[i];
   }
   PetscCall(VecRestoreArrayWrite(A, &a));
-  PetscCall(VecRestoreArrayRead(body->inverse_mass, &inverse));
-  PetscCall(VecRestoreArrayRead(body->internal_force, &internal));
+  PetscCall(VecRestoreArrayRead(body->mass.inverse, &inverse));
+  PetscCall(VecRestoreArrayRead(body->state.internal_force, &internal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -38,14 +38,14 @@ static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
    acceleration already: what is prescribed is taken to the right-hand side. f is overwritten. */
 static PetscErrorCode SolveMassPrescribed(Body body, Vec f, PetscReal position, Vec a)
 {
-  Vec prescribed = body->work[1];
+  Vec prescribed = body->work.nodes[1];
 
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(prescribed));
   PetscCall(BodyCopyHeld(body, f, prescribed));
   PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, prescribed));
   PetscCall(BodyZeroHeld(body, prescribed));
-  PetscCall(MatMult(body->mass_matrix, prescribed, a));
+  PetscCall(MatMult(body->mass.matrix, prescribed, a));
   PetscCall(VecAXPY(f, -1, a));
   PetscCall(BodySolveMass(body, f, a));
   PetscCall(VecAXPY(a, 1, prescribed));
@@ -57,10 +57,10 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
 {
   Body               body       = (Body)ctx;
   const LayerBalance layer      = GetLayer(body);
-  const PetscReal    position   = (PetscReal)(body->substep + 1) / body->substeps;
-  const PetscBool    prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass);
+  const PetscReal    position   = (PetscReal)(body->time.substep + 1) / body->time.substeps;
+  const PetscBool    prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
   const PetscBool    outside    = BodyHasOutsideForce(body, PETSC_TRUE);
-  Vec                force      = body->work[0];
+  Vec                force      = body->work.nodes[0];
 
   PetscFunctionBegin;
   (void)ts;
@@ -69,15 +69,15 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
   if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, PETSC_TRUE, U, force));
   /* Robin rows have moved with the layer */
-  if (outside && (!layer || body->n_robin)) PetscCall(BodyComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
-  PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
-  if (body->inverse_mass) {
+  if (outside && (!layer || body->rows.n_robin)) PetscCall(BodyComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
+  PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
+  if (body->mass.inverse) {
     PetscCall(DivideByMass(body, outside ? force : NULL, A));
     PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
     if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
   } else {
     if (!outside) PetscCall(VecZeroEntries(force));
-    PetscCall(VecAXPY(force, -1, body->internal_force));
+    PetscCall(VecAXPY(force, -1, body->state.internal_force));
     PetscCall(BodySubtractHeldInertia(body, t, force, A));
     if (prescribed) PetscCall(SolveMassPrescribed(body, force, position, A));
     else PetscCall(BodySolveMass(body, force, A));
@@ -89,7 +89,7 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
 static PetscErrorCode SetFromOptions(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(TSSetFromOptions(body->ts));
+  PetscCall(TSSetFromOptions(body->time.ts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,15 +125,15 @@ static PetscErrorCode FinishSubstep(Body body)
     PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
     PetscCall(VecGetArrayRead(body->state.u, &u1));
     PetscCall(VecGetArray(body->state.v, &v));
-    for (PetscInt i = 0; i < body->n_layer_dofs; i++)
-      v[body->layer_dofs[i]] = (u1[body->layer_dofs[i]] - u0[body->layer_dofs[i]]) / body->time_step;
+    for (PetscInt i = 0; i < body->layer.n_dofs; i++)
+      v[body->layer.dofs[i]] = (u1[body->layer.dofs[i]] - u0[body->layer.dofs[i]]) / body->time.step;
     PetscCall(VecRestoreArray(body->state.v, &v));
     PetscCall(VecRestoreArrayRead(body->state.u, &u1));
     PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   }
-  PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, NULL));
-  if (body->prescribed_mass)
-    PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->substep + 1) / body->substeps, body->state.v));
+  PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, NULL));
+  if (body->rows.have_mass)
+    PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->time.substep + 1) / body->time.substeps, body->state.v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,16 +141,16 @@ static PetscErrorCode FinishSubstep(Body body)
    alone, without contact, tells where contact nodes get in one substep. Only the displacements that it depends on are computed. */
 static PetscErrorCode ComputeFreeRows(Body body, PetscScalar displacement[])
 {
-  const PetscReal    end = body->saved_time + body->time_step, dt = body->time_step;
+  const PetscReal    end = body->saved.time + body->time.step, dt = body->time.step;
   const PetscScalar *u, *v, *a, *rows;
   PetscScalar       *moved;
   const PetscInt    *near;
   PetscInt           n;
-  Vec                way = body->work[1];
+  Vec                way = body->work.nodes[1];
 
   PetscFunctionBegin;
   BodyGetNearLayer(body, &n, &near);
-  if (!body->linear) PetscCall(VecCopy(body->saved.u, way)); /* the tolerance of its balance depends on the norm of all of it */
+  if (!body->model.linear) PetscCall(VecCopy(body->saved.u, way)); /* the tolerance of its balance depends on the norm of all of it */
   PetscCall(VecGetArrayRead(body->saved.u, &u));
   PetscCall(VecGetArrayRead(body->saved.v, &v));
   PetscCall(VecGetArrayRead(body->saved.a, &a));
@@ -165,11 +165,11 @@ static PetscErrorCode ComputeFreeRows(Body body, PetscScalar displacement[])
   PetscCall(VecRestoreArrayRead(body->saved.v, &v));
   PetscCall(VecRestoreArrayRead(body->saved.u, &u));
   PetscCall(BodyPrescribeHeld(body, end, way, NULL, NULL));
-  PetscCall(LayerBalanceSolve(GetLayer(body), body, end, 1, PETSC_FALSE, way, body->work[0]));
-  PetscCall(MatMult(body->interface, way, body->row_vec[0]));
-  PetscCall(VecGetArrayRead(body->row_vec[0], &rows));
+  PetscCall(LayerBalanceSolve(GetLayer(body), body, end, 1, PETSC_FALSE, way, body->work.nodes[0]));
+  PetscCall(MatMult(body->rows.matrix, way, body->work.rows[0]));
+  PetscCall(VecGetArrayRead(body->work.rows[0], &rows));
   PetscCall(PetscArraycpy(displacement, rows, body->rows.local));
-  PetscCall(VecRestoreArrayRead(body->row_vec[0], &rows));
+  PetscCall(VecRestoreArrayRead(body->work.rows[0], &rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -185,18 +185,18 @@ static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScal
 static PetscErrorCode SetUp(Body body)
 {
   BodyIntegrator integrator = body->integrator;
-  PetscBool      layer      = (PetscBool)(body->n_layer_dofs > 0);
+  PetscBool      layer      = (PetscBool)(body->layer.n_dofs > 0);
 
   PetscFunctionBegin;
   PetscCall(BodyAnyRank(body, &layer));
   if (layer) PetscCall(LayerBalanceCreate(body, &((BodyExplicit *)integrator->data)->layer));
-  if (body->mass_matrix) PetscCall(BodySetUpMassSolver(body));
-  PetscCall(TSCentralDifferenceSetAcceleration(body->ts, ComputeAcceleration, body));
-  PetscCall(TSCentralDifferenceSetAccelerationVec(body->ts, body->state.a));
+  if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));
+  PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body));
+  PetscCall(TSCentralDifferenceSetAccelerationVec(body->time.ts, body->state.a));
   integrator->reads_start     = layer;
-  integrator->feels_end_force = (PetscBool)(layer || body->substeps > 1);
-  if (layer && body->substeps == 1) integrator->ops.freerows = ComputeFreeRows;
-  if (body->substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn; /* with more, only making them tells */
+  integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
+  if (layer && body->time.substeps == 1) integrator->ops.freerows = ComputeFreeRows;
+  if (body->time.substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn; /* with more, only making them tells */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,15 +12,16 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
 {
   Body                body       = (Body)ctx;
   const BodyImplicit *implicit   = (const BodyImplicit *)body->integrator->data;
-  const PetscBool     prescribed = (PetscBool)(body->n_prescribed && body->prescribed_mass);
+  const PetscBool     prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
 
   PetscFunctionBegin;
   (void)ts;
   (void)V;
-  PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
+  PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's, or the load's */
-  if (body->any_held && (prescribed || !body->mass_diagonal)) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
-  if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, (body->substep + implicit->alpha_f) / body->substeps, A));
+  if (body->held.any && (prescribed || !body->mass.diagonal)) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
+  if (prescribed)
+    PetscCall(BodyPrescribe(body, body->traces.acceleration_in, (body->time.substep + implicit->alpha_f) / body->time.substeps, A));
   PetscCall(BodyMultiplyMass(body, A, F));
   PetscCall(BodyImplicitAddForces(body, t, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -35,8 +36,8 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionBegin;
   (void)ts;
   PetscCall(VecCopy(body->state.a, A0));
-  if (body->linear) PetscCall(VecCopy(X0, X1));
-  else PetscCall(VecWAXPY(X1, body->time_step, V0, X0)); /* a body that turns fast would need many iterations from where it was */
+  if (body->model.linear) PetscCall(VecCopy(X0, X1));
+  else PetscCall(VecWAXPY(X1, body->time.step, V0, X0)); /* a body that turns fast would need many iterations from where it was */
   PetscCall(BodyImplicitPrescribe(body, X1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -48,11 +49,11 @@ static PetscErrorCode SetFromOptions(Body body)
   TSAdapt       adapt;
 
   PetscFunctionBegin;
-  PetscCall(TSAlpha2SetParams(body->ts, ALPHA_M, ALPHA_F, GAMMA, BETA));
-  PetscCall(TSGetAdapt(body->ts, &adapt));
+  PetscCall(TSAlpha2SetParams(body->time.ts, ALPHA_M, ALPHA_F, GAMMA, BETA));
+  PetscCall(TSGetAdapt(body->time.ts, &adapt));
   PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
-  PetscCall(TSSetFromOptions(body->ts));
-  PetscCall(TSAlpha2GetParams(body->ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
+  PetscCall(TSSetFromOptions(body->time.ts));
+  PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
   PetscCheck(implicit->beta > 0 && implicit->alpha_f > 0 && implicit->alpha_m > 0 && implicit->gamma > 0,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose "
@@ -69,7 +70,7 @@ static PetscErrorCode SetUp(Body body)
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time_step));
+  implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -78,8 +79,8 @@ static PetscErrorCode SetUp(Body body)
 static PetscErrorCode FinishSubstep(Body body)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal    dt = body->time_step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
-  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscReal    dt = body->time.step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *u0, *v0, *u1;
   PetscScalar       *v1, *a;
 
@@ -90,8 +91,8 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscCall(VecGetArray(body->state.v, &v1));
   PetscCall(VecGetArray(body->state.a, &a));
   for (PetscInt i = 0; i < n; i++) a[i] = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a[i];
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) {
-    const PetscInt dof = body->layer_dofs[i];
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
+    const PetscInt dof = body->layer.dofs[i];
 
     v1[dof] = (u1[dof] - u0[dof]) / dt;
     a[dof]  = 0;
@@ -101,15 +102,15 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
-  PetscCall(BodyPrescribeHeld(body, body->time, NULL, body->state.v, body->state.a));
-  if (body->prescribed_mass) {
-    const PetscReal position = (PetscReal)(body->substep + 1) / body->substeps;
+  PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, body->state.a));
+  if (body->rows.have_mass) {
+    const PetscReal position = (PetscReal)(body->time.substep + 1) / body->time.substeps;
 
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
   }
   /* the last residual was evaluated at the stage, not at the end of the substep */
-  if (implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
+  if (implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,8 +118,8 @@ static PetscErrorCode FinishSubstep(Body body)
 static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal     dt = body->time_step, beta = implicit->beta, gamma = implicit->gamma;
-  const PetscBool     massless = body->mass_redistribute;
+  const PetscReal     dt = body->time.step, beta = implicit->beta, gamma = implicit->gamma;
+  const PetscBool     massless = body->mass.redistribute;
 
   PetscFunctionBegin;
   acceleration[0] = massless ? 0 : 1 / (beta * dt * dt);
@@ -134,9 +135,9 @@ static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal accel
 static PetscErrorCode MoveOn(Body body)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal     dt = body->time_step, beta = implicit->beta, gamma = implicit->gamma;
+  const PetscReal     dt = body->time.step, beta = implicit->beta, gamma = implicit->gamma;
   const PetscReal     c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
-  const PetscInt      n = body->owned_nodes * body->dim;
+  const PetscInt      n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar  *u1;
   PetscScalar        *u0, *v0, *a0;
 
@@ -151,8 +152,8 @@ static PetscErrorCode MoveOn(Body body)
     v0[i] += dt * ((1 - gamma) * a0[i] + gamma * now);
     a0[i] = now;
   }
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) {
-    const PetscInt dof = body->layer_dofs[i];
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
+    const PetscInt dof = body->layer.dofs[i];
 
     v0[dof] = (u1[dof] - u0[dof]) / dt;
     a0[dof] = 0;
@@ -183,24 +184,24 @@ static PetscErrorCode StartFromRest(Body body)
 static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
 {
   BodyImplicit      *implicit = (BodyImplicit *)body->integrator->data;
-  const PetscReal    dt = body->time_step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
+  const PetscReal    dt = body->time.step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
   const PetscScalar *rows;
 
   PetscFunctionBegin;
   if (!implicit->next) PetscCall(VecDuplicate(body->state.u, &implicit->next));
   PetscCall(ConstrainedSolverApplyUnit(body->solver, row, implicit->next, column));
-  if (body->substeps > 1) PetscCall(StartFromRest(body));
-  for (PetscInt k = 1; k < body->substeps; k++) {
+  if (body->time.substeps > 1) PetscCall(StartFromRest(body));
+  for (PetscInt k = 1; k < body->time.substeps; k++) {
     PetscCall(MoveOn(body));
-    PetscCall(VecCopy(implicit->a, body->work[1]));
-    PetscCall(VecAXPBYPCZ(body->work[1], c2, c1, c0, implicit->u, implicit->v));
-    PetscCall(BodyMultiplyMass(body, body->work[1], body->work[0]));
-    PetscCall(BodyZeroHeld(body, body->work[0]));
-    PetscCall(ConstrainedSolverSolveFree(body->solver, body->work[0], implicit->next));
-    PetscCall(MatMult(body->interface, implicit->next, body->row_vec[0]));
-    PetscCall(VecGetArrayRead(body->row_vec[0], &rows));
+    PetscCall(VecCopy(implicit->a, body->work.nodes[1]));
+    PetscCall(VecAXPBYPCZ(body->work.nodes[1], c2, c1, c0, implicit->u, implicit->v));
+    PetscCall(BodyMultiplyMass(body, body->work.nodes[1], body->work.nodes[0]));
+    PetscCall(BodyZeroHeld(body, body->work.nodes[0]));
+    PetscCall(ConstrainedSolverSolveFree(body->solver, body->work.nodes[0], implicit->next));
+    PetscCall(MatMult(body->rows.matrix, implicit->next, body->work.rows[0]));
+    PetscCall(VecGetArrayRead(body->work.rows[0], &rows));
     PetscCall(PetscArraycpy(column + k * body->rows.local, rows, body->rows.local));
-    PetscCall(VecRestoreArrayRead(body->row_vec[0], &rows));
+    PetscCall(VecRestoreArrayRead(body->work.rows[0], &rows));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -89,8 +89,8 @@ PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body)
    from outside or of contact, `force` becomes their sum, with Robin rows where they were before the last round; else it is left alone. */
 PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
 {
-  const PetscBool outside = BodyHasOutsideForce(body, contact), linear = (PetscBool)(body->linear || body->linearized),
-                  robin = (PetscBool)(contact && body->n_robin);
+  const PetscBool outside = BodyHasOutsideForce(body, contact), linear = (PetscBool)(body->model.linear || body->model.linearized),
+                  robin = (PetscBool)(contact && body->rows.n_robin);
   PetscReal       first = 0, round_off = 0;
 
   PetscFunctionBegin;
@@ -144,9 +144,9 @@ static PetscErrorCode CreateRows(LayerBalance layer, Body body, Mat *B)
   PetscInt row_begin;
 
   PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(body->free_rows, &row_begin, NULL));
+  PetscCall(MatGetOwnershipRange(body->rows.free_matrix, &row_begin, NULL));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
-  PetscCall(MatCreateSubMatrix(body->free_rows, rows, layer->dofs, MAT_INITIAL_MATRIX, B));
+  PetscCall(MatCreateSubMatrix(body->rows.free_matrix, rows, layer->dofs, MAT_INITIAL_MATRIX, B));
   PetscCall(ISDestroy(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -174,24 +174,24 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscFunctionBegin;
   PetscCall(PetscNew(balance));
   layer = *balance;
-  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(body->n_layer_dofs, &global));
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) global[i] = rstart + body->layer_dofs[i];
-  PetscCall(ISCreateGeneral(comm, body->n_layer_dofs, global, PETSC_OWN_POINTER, &layer->dofs));
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(body->layer.n_dofs, &global));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) global[i] = rstart + body->layer.dofs[i];
+  PetscCall(ISCreateGeneral(comm, body->layer.n_dofs, global, PETSC_OWN_POINTER, &layer->dofs));
   PetscCall(VecCreate(comm, &layer->rhs));
-  PetscCall(VecSetSizes(layer->rhs, body->n_layer_dofs, PETSC_DETERMINE));
+  PetscCall(VecSetSizes(layer->rhs, body->layer.n_dofs, PETSC_DETERMINE));
   PetscCall(VecSetType(layer->rhs, VECSTANDARD));
   PetscCall(VecDuplicate(layer->rhs, &layer->solution));
   PetscCall(BodySetUpLayerElements(body, layer->rhs));
   PetscCall(BodyCreateLayerMatrix(body, &K));
   PetscCall(CreateRows(layer, body, &B));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(K, B, body->dim, prefix, &body->solver));
-  PetscCall(VecNorm(body->positions, NORM_2, &layer->reach));
+  PetscCall(ConstrainedSolverCreate(K, B, body->mesh.dim, prefix, &body->solver));
+  PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
   PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
   PetscCall(MatDestroy(&K));
   PetscCall(MatDestroy(&B));
-  if (!body->linear) {
+  if (!body->model.linear) {
     PetscCall(BodyCreateLayerVec(body, &layer->point));
     PetscCall(VecZeroEntries(layer->point));
     PetscCall(VecDuplicate(layer->point, &layer->saved));

@@ -23,11 +23,11 @@
 static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  Vec           product  = body->work[2];
+  Vec           product  = body->work.nodes[2];
   PetscReal     force, stiffness, mass = 0, position = 0;
 
   PetscFunctionBegin;
-  PetscCall(VecNorm(body->internal_force, NORM_2, &force));
+  PetscCall(VecNorm(body->state.internal_force, NORM_2, &force));
   /* the internal force is a sum of displacements times stiffnesses, which may cancel: a body that moves as a whole has none */
   PetscCall(MatGetDiagonal(implicit->matrix, product));
   PetscCall(VecPointwiseMult(product, product, U));
@@ -35,7 +35,7 @@ static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
   if (inertia) {
     PetscCall(VecNorm(inertia, NORM_2, &mass));
     /* the acceleration is a difference of displacements over dt^2 */
-    PetscCall(VecPointwiseMult(product, body->mass_row_sum, U));
+    PetscCall(VecPointwiseMult(product, body->mass.row_sum, U));
     PetscCall(VecNorm(product, NORM_2, &position));
     position *= implicit->shift;
   }
@@ -49,11 +49,11 @@ static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
 PetscErrorCode BodyImplicitAddForces(Body body, PetscReal t, Vec U, Vec F)
 {
   const BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  const PetscReal     position = (body->substep + implicit->alpha_f) / body->substeps;
+  const PetscReal     position = (body->time.substep + implicit->alpha_f) / body->time.substeps;
 
   PetscFunctionBegin;
-  if (!body->linear) PetscCall(NoteTerms(body, U, body->integrator->has_inertia ? F : NULL));
-  PetscCall(VecAXPY(F, 1, body->internal_force));
+  if (!body->model.linear) PetscCall(NoteTerms(body, U, body->integrator->has_inertia ? F : NULL));
+  PetscCall(VecAXPY(F, 1, body->state.internal_force));
   PetscCall(BodyAddExternalForce(body, t, -1, F));
   PetscCall(BodyAddContactForce(body, position, -1, U, F));
   PetscCall(BodyZeroHeld(body, F));
@@ -65,8 +65,8 @@ PetscErrorCode BodyImplicitAddForces(Body body, PetscReal t, Vec U, Vec F)
 PetscErrorCode BodyImplicitPrescribe(Body body, Vec U)
 {
   PetscFunctionBegin;
-  PetscCall(BodyPrescribeHeld(body, body->time + body->time_step, U, NULL, NULL));
-  PetscCall(BodyPrescribe(body, body->traces.displacement_in, (PetscReal)(body->substep + 1) / body->substeps, U));
+  PetscCall(BodyPrescribeHeld(body, body->state.time + body->time.step, U, NULL, NULL));
+  PetscCall(BodyPrescribe(body, body->traces.displacement_in, (PetscReal)(body->time.substep + 1) / body->time.substeps, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,11 +77,11 @@ static PetscErrorCode AssembleMatrix(Body body, Vec u)
 
   PetscFunctionBegin;
   PetscCall(BodyAssembleTangent(body, u, implicit->matrix));
-  if (implicit->shift > 0 && body->mass_diagonal) {
-    PetscCall(VecCopy(body->mass_diagonal, body->work[0]));
-    PetscCall(VecScale(body->work[0], implicit->shift));
-    PetscCall(MatDiagonalSet(implicit->matrix, body->work[0], ADD_VALUES));
-  } else if (implicit->shift > 0) PetscCall(MatAXPY(implicit->matrix, implicit->shift, body->mass_matrix, SAME_NONZERO_PATTERN));
+  if (implicit->shift > 0 && body->mass.diagonal) {
+    PetscCall(VecCopy(body->mass.diagonal, body->work.nodes[0]));
+    PetscCall(VecScale(body->work.nodes[0], implicit->shift));
+    PetscCall(MatDiagonalSet(implicit->matrix, body->work.nodes[0], ADD_VALUES));
+  } else if (implicit->shift > 0) PetscCall(MatAXPY(implicit->matrix, implicit->shift, body->mass.matrix, SAME_NONZERO_PATTERN));
   PetscCall(BodyEliminateHeld(body, implicit->matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,7 +101,7 @@ static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, P
   (void)shift_a;
   (void)J;
   (void)P;
-  if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AssembleMatrix(body, U));
   PetscCall(ConstrainedSolverRefactor(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -157,11 +157,11 @@ static PetscErrorCode SetNearNullSpace(Body body, Mat A)
   Vec          coordinates;
 
   PetscFunctionBegin;
-  if (body->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(body->positions, &coordinates));
-  PetscCall(VecCopy(body->positions, coordinates));
-  PetscCall(VecSetBlockSize(coordinates, body->dim));
-  PetscCall(MatSetBlockSize(A, body->dim));
+  if (body->mesh.dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(body->mesh.positions, &coordinates));
+  PetscCall(VecCopy(body->mesh.positions, coordinates));
+  PetscCall(VecSetBlockSize(coordinates, body->mesh.dim));
+  PetscCall(MatSetBlockSize(A, body->mesh.dim));
   PetscCall(MatNullSpaceCreateRigidBody(coordinates, &rigid));
   PetscCall(MatSetNearNullSpace(A, rigid));
   PetscCall(MatNullSpaceDestroy(&rigid));
@@ -196,7 +196,7 @@ static PetscErrorCode SetUpNewton(Body body, SNES snes)
 
   PetscFunctionBegin;
   PetscCall(SNESGetLineSearch(snes, &line_search));
-  if (!body->linear) {
+  if (!body->model.linear) {
     PetscCall(SNESSetTolerances(snes, NEWTON_UNDERFLOW, NEWTON_TOLERANCE, NEWTON_STEP, NEWTON_ITERATIONS, PETSC_CURRENT));
     PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
     PetscCall(RefuseLagBetweenSubsteps(body));
@@ -229,18 +229,18 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
   PetscCall(BodyCreateMatrix(body, &implicit->matrix));
   PetscCall(AssembleMatrix(body, NULL));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
-  PetscCall(ConstrainedSolverCreate(implicit->matrix, body->free_rows, body->dim, prefix, &body->solver));
+  PetscCall(ConstrainedSolverCreate(implicit->matrix, body->rows.free_matrix, body->mesh.dim, prefix, &body->solver));
 
   PetscCall(BodyCreateVec(body, &vec));
-  PetscCall(TSSetI2Function(body->ts, vec, residual, body));
-  PetscCall(TSSetI2Jacobian(body->ts, implicit->matrix, implicit->matrix, ComputeJacobian, body));
+  PetscCall(TSSetI2Function(body->time.ts, vec, residual, body));
+  PetscCall(TSSetI2Jacobian(body->time.ts, implicit->matrix, implicit->matrix, ComputeJacobian, body));
   PetscCall(VecDestroy(&vec));
-  PetscCall(TSAlpha2SetPredictor(body->ts, predictor, body));
-  PetscCall(TSGetSNES(body->ts, &snes));
+  PetscCall(TSAlpha2SetPredictor(body->time.ts, predictor, body));
+  PetscCall(TSGetSNES(body->time.ts, &snes));
   PetscCall(SetUpNewton(body, snes));
   /* BodyImplicitCheckSubstep() tells, with body and time */
   PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_FALSE));
-  PetscCall(TSSetErrorIfStepFails(body->ts, PETSC_FALSE));
+  PetscCall(TSSetErrorIfStepFails(body->time.ts, PETSC_FALSE));
   PetscCall(SNESGetKSP(snes, &ksp));
   /* the user's -<body>_ksp_... options are for the solver with the factors, inside */
   PetscCall(PetscSNPrintf(outer, sizeof(outer), "%sconstrained_", prefix));
@@ -257,7 +257,7 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
 PetscErrorCode BodyImplicitSetRows(Body body, const PetscBool changed[])
 {
   PetscFunctionBegin;
-  PetscCall(ConstrainedSolverSetRows(body->solver, body->free_rows, changed));
+  PetscCall(ConstrainedSolverSetRows(body->solver, body->rows.free_matrix, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -269,8 +269,8 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   SNES                snes;
 
   PetscFunctionBegin;
-  if (body->linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TSGetSNES(body->ts, &snes));
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TSGetSNES(body->time.ts, &snes));
   PetscCall(SNESGetConvergedReason(snes, &reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
   if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
@@ -278,7 +278,7 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
           "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
           " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
-          body->hdr.name, (double)body->time, body->step, SNESConvergedReasons[reason], iterations, ((PetscObject)body)->prefix,
+          body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations, ((PetscObject)body)->prefix,
           ((PetscObject)body)->prefix);
 }
 

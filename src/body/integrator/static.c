@@ -11,7 +11,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   (void)ts;
   (void)V;
   (void)A;
-  PetscCall(BodyComputeInternalForce(body, U, body->internal_force));
+  PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   PetscCall(VecZeroEntries(F));
   PetscCall(BodyImplicitAddForces(body, t, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,8 +36,8 @@ static PetscErrorCode SetFromOptions(Body body)
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  PetscCall(TSSetFromOptions(body->ts));
-  PetscCall(TSAlpha2GetParams(body->ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
+  PetscCall(TSSetFromOptions(body->time.ts));
+  PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
   PetscCheck(implicit->alpha_m == 1 && implicit->alpha_f == 1 && implicit->gamma > 0 && implicit->beta > 0,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", ((PetscObject)body)->prefix);
@@ -54,7 +54,7 @@ static PetscErrorCode SetUp(Body body)
 /* The velocity is the mean of the substep */
 static PetscErrorCode FinishSubstep(Body body)
 {
-  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *u0, *u1;
   PetscScalar       *v1;
 
@@ -62,7 +62,7 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
   PetscCall(VecGetArrayRead(body->state.u, &u1));
   PetscCall(VecGetArrayWrite(body->state.v, &v1));
-  for (PetscInt i = 0; i < n; i++) v1[i] = (u1[i] - u0[i]) / body->time_step;
+  for (PetscInt i = 0; i < n; i++) v1[i] = (u1[i] - u0[i]) / body->time.step;
   PetscCall(VecRestoreArrayWrite(body->state.v, &v1));
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
@@ -74,7 +74,7 @@ static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal accel
 {
   PetscFunctionBegin;
   for (PetscInt k = 0; k < 3; k++) velocity[k] = acceleration[k] = 0;
-  velocity[0] = 1 / body->time_step;
+  velocity[0] = 1 / body->time.step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,7 +86,7 @@ static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScal
   PetscFunctionBegin;
   if (!implicit->next) PetscCall(VecDuplicate(body->state.u, &implicit->next));
   PetscCall(ConstrainedSolverApplyUnit(body->solver, row, implicit->next, column));
-  PetscCall(PetscArrayzero(column + body->rows.local, (body->substeps - 1) * body->rows.local));
+  PetscCall(PetscArrayzero(column + body->rows.local, (body->time.substeps - 1) * body->rows.local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

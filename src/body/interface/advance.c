@@ -22,29 +22,29 @@ PetscErrorCode BodySave(Body body)
   PetscCall(VecCopy(body->state.u, body->saved.u));
   PetscCall(VecCopy(body->state.v, body->saved.v));
   PetscCall(VecCopy(body->state.a, body->saved.a));
-  if (body->rows.local && body->step != body->saved_step) {
+  if (body->rows.local && body->state.step != body->saved.step) {
     const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
 
     for (PetscInt i = 0; i < 4; i++) {
       PetscCall(TraceGetLevel(traces[i], 0, &start));
-      PetscCall(TraceGetLevel(traces[i], body->substeps, &end));
+      PetscCall(TraceGetLevel(traces[i], body->time.substeps, &end));
       PetscCall(PetscArraycpy(start, end, body->rows.local));
     }
   }
   if (body->loads) {
     /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
-    if (body->substeps == 1 && body->step != body->saved_step) PetscCall(BodyAddWork(body, body->substep_start.u));
-    PetscCall(VecCopy(body->applied, body->saved_applied));
-    body->saved_work = body->external_work;
+    if (body->time.substeps == 1 && body->state.step != body->saved.step) PetscCall(BodyAddWork(body, body->substep_start.u));
+    PetscCall(VecCopy(body->state.applied, body->saved.applied));
+    body->saved.external_work = body->state.external_work;
   }
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
-  if (body->step != body->saved_step) PetscCall(TSMonitor(body->ts, body->step, body->time, body->state.u));
-  body->saved_time = body->time;
-  body->saved_step = body->step;
+  if (body->state.step != body->saved.step) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
+  body->saved.time = body->state.time;
+  body->saved.step = body->state.step;
   /* The TS has added up its substeps, with another round-off than body->time. Loads are to see the same time whenever the step is made. */
-  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
-  body->swept = PETSC_FALSE;
+  body->iterate.known = PETSC_FALSE;
   PetscCall(BodyInvalidateWindow(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -53,14 +53,14 @@ PetscErrorCode BodySave(Body body)
 static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
 {
   const Trace    traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
-  const PetscInt n        = body->substeps * body->rows.local;
+  const PetscInt n        = body->time.substeps * body->rows.local;
   PetscScalar   *values;
 
   PetscFunctionBegin;
   for (PetscInt t = 0; t < 4; t++) {
     PetscCall(TraceGetLevel(traces[t], 1, &values));
-    if (keep) PetscCall(PetscArraycpy(body->kept_traces + t * n, values, n));
-    else PetscCall(PetscArraycpy(values, body->kept_traces + t * n, n));
+    if (keep) PetscCall(PetscArraycpy(body->rows.kept_traces + t * n, values, n));
+    else PetscCall(PetscArraycpy(values, body->rows.kept_traces + t * n, n));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -82,7 +82,7 @@ static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
 @*/
 PetscErrorCode BodyKeep(Body body)
 {
-  const Vec from[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
+  const Vec from[] = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -105,7 +105,7 @@ PetscErrorCode BodyKeep(Body body)
 @*/
 PetscErrorCode BodyReinstate(Body body)
 {
-  const Vec to[] = {body->state.u, body->state.v, body->state.a, body->internal_force};
+  const Vec to[] = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -139,7 +139,7 @@ PetscErrorCode BodyResetTraces(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt t = 0; t < 4; t++) {
     PetscCall(TraceGetLevel(traces[t], 0, &start));
-    for (PetscInt level = 1; level <= body->substeps; level++) {
+    for (PetscInt level = 1; level <= body->time.substeps; level++) {
       PetscCall(TraceGetLevel(traces[t], level, &values));
       PetscCall(PetscArraycpy(values, start, body->rows.local));
     }
@@ -157,14 +157,14 @@ static PetscErrorCode CheckSubstep(Body body)
   PetscReal         norm;
 
   PetscFunctionBegin;
-  PetscCall(TSGetConvergedReason(body->ts, &reason));
+  PetscCall(TSGetConvergedReason(body->time.ts, &reason));
   PetscCall(VecNorm(body->state.v, NORM_2, &norm));
   if (body->integrator->ops.checksubstep) PetscCall((*body->integrator->ops.checksubstep)(body));
   if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
   PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)body), PETSC_ERR_FP,
              "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
              "); is a time step too large, or a penalty too stiff for it?",
-             body->hdr.name, (double)body->time, body->step);
+             body->hdr.name, (double)body->state.time, body->state.step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,21 +172,21 @@ static PetscErrorCode CheckSubstep(Body body)
 PetscErrorCode BodyIntegrateWindow(Body body)
 {
   PetscFunctionBegin;
-  if (body->step != body->saved_step) PetscCall(BodyRestore(body));
-  for (body->substep = 0; body->substep < body->substeps; body->substep++) {
+  if (body->state.step != body->saved.step) PetscCall(BodyRestore(body));
+  for (body->time.substep = 0; body->time.substep < body->time.substeps; body->time.substep++) {
     if (body->substep_start.u) {
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
-    PetscCall(TSStep(body->ts));
-    body->step++;
-    body->time = body->saved_time + (body->substep + 1) * body->time_step;
+    PetscCall(TSStep(body->time.ts));
+    body->state.step++;
+    body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
     PetscCall(CheckSubstep(body));
     PetscCall((*body->integrator->ops.finishsubstep)(body));
-    PetscCall(BodyWriteTraces(body, body->substep + 1));
-    if (body->substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
+    PetscCall(BodyWriteTraces(body, body->time.substep + 1));
+    if (body->time.substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
   }
-  body->total_substeps += body->substeps;
+  body->statistics.substeps += body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,7 +224,7 @@ PetscErrorCode BodyIntegrate(Body body)
     PetscCall(BodyNoteWindow(body));
   }
   PetscCall(PetscTime(&end));
-  body->seconds += end - begin;
+  body->statistics.seconds += end - begin;
   PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -250,7 +250,7 @@ PetscErrorCode BodyIntegrate(Body body)
 @*/
 PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *position)
 {
-  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *u, *x;
   PetscScalar       *previous;
   PetscReal          sums[2] = {0, 0}, change4[4] = {0}, position4[4] = {0};
@@ -258,8 +258,8 @@ PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *po
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(VecGetArrayRead(body->state.u, &u));
-  PetscCall(VecGetArrayRead(body->positions, &x));
-  PetscCall(VecGetArray(body->previous_u, &previous));
+  PetscCall(VecGetArrayRead(body->mesh.positions, &x));
+  PetscCall(VecGetArray(body->iterate.u, &previous));
   /* four sums each, since a single one waits for every addition */
   for (PetscInt i = 0; i < n; i += 4)
     for (PetscInt k = 0; k < PetscMin(4, n - i); k++) {
@@ -271,13 +271,13 @@ PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *po
     sums[1] += position4[k];
   }
   PetscCall(PetscArraycpy(previous, u, n));
-  PetscCall(VecRestoreArray(body->previous_u, &previous));
-  PetscCall(VecRestoreArrayRead(body->positions, &x));
+  PetscCall(VecRestoreArray(body->iterate.u, &previous));
+  PetscCall(VecRestoreArrayRead(body->mesh.positions, &x));
   PetscCall(VecRestoreArrayRead(body->state.u, &u));
   if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  *change     = body->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
-  *position   = PetscSqrtReal(sums[1]);
-  body->swept = PETSC_TRUE;
+  *change             = body->iterate.known ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
+  *position           = PetscSqrtReal(sums[1]);
+  body->iterate.known = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -301,7 +301,7 @@ PetscErrorCode BodyGetTotalSubsteps(Body body, PetscInt64 *substeps, PetscLogDou
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (substeps) *substeps = body->total_substeps;
-  if (seconds) *seconds = body->seconds;
+  if (substeps) *substeps = body->statistics.substeps;
+  if (seconds) *seconds = body->statistics.seconds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -91,8 +91,8 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  body->time_start      = start;
-  body->controller_step = step;
+  body->time.start           = start;
+  body->time.controller_step = step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,7 +128,7 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
   PetscCall(VecSet(local, 0));
   PetscCall(VecGetArray(local, &mark));
-  for (PetscInt i = 0; i < n; i++) mark[body->node_of_vertex[vertices[i] - body->vertex_start] * body->dim] = 1;
+  for (PetscInt i = 0; i < n; i++) mark[body->mesh.node_of_vertex[vertices[i] - body->mesh.vertex_start] * body->mesh.dim] = 1;
   PetscCall(VecRestoreArray(local, &mark));
   /* a rank may hold a node of the surface without holding a face of it */
   if (ghosted) {
@@ -138,8 +138,8 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
     PetscCall(VecGhostUpdateEnd(marks, INSERT_VALUES, SCATTER_FORWARD));
   }
   PetscCall(VecGetArrayRead(local, &all));
-  for (PetscInt node = 0; node < body->local_nodes; node++)
-    if (PetscRealPart(all[node * body->dim]) > 0) body->in_layer[node] = PETSC_TRUE;
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++)
+    if (PetscRealPart(all[node * body->mesh.dim]) > 0) body->layer.contains[node] = PETSC_TRUE;
   PetscCall(VecRestoreArrayRead(local, &all));
   if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
   PetscCall(VecDestroy(&marks));
@@ -152,8 +152,8 @@ static PetscErrorCode CreateTraces(Body body)
                      &body->traces.displacement,    &body->traces.velocity,    &body->traces.acceleration,    &body->traces.reaction};
 
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 8; t++) PetscCall(TraceCreate(body->rows.local, body->substeps, traces[t]));
-  PetscCall(PetscCalloc1(4 * body->substeps * body->rows.local, &body->kept_traces));
+  for (PetscInt t = 0; t < 8; t++) PetscCall(TraceCreate(body->rows.local, body->time.substeps, traces[t]));
+  PetscCall(PetscCalloc1(4 * body->time.substeps * body->rows.local, &body->rows.kept_traces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,9 +165,9 @@ static PetscErrorCode SetUpRows(Body body)
   PetscMPIInt four, total = 0;
 
   PetscFunctionBegin;
-  if (!body->interface) {
+  if (!body->rows.matrix) {
     Mat      empty;
-    PetscInt n = body->owned_nodes * body->dim;
+    PetscInt n = body->mesh.owned_nodes * body->mesh.dim;
 
     PetscCall(MatCreateAIJ(comm, 0, n, 0, PETSC_DETERMINE, 0, NULL, 0, NULL, &empty));
     PetscCall(MatAssemblyBegin(empty, MAT_FINAL_ASSEMBLY));
@@ -175,15 +175,15 @@ static PetscErrorCode SetUpRows(Body body)
     PetscCall(BodySetInterface(body, empty));
     PetscCall(MatDestroy(&empty));
   }
-  PetscCall(MatGetOwnershipRange(body->interface, &rows->begin, NULL));
+  PetscCall(MatGetOwnershipRange(body->rows.matrix, &rows->begin, NULL));
   PetscCall(PetscMalloc2(rows->size, &rows->counts, rows->size, &rows->offsets));
   PetscCall(PetscMPIIntCast(4 * rows->local, &four));
   PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
-  PetscCall(
-      PetscCalloc4(rows->local, &body->conditions, rows->local, &body->held, rows->local, &body->flexibility, rows->local, &body->robin));
-  for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->interface, NULL, &body->row_vec[k]));
-  body->prescribed_mass = (PetscBool)(rows->global > 0 && !body->mass_redistribute && body->integrator->has_inertia);
+  PetscCall(PetscCalloc4(rows->local, &body->rows.conditions, rows->local, &body->rows.constrained, rows->local, &body->rows.flexibility,
+                         rows->local, &body->rows.robin));
+  for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->rows.matrix, NULL, &body->work.rows[k]));
+  body->rows.have_mass = (PetscBool)(rows->global > 0 && !body->mass.redistribute && body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,14 +201,22 @@ static PetscErrorCode SetUpRows(Body body)
 @*/
 PetscErrorCode BodySetUp(Body body)
 {
-  Vec *always[] = {&body->state.u, &body->state.v,        &body->state.a, &body->saved.u, &body->saved.v,
-                   &body->saved.a, &body->internal_force, &body->work[0], &body->work[1], &body->work[2]};
-  Vec *sweeps[] = {&body->previous_u, &body->kept[0], &body->kept[1], &body->kept[2], &body->kept[3]};
+  Vec *always[] = {&body->state.u,
+                   &body->state.v,
+                   &body->state.a,
+                   &body->saved.u,
+                   &body->saved.v,
+                   &body->saved.a,
+                   &body->state.internal_force,
+                   &body->work.nodes[0],
+                   &body->work.nodes[1],
+                   &body->work.nodes[2]};
+  Vec *sweeps[] = {&body->iterate.u, &body->kept[0], &body->kept[1], &body->kept[2], &body->kept[3]};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
+  PetscCheck(body->mesh.dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
   PetscCall(SetUpRows(body));
   for (size_t i = 0; i < sizeof(always) / sizeof(always[0]); i++) PetscCall(BodyCreateVec(body, always[i]));
   if (body->rows.global) {
@@ -224,7 +232,7 @@ PetscErrorCode BodySetUp(Body body)
     PetscCall(BodyCreateVec(body, &body->substep_start.u));
     PetscCall(BodyCreateVec(body, &body->substep_start.v));
   }
-  PetscCall(TSViewFromOptions(body->ts, NULL, "-ts_view"));
+  PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -254,10 +262,14 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec   *vecs[]   = {&b->state.u,         &b->state.v,         &b->state.a,        &b->saved.u,     &b->saved.v,    &b->saved.a,
-                       &b->substep_start.u, &b->substep_start.v, &b->internal_force, &b->previous_u,  &b->work[0],    &b->work[1],
-                       &b->work[2],         &b->positions,       &b->mass_row_sum,   &b->orphan_mass, &b->applied,    &b->saved_applied,
-                       &b->mass_diagonal,   &b->inverse_mass,    &b->row_vec[0],     &b->row_vec[1],  &b->row_vec[2], &b->kept[0],
+    Vec   *vecs[]   = {&b->state.u,         &b->state.v,         &b->state.a,
+                       &b->saved.u,         &b->saved.v,         &b->saved.a,
+                       &b->substep_start.u, &b->substep_start.v, &b->state.internal_force,
+                       &b->iterate.u,       &b->work.nodes[0],   &b->work.nodes[1],
+                       &b->work.nodes[2],   &b->mesh.positions,  &b->mass.row_sum,
+                       &b->mass.orphans,    &b->state.applied,   &b->saved.applied,
+                       &b->mass.diagonal,   &b->mass.inverse,    &b->work.rows[0],
+                       &b->work.rows[1],    &b->work.rows[2],    &b->kept[0],
                        &b->kept[1],         &b->kept[2],         &b->kept[3]};
     Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
                        &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
@@ -271,28 +283,28 @@ PetscErrorCode BodyDestroy(Body *body)
     for (size_t i = 0; i < sizeof(traces) / sizeof(traces[0]); i++) PetscCall(TraceDestroy(traces[i]));
   }
   PetscCall(ConstrainedSolverDestroy(&b->solver));
-  PetscCall(ConstrainedSolverDestroy(&b->mass_solver));
-  PetscCall(MatDestroy(&b->stiffness));
-  PetscCall(MatDestroy(&b->mass_matrix));
-  PetscCall(MatDestroy(&b->interface));
-  PetscCall(MatDestroy(&b->free_rows));
-  PetscCall(BodyGramDestroy(&b->gram));
-  PetscCall(TSDestroy(&b->ts));
-  PetscCall(BodyLayerElementsDestroy(&b->layer_elements));
-  PetscCall(ElementDestroy(&b->element));
-  PetscCall(ElementDestroy(&b->linearized_element));
-  PetscCall(MaterialDestroy(&b->material));
-  PetscCall(MaterialDestroy(&b->linearized_material));
+  PetscCall(ConstrainedSolverDestroy(&b->mass.solver));
+  PetscCall(MatDestroy(&b->model.stiffness));
+  PetscCall(MatDestroy(&b->mass.matrix));
+  PetscCall(MatDestroy(&b->rows.matrix));
+  PetscCall(MatDestroy(&b->rows.free_matrix));
+  PetscCall(BodyGramDestroy(&b->rows.gram));
+  PetscCall(TSDestroy(&b->time.ts));
+  PetscCall(BodyLayerElementsDestroy(&b->layer.elements));
+  PetscCall(ElementDestroy(&b->model.element));
+  PetscCall(ElementDestroy(&b->model.linearized_element));
+  PetscCall(MaterialDestroy(&b->model.material));
+  PetscCall(MaterialDestroy(&b->model.linearized_material));
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
-  PetscCall(PetscFree(b->kept_traces));
-  PetscCall(PetscFree4(b->conditions, b->held, b->flexibility, b->robin));
-  PetscCall(PetscFree(b->layer_dofs));
-  PetscCall(PetscFree(b->in_layer));
-  PetscCall(PetscFree(b->connectivity));
-  PetscCall(PetscFree(b->coordinates));
-  PetscCall(PetscFree(b->ghost_dofs));
-  PetscCall(PetscFree(b->node_of_vertex));
-  PetscCall(DMDestroy(&b->dm));
+  PetscCall(PetscFree(b->rows.kept_traces));
+  PetscCall(PetscFree4(b->rows.conditions, b->rows.constrained, b->rows.flexibility, b->rows.robin));
+  PetscCall(PetscFree(b->layer.dofs));
+  PetscCall(PetscFree(b->layer.contains));
+  PetscCall(PetscFree(b->mesh.connectivity));
+  PetscCall(PetscFree(b->mesh.coordinates));
+  PetscCall(PetscFree(b->mesh.ghost_dofs));
+  PetscCall(PetscFree(b->mesh.node_of_vertex));
+  PetscCall(DMDestroy(&b->mesh.dm));
   PetscCall(PetscHeaderDestroy(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,8 +19,8 @@ static PetscErrorCode CheckDescribed(Body body)
 static PetscErrorCode CreateMesh(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(MeshCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, &body->dm));
-  PetscCall(DMGetCoordinateDim(body->dm, &body->dim));
+  PetscCall(MeshCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, &body->mesh.dm));
+  PetscCall(DMGetCoordinateDim(body->mesh.dm, &body->mesh.dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,13 +37,13 @@ static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
   if (!set) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
   if (is_auto) {
-    body->requested_step = -1;
+    body->time.requested_step = -1;
     PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
     PetscCall(PetscOptionsClearValue(NULL, full));
     *hidden = PETSC_TRUE;
   } else {
-    PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &body->requested_step, NULL));
-    PetscCheck(body->requested_step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+    PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &body->time.requested_step, NULL));
+    PetscCheck(body->time.requested_step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "-%sts_time_step %s: a time step must be positive", prefix, text);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,10 +60,10 @@ static PetscErrorCode CreateTime(Body body)
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
   PetscCall(BodyIntegratorCreate(body, type));
   PetscCall(ReadTimeStep(body, &hidden));
-  PetscCall(TSCreate(comm, &body->ts));
-  PetscCall(TSSetOptionsPrefix(body->ts, prefix));
-  PetscCall(TSSetDM(body->ts, body->dm));
-  PetscCall(TSSetType(body->ts, type));
+  PetscCall(TSCreate(comm, &body->time.ts));
+  PetscCall(TSSetOptionsPrefix(body->time.ts, prefix));
+  PetscCall(TSSetDM(body->time.ts, body->mesh.dm));
+  PetscCall(TSSetType(body->time.ts, type));
   PetscCall((*body->integrator->ops.setfromoptions)(body));
   if (hidden) {
     PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
@@ -78,15 +78,15 @@ static PetscErrorCode CreateTime(Body body)
 static PetscErrorCode ReadMass(Body body)
 {
   PetscFunctionBegin;
-  body->mass_type         = body->integrator->divides_by_mass && body->dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
-  body->mass_redistribute = PETSC_TRUE;
+  body->mass.type         = body->integrator->divides_by_mass && body->mesh.dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
+  body->mass.redistribute = PETSC_TRUE;
   PetscObjectOptionsBegin((PetscObject)body);
-  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type,
-                             (PetscEnum *)&body->mass_type, NULL));
+  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass.type,
+                             (PetscEnum *)&body->mass.type, NULL));
   PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions",
-                             body->mass_redistribute, &body->mass_redistribute, NULL));
+                             body->mass.redistribute, &body->mass.redistribute, NULL));
   PetscOptionsEnd();
-  if (!body->integrator->has_inertia) body->mass_redistribute = PETSC_FALSE; /* there is none to move */
+  if (!body->integrator->has_inertia) body->mass.redistribute = PETSC_FALSE; /* there is none to move */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,9 +94,9 @@ static PetscErrorCode ReadLoads(Body body)
 {
   PetscFunctionBegin;
   PetscCall(BodyLoadsSetFromOptions(body));
-  PetscCall(BodyLoadsGetHeld(body, &body->n_held, &body->held_dofs));
-  body->any_held = (PetscBool)(body->n_held > 0);
-  PetscCall(BodyAnyRank(body, &body->any_held));
+  PetscCall(BodyLoadsGetHeld(body, &body->held.n, &body->held.dofs));
+  body->held.any = (PetscBool)(body->held.n > 0);
+  PetscCall(BodyAnyRank(body, &body->held.any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -127,12 +127,13 @@ PetscErrorCode BodySetFromOptions(Body body)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(!body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has its options already", body->hdr.name);
+  PetscCheck(!body->mesh.dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has its options already",
+             body->hdr.name);
   PetscCall(CheckDescribed(body));
-  PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->material));
-  PetscCall(MaterialSetOptionsPrefix(body->material, ((PetscObject)body)->prefix));
-  PetscCall(MaterialSetFromOptions(body->material));
-  PetscCall(MaterialIsLinear(body->material, &body->linear));
+  PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->model.material));
+  PetscCall(MaterialSetOptionsPrefix(body->model.material, ((PetscObject)body)->prefix));
+  PetscCall(MaterialSetFromOptions(body->model.material));
+  PetscCall(MaterialIsLinear(body->model.material, &body->model.linear));
   PetscCall(CreateMesh(body));
   PetscCall(BodySetUpLayout(body));
   PetscCall(CreateTime(body));
@@ -144,18 +145,18 @@ PetscErrorCode BodySetFromOptions(Body body)
 /* M a = forces, where there are any */
 static PetscErrorCode ComputeInitialAcceleration(Body body)
 {
-  Vec       force = body->work[0];
+  Vec       force = body->work.nodes[0];
   PetscReal norm;
 
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(force));
-  PetscCall(VecAXPY(force, -1, body->internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
-  PetscCall(BodyAddExternalForce(body, body->time, 1, force));
+  PetscCall(VecAXPY(force, -1, body->state.internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
+  PetscCall(BodyAddExternalForce(body, body->state.time, 1, force));
   PetscCall(VecNorm(force, NORM_INFINITY, &norm));
   PetscCall(VecZeroEntries(body->state.a));
-  PetscCall(BodySubtractHeldInertia(body, body->time, force, body->state.a));
-  if (norm > 0 || body->any_held) PetscCall(BodySolveMass(body, force, body->state.a));
-  if (body->integrator->has_inertia) PetscCall(BodyPrescribeHeld(body, body->time, NULL, NULL, body->state.a));
+  PetscCall(BodySubtractHeldInertia(body, body->state.time, force, body->state.a));
+  if (norm > 0 || body->held.any) PetscCall(BodySolveMass(body, force, body->state.a));
+  if (body->integrator->has_inertia) PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, NULL, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,21 +183,22 @@ PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscIn
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->setup && !body->step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+  PetscCheck(body->setup && !body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Call after BodySetUp(), before the first step");
   PetscCall(BodyLoadsInitialState(body, body->state.u, body->state.v));
   if (function) {
     PetscCall(VecGetArray(body->state.u, &u));
     PetscCall(VecGetArray(body->state.v, &v));
-    for (PetscInt node = 0; node < body->owned_nodes; node++)
-      PetscCall((*function)(body->dim, body->coordinates + node * body->dim, u + node * body->dim, v + node * body->dim, ctx));
+    for (PetscInt node = 0; node < body->mesh.owned_nodes; node++)
+      PetscCall((*function)(body->mesh.dim, body->mesh.coordinates + node * body->mesh.dim, u + node * body->mesh.dim,
+                            v + node * body->mesh.dim, ctx));
     PetscCall(VecRestoreArray(body->state.v, &v));
     PetscCall(VecRestoreArray(body->state.u, &u));
   }
-  PetscCall(BodyPrescribeHeld(body, body->time, body->state.u, body->state.v, NULL));
-  PetscCall(BodyComputeInternalForce(body, body->state.u, body->internal_force));
-  PetscCall(VecNorm(body->internal_force, NORM_2, &norm));
-  if (PetscIsInfOrNanReal(norm) && !body->linear) PetscCall(BodyCheckInverted(body));
+  PetscCall(BodyPrescribeHeld(body, body->state.time, body->state.u, body->state.v, NULL));
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(VecNorm(body->state.internal_force, NORM_2, &norm));
+  if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyCheckInverted(body));
   PetscCall(ComputeInitialAcceleration(body));
   PetscCall(BodyWriteTraces(body, 0));
   PetscCall(BodySetUpWork(body));

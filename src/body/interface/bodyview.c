@@ -4,15 +4,16 @@
 /* What there is to tell of bodies in two and three dimensions */
 static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 {
-  PetscInt count = body->element->count;
+  PetscInt count = body->model.element->count;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->cell_shape]));
-  if (body->integrator->needs_stable_step) PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->stable_step));
-  if (body->mass_shift[0] != 0 || body->mass_shift[1] != 0 || body->mass_shift[2] != 0)
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->mesh.cell_shape]));
+  if (body->integrator->needs_stable_step)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->time.stable_step));
+  if (body->mass.shift[0] != 0 || body->mass.shift[1] != 0 || body->mass.shift[2] != 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n",
-                                     (double)body->mass_shift[0], (double)body->mass_shift[1], (double)body->mass_shift[2]));
+                                     (double)body->mass.shift[0], (double)body->mass.shift[1], (double)body->mass.shift[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,14 +38,14 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
-  PetscCall(VecGetSize(body->positions, &dofs));
-  PetscCall(TSGetType(body->ts, &type));
+  PetscCall(VecGetSize(body->mesh.positions, &dofs));
+  PetscCall(TSGetType(body->time.ts, &type));
   PetscCall(PetscViewerASCIIPrintf(
       viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name,
-      dofs, (double)body->total_mass, BodyMassTypes[body->mass_type],
-      body->mass_redistribute && body->rows.global ? ", contact layer massless" : "", type, body->substeps, body->substeps == 1 ? "" : "s",
-      (double)body->time_step));
-  if (body->dim > 1) PetscCall(ViewSolid(body, viewer));
+      dofs, (double)body->mass.total, BodyMassTypes[body->mass.type],
+      body->mass.redistribute && body->rows.global ? ", contact layer massless" : "", type, body->time.substeps,
+      body->time.substeps == 1 ? "" : "s", (double)body->time.step));
+  if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,7 +68,7 @@ PetscErrorCode BodyGetDM(Body body, DM *dm)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *dm = body->dm;
+  *dm = body->mesh.dm;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,7 +91,7 @@ PetscErrorCode BodyGetTS(Body body, TS *ts)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *ts = body->ts;
+  *ts = body->time.ts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,7 +114,7 @@ PetscErrorCode BodyGetMaterial(Body body, Material *material)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *material = body->material;
+  *material = body->model.material;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,7 +137,7 @@ PetscErrorCode BodyGetSubsteps(Body body, PetscInt *substeps)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *substeps = body->substeps;
+  *substeps = body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -163,7 +164,7 @@ PetscErrorCode BodyGetStableStep(Body body, PetscReal *step)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyComputeStableStep(body));
-  *step = body->stable_step;
+  *step = body->time.stable_step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -216,7 +217,7 @@ PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *positions = body->positions;
+  *positions = body->mesh.positions;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -288,7 +289,7 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->integrator, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
-  *redistributed = (PetscBool)(body->mass_redistribute || !body->integrator->has_inertia);
+  *redistributed = (PetscBool)(body->mass.redistribute || !body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -312,8 +313,8 @@ PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *n    = body->n_held;
-  *dofs = body->held_dofs;
+  *n    = body->held.n;
+  *dofs = body->held.dofs;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

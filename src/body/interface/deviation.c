@@ -26,8 +26,8 @@
 @*/
 PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscReal *difference, PetscReal *norm)
 {
-  const Element      element = body->element;
-  const PetscInt     n = element->nodes, dim = body->dim;
+  const Element      element = body->model.element;
+  const PetscInt     n = element->nodes, dim = body->mesh.dim;
   const PetscScalar *u;
   PetscReal          x[ELEMENT_MAX_DOFS], weight[ELEMENT_MAX_DOFS], sums[2] = {0, 0};
   Vec                local;
@@ -37,11 +37,11 @@ PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscRe
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   for (PetscInt e = 0; e < element->count; e++) {
-    const PetscInt *nodes = body->connectivity + e * n;
+    const PetscInt *nodes = body->mesh.connectivity + e * n;
 
     PetscCall((*element->ops.points)(element, e, x, weight));
     for (PetscInt p = 0; p < element->n_points; p++) {
-      ExpressionPoint point = {.t = body->time};
+      ExpressionPoint point = {.t = body->state.time};
 
       for (PetscInt d = 0; d < dim; d++) point.x[d] = x[p * dim + d];
       for (PetscInt d = 0; d < dim; d++) {

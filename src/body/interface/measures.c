@@ -5,22 +5,22 @@
 static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
 {
   const PetscScalar *u, *force;
-  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   Vec                local;
   PetscReal          sum = 0;
 
   PetscFunctionBegin;
-  if (body->linear) {
+  if (body->model.linear) {
     PetscCall(VecGetArrayRead(body->state.u, &u));
-    PetscCall(VecGetArrayRead(body->internal_force, &force));
+    PetscCall(VecGetArrayRead(body->state.internal_force, &force));
     for (PetscInt i = 0; i < n; i++) sum += u[i] * force[i];
-    PetscCall(VecRestoreArrayRead(body->internal_force, &force));
+    PetscCall(VecRestoreArrayRead(body->state.internal_force, &force));
     PetscCall(VecRestoreArrayRead(body->state.u, &u));
     *potential = 0.5 * sum;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  PetscCall((*body->element->ops.energy)(body->element, u, potential));
+  PetscCall((*body->model.element->ops.energy)(body->model.element, u, potential));
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -28,8 +28,8 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
 /* Kinetic energy [J], staggered for central differences */
 static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic)
 {
-  const PetscReal    staggered = body->integrator->staggered * PetscSqr(body->time_step);
-  const PetscInt     n         = body->owned_nodes * body->dim;
+  const PetscReal    staggered = body->integrator->staggered * PetscSqr(body->time.step);
+  const PetscInt     n         = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *v, *a, *p, *inertia;
   PetscReal          sum = 0;
 
@@ -40,11 +40,11 @@ static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic
   PetscCall(VecRestoreArrayRead(momentum, &p));
   PetscCall(VecRestoreArrayRead(body->state.v, &v));
   if (staggered > 0) {
-    PetscCall(BodyMultiplyMass(body, body->state.a, body->work[1]));
+    PetscCall(BodyMultiplyMass(body, body->state.a, body->work.nodes[1]));
     PetscCall(VecGetArrayRead(body->state.a, &a));
-    PetscCall(VecGetArrayRead(body->work[1], &inertia));
+    PetscCall(VecGetArrayRead(body->work.nodes[1], &inertia));
     for (PetscInt i = 0; i < n; i++) sum -= staggered * a[i] * inertia[i];
-    PetscCall(VecRestoreArrayRead(body->work[1], &inertia));
+    PetscCall(VecRestoreArrayRead(body->work.nodes[1], &inertia));
     PetscCall(VecRestoreArrayRead(body->state.a, &a));
   }
   *kinetic = 0.5 * sum;
@@ -54,9 +54,9 @@ static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic
 /* The sums over this rank's nodes that make kinetic energy, momentum and angular momentum */
 static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal momentum[3], PetscReal angular[3])
 {
-  const PetscInt     dim = body->dim, n = body->owned_nodes * dim;
+  const PetscInt     dim = body->mesh.dim, n = body->mesh.owned_nodes * dim;
   const PetscScalar *x, *u, *p;
-  Vec                nodal = body->work[0];
+  Vec                nodal = body->work.nodes[0];
 
   PetscFunctionBegin;
   PetscCall(BodyMultiplyMass(body, body->state.v, nodal));
@@ -65,7 +65,7 @@ static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal mom
   if (dim == 1) {
     for (PetscInt i = 0; i < n; i++) momentum[0] += p[i];
   } else {
-    PetscCall(VecGetArrayRead(body->positions, &x));
+    PetscCall(VecGetArrayRead(body->mesh.positions, &x));
     PetscCall(VecGetArrayRead(body->state.u, &u));
     for (PetscInt i = 0; i < n; i += dim) {
       PetscReal r[3] = {0}, q[3] = {0};
@@ -78,7 +78,7 @@ static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal mom
       for (PetscInt d = 0; d < 3; d++) angular[d] += r[(d + 1) % 3] * q[(d + 2) % 3] - r[(d + 2) % 3] * q[(d + 1) % 3];
     }
     PetscCall(VecRestoreArrayRead(body->state.u, &u));
-    PetscCall(VecRestoreArrayRead(body->positions, &x));
+    PetscCall(VecRestoreArrayRead(body->mesh.positions, &x));
   }
   PetscCall(VecRestoreArrayRead(nodal, &p));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -91,9 +91,9 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(body->state.v, &v));
-  PetscCall(VecGetArrayRead(body->mass_row_sum, &mass));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) sum[i % body->dim] += mass[i] * v[i];
-  PetscCall(VecRestoreArrayRead(body->mass_row_sum, &mass));
+  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) sum[i % body->mesh.dim] += mass[i] * v[i];
+  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
   PetscCall(VecRestoreArrayRead(body->state.v, &v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -134,12 +134,12 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 11, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   measures->kinetic       = sums[0];
   measures->potential     = sums[1];
-  measures->external_work = body->external_work;
+  measures->external_work = body->state.external_work;
   measures->loaded        = (PetscBool)(body->loads != NULL);
   for (PetscInt d = 0; d < 3; d++) {
     measures->momentum[d]         = sums[2 + d];
     measures->angular_momentum[d] = sums[5 + d];
-    measures->mean_velocity[d]    = sums[8 + d] / body->total_mass;
+    measures->mean_velocity[d]    = sums[8 + d] / body->mass.total;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -20,7 +20,7 @@ PetscErrorCode BodyGetDimension(Body body, PetscInt *dim)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(DMGetCoordinateDim(body->dm, dim));
+  PetscCall(DMGetCoordinateDim(body->mesh.dm, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,7 +43,7 @@ PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *mass = body->total_mass;
+  *mass = body->mass.total;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,7 +66,7 @@ PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *cross_section = body->element->cross_section;
+  *cross_section = body->model.element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,11 +77,11 @@ static PetscErrorCode SumCells(Body body, PetscReal sums[2])
 
   PetscFunctionBegin;
   sums[0] = 0;
-  PetscCall(DMPlexGetHeightStratum(body->dm, 0, &cstart, &cend));
+  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
   for (PetscInt cell = cstart; cell < cend; cell++) {
     PetscReal measure;
 
-    PetscCall(DMPlexComputeCellGeometryFVM(body->dm, cell, &measure, NULL, NULL));
+    PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cell, &measure, NULL, NULL));
     sums[0] += measure;
   }
   sums[1] = cend - cstart;
@@ -113,7 +113,7 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyGetDimension(body, &dim));
-  PetscCall(DMPlexIsSimplex(body->dm, &simplex));
+  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
   PetscCall(SumCells(body, sums));
   if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
   *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
@@ -142,10 +142,10 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(MaterialGetDensity(body->material, &density));
-  if (body->dim == 1) PetscCall(MaterialGetUniaxialModulus(body->material, &modulus));
-  else PetscCall(MaterialGetWaveModulus(body->material, &modulus));
-  *impedance = PetscSqrtReal(modulus * density) * body->element->cross_section;
+  PetscCall(MaterialGetDensity(body->model.material, &density));
+  if (body->mesh.dim == 1) PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
+  else PetscCall(MaterialGetWaveModulus(body->model.material, &modulus));
+  *impedance = PetscSqrtReal(modulus * density) * body->model.element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,7 +172,7 @@ PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(MaterialGetDensity(body->material, &density));
+  PetscCall(MaterialGetDensity(body->model.material, &density));
   PetscCall(BodyGetElementSize(body, &size));
   PetscCall(BodyGetCrossSection(body, &cross_section));
   PetscCall(BodyGetDimension(body, &dim));

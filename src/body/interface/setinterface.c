@@ -21,7 +21,7 @@ static PetscErrorCode RewriteStart(Body body)
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
 
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 3; t++) PetscCall(BodyWriteTrace(body, body->interface, vecs[t], traces[t], 0));
+  for (PetscInt t = 0; t < 3; t++) PetscCall(BodyWriteTrace(body, body->rows.matrix, vecs[t], traces[t], 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -49,15 +49,15 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(PetscObjectReference((PetscObject)B));
-  PetscCall(MatDestroy(&body->interface));
-  body->interface = B;
+  PetscCall(MatDestroy(&body->rows.matrix));
+  body->rows.matrix = B;
   PetscCall(BodySetUpFreeRows(body));
   PetscCall(PetscMalloc1(body->rows.global, &all));
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall(PetscFree(all));
   PetscCall((*body->integrator->ops.setrows)(body, changed));
-  if (body->mass_solver) PetscCall(ConstrainedSolverSetRows(body->mass_solver, body->free_rows, changed));
+  if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, changed));
   if (body->response) PetscCall(BodyDestroyResponse(body));
   PetscCall(BodySetConstraints(body));
   PetscCall(RewriteStart(body));

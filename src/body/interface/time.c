@@ -21,29 +21,30 @@ PetscErrorCode BodySetUpSubsteps(Body body)
   const char *prefix = ((PetscObject)body)->prefix;
 
   PetscFunctionBegin;
-  PetscCheck(body->controller_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
-  if (body->integrator->needs_stable_step || body->requested_step < 0) PetscCall(BodyComputeStableStep(body));
-  if (body->requested_step < 0) {
+  PetscCheck(body->time.controller_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
+  if (body->integrator->needs_stable_step || body->time.requested_step < 0) PetscCall(BodyComputeStableStep(body));
+  if (body->time.requested_step < 0) {
     /* a quotient that is a whole number but for round-off is not rounded up to the next one */
-    body->substeps = (PetscInt)PetscCeilReal(body->controller_step / (SAFETY * body->stable_step) * (1 - ROUND_OFF));
+    body->time.substeps = (PetscInt)PetscCeilReal(body->time.controller_step / (SAFETY * body->time.stable_step) * (1 - ROUND_OFF));
   } else {
-    const PetscReal step = body->requested_step > 0 ? body->requested_step : body->controller_step;
+    const PetscReal step = body->time.requested_step > 0 ? body->time.requested_step : body->time.controller_step;
 
-    PetscCheck(body->controller_step / step < MAX_SUBSTEPS, comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(body->time.controller_step / step < MAX_SUBSTEPS, comm, PETSC_ERR_USER_INPUT,
                "-%sts_time_step %g s is too small for the controller step -time_step %g s", prefix, (double)step,
-               (double)body->controller_step);
-    body->substeps = (PetscInt)PetscFloorReal(0.5 + body->controller_step / step);
+               (double)body->time.controller_step);
+    body->time.substeps = (PetscInt)PetscFloorReal(0.5 + body->time.controller_step / step);
     PetscCheck(
-        body->substeps > 0 && PetscAbsReal(body->substeps * step - body->controller_step) <= DIVIDES * body->controller_step, comm,
-        PETSC_ERR_USER_INPUT,
+        body->time.substeps > 0 &&
+            PetscAbsReal(body->time.substeps * step - body->time.controller_step) <= DIVIDES * body->time.controller_step,
+        comm, PETSC_ERR_USER_INPUT,
         "-%sts_time_step %g s does not divide the controller step -time_step %g s (ratio %.9g); choose a whole fraction of it, or 'auto'",
-        prefix, (double)step, (double)body->controller_step, (double)(body->controller_step / step));
+        prefix, (double)step, (double)body->time.controller_step, (double)(body->time.controller_step / step));
   }
-  body->time_step = body->controller_step / body->substeps;
+  body->time.step = body->time.controller_step / body->time.substeps;
   if (body->integrator->needs_stable_step)
-    PetscCheck(body->time_step <= body->stable_step * (1 + ROUND_OFF), comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(body->time.step <= body->time.stable_step * (1 + ROUND_OFF), comm, PETSC_ERR_USER_INPUT,
                "-%sts_time_step %g s of the explicit body '%s' is larger than its stable step, %.6g s; choose a smaller one, or 'auto'",
-               prefix, (double)body->time_step, body->hdr.name, (double)body->stable_step);
+               prefix, (double)body->time.step, body->hdr.name, (double)body->time.stable_step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -54,18 +55,18 @@ PetscErrorCode BodySetUpTime(Body body)
   PetscBool none;
 
   PetscFunctionBegin;
-  PetscCall(TS2SetSolution(body->ts, body->state.u, body->state.v));
-  PetscCall(TSGetAdapt(body->ts, &adapt));
+  PetscCall(TS2SetSolution(body->time.ts, body->state.u, body->state.v));
+  PetscCall(TSGetAdapt(body->time.ts, &adapt));
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &none));
   PetscCheck(none, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_adapt_type: adaptive substeps within a controller step are not supported; leave it at none",
              ((PetscObject)body)->prefix);
-  PetscCall(TSSetMaxTime(body->ts, NO_END));
-  PetscCall(TSSetExactFinalTime(body->ts, TS_EXACTFINALTIME_STEPOVER));
+  PetscCall(TSSetMaxTime(body->time.ts, NO_END));
+  PetscCall(TSSetExactFinalTime(body->time.ts, TS_EXACTFINALTIME_STEPOVER));
   PetscCall((*body->integrator->ops.setup)(body));
-  PetscCall(TSSetUp(body->ts));
-  body->time = body->time_start;
-  body->step = 0;
-  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  PetscCall(TSSetUp(body->time.ts));
+  body->state.time = body->time.start;
+  body->state.step = 0;
+  PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

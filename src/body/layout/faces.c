@@ -17,21 +17,22 @@ static PetscErrorCode AddFace(Body body, PetscInt face, PetscInt cstart, PetscIn
   ExpressionPoint points[FACE_MAX_POINTS];
 
   PetscFunctionBegin;
-  PetscCall(DMPlexGetTransitiveClosure(body->dm, face, PETSC_TRUE, &n_points, &closure));
+  PetscCall(DMPlexGetTransitiveClosure(body->mesh.dm, face, PETSC_TRUE, &n_points, &closure));
   for (PetscInt p = 0; p < n_points; p++)
-    if (closure[2 * p] >= body->vertex_start && closure[2 * p] < vend)
-      nodes[n++] = body->node_of_vertex[closure[2 * p] - body->vertex_start];
-  PetscCall(DMPlexRestoreTransitiveClosure(body->dm, face, PETSC_TRUE, &n_points, &closure));
+    if (closure[2 * p] >= body->mesh.vertex_start && closure[2 * p] < vend)
+      nodes[n++] = body->mesh.node_of_vertex[closure[2 * p] - body->mesh.vertex_start];
+  PetscCall(DMPlexRestoreTransitiveClosure(body->mesh.dm, face, PETSC_TRUE, &n_points, &closure));
   /* outward is away from the mean of the nodes of the element behind */
-  PetscCall(DMPlexGetSupport(body->dm, face, &support));
-  cell                      = body->connectivity + (support[0] - cstart) * body->element->nodes;
+  PetscCall(DMPlexGetSupport(body->mesh.dm, face, &support));
+  cell                      = body->mesh.connectivity + (support[0] - cstart) * body->model.element->nodes;
   faces->side[faces->count] = 1;
   PetscCall(BodyFacesGetPoints(body, faces, faces->count, points, weights));
-  for (PetscInt d = 0; d < body->dim; d++) {
+  for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscReal way = 0;
 
     for (PetscInt g = 0; g < faces->n_points; g++) way += points[g].x[d] / faces->n_points;
-    for (PetscInt a = 0; a < body->element->nodes; a++) way -= body->coordinates[cell[a] * body->dim + d] / body->element->nodes;
+    for (PetscInt a = 0; a < body->model.element->nodes; a++)
+      way -= body->mesh.coordinates[cell[a] * body->mesh.dim + d] / body->model.element->nodes;
     out += way * points[0].n[d];
   }
   if (out < 0) faces->side[faces->count] = -1;
@@ -47,12 +48,12 @@ PetscErrorCode BodyFacesCreate(Body body, const char surface[], BodyFaces *faces
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(faces, sizeof(*faces)));
-  PetscCall(MeshGetSurface(body->dm, surface, &n, &points));
-  PetscCall(DMPlexGetHeightStratum(body->dm, 0, &cstart, NULL));
-  PetscCall(DMPlexGetDepthStratum(body->dm, 0, NULL, &vend));
-  faces->nodes    = body->dim;
-  faces->n_points = body->dim;
-  if (body->cell_shape == DM_POLYTOPE_HEXAHEDRON) faces->nodes = faces->n_points = 4;
+  PetscCall(MeshGetSurface(body->mesh.dm, surface, &n, &points));
+  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, NULL));
+  PetscCall(DMPlexGetDepthStratum(body->mesh.dm, 0, NULL, &vend));
+  faces->nodes    = body->mesh.dim;
+  faces->n_points = body->mesh.dim;
+  if (body->mesh.cell_shape == DM_POLYTOPE_HEXAHEDRON) faces->nodes = faces->n_points = 4;
   PetscCall(PetscMalloc1(n * faces->nodes, &faces->connectivity));
   PetscCall(PetscMalloc1(n, &faces->side));
   for (PetscInt i = 0; i < n; i++) PetscCall(AddFace(body, points[i], cstart, vend, faces));
@@ -98,7 +99,7 @@ static PetscReal GetShape(PetscInt dim, PetscInt nodes, PetscInt g, PetscReal N[
    weight [m^2]: of plane bodies times the thickness, of bars the cross-section. weights: n_points x nodes. */
 PetscErrorCode BodyFacesGetPoints(Body body, const BodyFaces *faces, PetscInt face, ExpressionPoint points[], PetscReal weights[])
 {
-  const PetscInt  dim = body->dim, *nodes = faces->connectivity + face * faces->nodes;
+  const PetscInt  dim = body->mesh.dim, *nodes = faces->connectivity + face * faces->nodes;
   const PetscReal side = faces->side[face];
 
   PetscFunctionBegin;
@@ -109,7 +110,7 @@ PetscErrorCode BodyFacesGetPoints(Body body, const BodyFaces *faces, PetscInt fa
     for (PetscInt d = 0; d < 3; d++) x[d] = n[d] = 0;
     for (PetscInt a = 0; a < faces->nodes; a++)
       for (PetscInt d = 0; d < dim; d++) {
-        const PetscReal X = body->coordinates[nodes[a] * dim + d];
+        const PetscReal X = body->mesh.coordinates[nodes[a] * dim + d];
 
         x[d] += N[a] * X;
         tangent[0][d] += dN[0][a] * X;
@@ -125,7 +126,7 @@ PetscErrorCode BodyFacesGetPoints(Body body, const BodyFaces *faces, PetscInt fa
     area = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (area > 0)
       for (PetscInt d = 0; d < 3; d++) n[d] *= side / area;
-    weight *= area * body->element->cross_section;
+    weight *= area * body->model.element->cross_section;
     for (PetscInt a = 0; a < faces->nodes; a++) weights[g * faces->nodes + a] = weight * N[a];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

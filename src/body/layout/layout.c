@@ -8,13 +8,13 @@ static PetscErrorCode SetUpSection(Body body)
   PetscInt     start, end, vstart, vend;
 
   PetscFunctionBegin;
-  PetscCall(DMPlexGetChart(body->dm, &start, &end));
-  PetscCall(DMPlexGetDepthStratum(body->dm, 0, &vstart, &vend));
+  PetscCall(DMPlexGetChart(body->mesh.dm, &start, &end));
+  PetscCall(DMPlexGetDepthStratum(body->mesh.dm, 0, &vstart, &vend));
   PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)body), &section));
   PetscCall(PetscSectionSetChart(section, start, end));
-  for (PetscInt v = vstart; v < vend; v++) PetscCall(PetscSectionSetDof(section, v, body->dim));
+  for (PetscInt v = vstart; v < vend; v++) PetscCall(PetscSectionSetDof(section, v, body->mesh.dim));
   PetscCall(PetscSectionSetUp(section));
-  PetscCall(DMSetLocalSection(body->dm, section));
+  PetscCall(DMSetLocalSection(body->mesh.dm, section));
   PetscCall(PetscSectionDestroy(&section));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -26,27 +26,27 @@ static PetscErrorCode NumberNodes(Body body, PetscInt vstart, PetscInt vend, Pet
   PetscInt     rstart = -1, ghosts = 0;
 
   PetscFunctionBegin;
-  PetscCall(DMGetGlobalSection(body->dm, &global));
-  body->local_nodes = vend - vstart;
-  body->owned_nodes = 0;
+  PetscCall(DMGetGlobalSection(body->mesh.dm, &global));
+  body->mesh.local_nodes = vend - vstart;
+  body->mesh.owned_nodes = 0;
   for (PetscInt v = vstart; v < vend; v++) {
     PetscInt offset;
 
     PetscCall(PetscSectionGetOffset(global, v, &offset));
     if (offset < 0) continue;
     if (rstart < 0 || offset < rstart) rstart = offset;
-    body->owned_nodes++;
+    body->mesh.owned_nodes++;
   }
-  PetscCall(PetscMalloc1((body->local_nodes - body->owned_nodes) * body->dim, &body->ghost_dofs));
+  PetscCall(PetscMalloc1((body->mesh.local_nodes - body->mesh.owned_nodes) * body->mesh.dim, &body->mesh.ghost_dofs));
   for (PetscInt v = vstart; v < vend; v++) {
     PetscInt offset;
 
     PetscCall(PetscSectionGetOffset(global, v, &offset));
     if (offset >= 0) {
-      node_of_vertex[v - vstart] = (offset - rstart) / body->dim;
+      node_of_vertex[v - vstart] = (offset - rstart) / body->mesh.dim;
     } else {
-      for (PetscInt d = 0; d < body->dim; d++) body->ghost_dofs[ghosts * body->dim + d] = -(offset + 1) + d;
-      node_of_vertex[v - vstart] = body->owned_nodes + ghosts++;
+      for (PetscInt d = 0; d < body->mesh.dim; d++) body->mesh.ghost_dofs[ghosts * body->mesh.dim + d] = -(offset + 1) + d;
+      node_of_vertex[v - vstart] = body->mesh.owned_nodes + ghosts++;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -59,15 +59,16 @@ static PetscErrorCode SetUpCoordinates(Body body, PetscInt vstart, PetscInt vend
   const PetscScalar *x;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(body->local_nodes * body->dim, &body->coordinates));
-  PetscCall(DMGetCoordinateSection(body->dm, &section));
-  PetscCall(DMGetCoordinatesLocal(body->dm, &local));
+  PetscCall(PetscMalloc1(body->mesh.local_nodes * body->mesh.dim, &body->mesh.coordinates));
+  PetscCall(DMGetCoordinateSection(body->mesh.dm, &section));
+  PetscCall(DMGetCoordinatesLocal(body->mesh.dm, &local));
   PetscCall(VecGetArrayRead(local, &x));
   for (PetscInt v = vstart; v < vend; v++) {
     PetscInt offset;
 
     PetscCall(PetscSectionGetOffset(section, v, &offset));
-    for (PetscInt d = 0; d < body->dim; d++) body->coordinates[node_of_vertex[v - vstart] * body->dim + d] = PetscRealPart(x[offset + d]);
+    for (PetscInt d = 0; d < body->mesh.dim; d++)
+      body->mesh.coordinates[node_of_vertex[v - vstart] * body->mesh.dim + d] = PetscRealPart(x[offset + d]);
   }
   PetscCall(VecRestoreArrayRead(local, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -80,11 +81,11 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
   DMPolytopeType cell     = DM_POLYTOPE_UNKNOWN;
 
   PetscFunctionBegin;
-  PetscCall(DMPlexGetHeightStratum(body->dm, 0, &cstart, &cend));
+  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
   for (PetscInt c = cstart; c < cend; c++) {
     DMPolytopeType type;
 
-    PetscCall(DMPlexGetCellType(body->dm, c, &type));
+    PetscCall(DMPlexGetCellType(body->mesh.dm, c, &type));
     shape[0] = PetscMin(shape[0], (int)type);
     shape[1] = PetscMax(shape[1], (int)type);
   }
@@ -93,29 +94,30 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shape, 2, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
   PetscCheck(shape[1] >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "Body '%s' has no cells: check -%s_dm_plex_box_faces or the mesh file", body->hdr.name, body->hdr.name);
-  cell             = (DMPolytopeType)shape[1];
-  body->cell_shape = cell;
+  cell                  = (DMPolytopeType)shape[1];
+  body->mesh.cell_shape = cell;
   PetscCheck(
       -shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
       "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported; give each shape a body of its own",
       body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
-  PetscCall(ElementCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, cell, body->material, &body->element));
-  PetscCheck(body->element->dim == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+  PetscCall(
+      ElementCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, cell, body->model.material, &body->model.element));
+  PetscCheck(body->model.element->dim == body->mesh.dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
              "Body '%s': cells of shape '%s' in %" PetscInt_FMT " dimensions are not supported", body->hdr.name, DMPolytopeTypes[cell],
-             body->dim);
-  PetscCall(PetscMalloc1((cend - cstart) * body->element->nodes, &body->connectivity));
+             body->mesh.dim);
+  PetscCall(PetscMalloc1((cend - cstart) * body->model.element->nodes, &body->mesh.connectivity));
   for (PetscInt c = cstart; c < cend; c++) {
     PetscInt *closure = NULL, n_points, nodes = 0;
 
-    PetscCall(DMPlexGetTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
+    PetscCall(DMPlexGetTransitiveClosure(body->mesh.dm, c, PETSC_TRUE, &n_points, &closure));
     for (PetscInt p = 0; p < n_points; p++)
       if (closure[2 * p] >= vstart && closure[2 * p] < vend)
-        body->connectivity[(c - cstart) * body->element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
-    PetscCall(DMPlexRestoreTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
-    PetscCall(DMPlexInvertCell(cell, body->connectivity +
-                                         (c - cstart) * body->element->nodes)); /* from DMPLEX's order of vertices to the usual one */
+        body->mesh.connectivity[(c - cstart) * body->model.element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
+    PetscCall(DMPlexRestoreTransitiveClosure(body->mesh.dm, c, PETSC_TRUE, &n_points, &closure));
+    PetscCall(DMPlexInvertCell(cell, body->mesh.connectivity +
+                                         (c - cstart) * body->model.element->nodes)); /* from DMPLEX's order of vertices to the usual one */
   }
-  PetscCall(ElementSetUp(body->element, cend - cstart, body->connectivity, body->coordinates));
+  PetscCall(ElementSetUp(body->model.element, cend - cstart, body->mesh.connectivity, body->mesh.coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -127,18 +129,18 @@ PetscErrorCode BodySetUpLayout(Body body)
 
   PetscFunctionBegin;
   PetscCall(SetUpSection(body));
-  PetscCall(DMPlexGetDepthStratum(body->dm, 0, &vstart, &vend));
+  PetscCall(DMPlexGetDepthStratum(body->mesh.dm, 0, &vstart, &vend));
   PetscCall(PetscMalloc1(vend - vstart, &node_of_vertex));
-  body->vertex_start   = vstart;
-  body->node_of_vertex = node_of_vertex; /* freed with the body, whatever happens next */
+  body->mesh.vertex_start   = vstart;
+  body->mesh.node_of_vertex = node_of_vertex; /* freed with the body, whatever happens next */
   PetscCall(NumberNodes(body, vstart, vend, node_of_vertex));
   PetscCall(SetUpCoordinates(body, vstart, vend, node_of_vertex));
   PetscCall(SetUpElements(body, vstart, vend, node_of_vertex));
-  PetscCall(PetscCalloc1(body->local_nodes, &body->in_layer));
-  PetscCall(BodyCreateVec(body, &body->positions));
-  PetscCall(VecGetArrayWrite(body->positions, &x));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) x[i] = body->coordinates[i];
-  PetscCall(VecRestoreArrayWrite(body->positions, &x));
+  PetscCall(PetscCalloc1(body->mesh.local_nodes, &body->layer.contains));
+  PetscCall(BodyCreateVec(body, &body->mesh.positions));
+  PetscCall(VecGetArrayWrite(body->mesh.positions, &x));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) x[i] = body->mesh.coordinates[i];
+  PetscCall(VecRestoreArrayWrite(body->mesh.positions, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -157,14 +159,15 @@ PetscErrorCode BodyAnyRank(Body body, PetscBool *any)
    that element loops read and write it in place */
 PetscErrorCode BodyCreateVec(Body body, Vec *vec)
 {
-  MPI_Comm       comm  = PetscObjectComm((PetscObject)body);
-  const PetscInt owned = body->owned_nodes * body->dim, ghosts = (body->local_nodes - body->owned_nodes) * body->dim;
+  MPI_Comm       comm   = PetscObjectComm((PetscObject)body);
+  const PetscInt owned  = body->mesh.owned_nodes * body->mesh.dim,
+                 ghosts = (body->mesh.local_nodes - body->mesh.owned_nodes) * body->mesh.dim;
   PetscMPIInt    size;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size == 1) PetscCall(VecCreateSeq(comm, owned, vec));
-  else PetscCall(VecCreateGhost(comm, owned, PETSC_DETERMINE, ghosts, body->ghost_dofs, vec));
+  else PetscCall(VecCreateGhost(comm, owned, PETSC_DETERMINE, ghosts, body->mesh.ghost_dofs, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,21 +216,22 @@ PetscErrorCode BodyRestoreLocalRead(Body body, Vec vec, Vec *local, const PetscS
 @*/
 PetscErrorCode BodyGetCells(Body body, DMPolytopeType *shape, PetscInt *n_cells, PetscInt *n_nodes, PetscInt *cells[])
 {
-  const PetscInt n = body->element->count * body->element->nodes;
+  const PetscInt n = body->model.element->count * body->model.element->nodes;
   PetscInt       rstart;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
   PetscCall(PetscMalloc1(n, cells));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt node = body->connectivity[i];
+    const PetscInt node = body->mesh.connectivity[i];
 
-    (*cells)[i] = (node < body->owned_nodes ? rstart + node * body->dim : body->ghost_dofs[(node - body->owned_nodes) * body->dim]) /
-                  body->dim;
+    (*cells)[i] = (node < body->mesh.owned_nodes ? rstart + node * body->mesh.dim
+                                                 : body->mesh.ghost_dofs[(node - body->mesh.owned_nodes) * body->mesh.dim]) /
+                  body->mesh.dim;
   }
-  *shape   = body->cell_shape;
-  *n_cells = body->element->count;
-  *n_nodes = body->element->nodes;
+  *shape   = body->mesh.cell_shape;
+  *n_cells = body->model.element->count;
+  *n_nodes = body->model.element->nodes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,12 +15,12 @@ static PetscErrorCode ComputeContactForce(Body body, Vec contact)
   PetscScalar *reaction, *force_in, *row;
 
   PetscFunctionBegin;
-  PetscCall(TraceGetLevel(body->traces.reaction, body->step - body->saved_step, &reaction));
-  PetscCall(TraceGetLevel(body->traces.force_in, body->step - body->saved_step, &force_in));
-  PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
-  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_FORCED ? force_in[i] : reaction[i];
-  PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
-  PetscCall(MatMultTranspose(body->interface, body->row_vec[0], contact));
+  PetscCall(TraceGetLevel(body->traces.reaction, body->state.step - body->saved.step, &reaction));
+  PetscCall(TraceGetLevel(body->traces.force_in, body->state.step - body->saved.step, &force_in));
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->rows.conditions[i] == BODY_FORCED ? force_in[i] : reaction[i];
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,23 +32,23 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
 
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(applied));
-  PetscCall(BodyAddExternalForce(body, body->time, 1, applied));
-  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!body->integrator->has_inertia) PetscCall(VecCopy(body->internal_force, body->work[0]));
+  PetscCall(BodyAddExternalForce(body, body->state.time, 1, applied));
+  if (!body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->integrator->has_inertia) PetscCall(VecCopy(body->state.internal_force, body->work.nodes[0]));
   else {
-    PetscCall(BodyMultiplyMass(body, body->state.a, body->work[0]));
-    PetscCall(VecAXPY(body->work[0], 1, body->internal_force));
+    PetscCall(BodyMultiplyMass(body, body->state.a, body->work.nodes[0]));
+    PetscCall(VecAXPY(body->work.nodes[0], 1, body->state.internal_force));
   }
   /* contact forces on held dofs come from the partner */
-  if (body->n_prescribed || body->n_forced) {
-    PetscCall(ComputeContactForce(body, body->work[1]));
-    PetscCall(VecAXPY(body->work[0], -1, body->work[1]));
+  if (body->rows.n_prescribed || body->rows.n_forced) {
+    PetscCall(ComputeContactForce(body, body->work.nodes[1]));
+    PetscCall(VecAXPY(body->work.nodes[0], -1, body->work.nodes[1]));
   }
-  PetscCall(VecGetArrayRead(body->work[0], &force));
+  PetscCall(VecGetArrayRead(body->work.nodes[0], &force));
   PetscCall(VecGetArray(applied, &values));
-  for (PetscInt i = 0; i < body->n_held; i++) values[body->held_dofs[i]] = force[body->held_dofs[i]];
+  for (PetscInt i = 0; i < body->held.n; i++) values[body->held.dofs[i]] = force[body->held.dofs[i]];
   PetscCall(VecRestoreArray(applied, &values));
-  PetscCall(VecRestoreArrayRead(body->work[0], &force));
+  PetscCall(VecRestoreArrayRead(body->work.nodes[0], &force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,29 +57,29 @@ PetscErrorCode BodySetUpWork(Body body)
 {
   PetscFunctionBegin;
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!body->applied) {
-    PetscCall(BodyCreateVec(body, &body->applied));
-    PetscCall(BodyCreateVec(body, &body->saved_applied));
+  if (!body->state.applied) {
+    PetscCall(BodyCreateVec(body, &body->state.applied));
+    PetscCall(BodyCreateVec(body, &body->saved.applied));
   }
-  body->external_work = body->saved_work = 0;
-  PetscCall(ComputeApplied(body, body->applied));
-  PetscCall(VecCopy(body->applied, body->saved_applied));
+  body->state.external_work = body->saved.external_work = 0;
+  PetscCall(ComputeApplied(body, body->state.applied));
+  PetscCall(VecCopy(body->state.applied, body->saved.applied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The work from displacement `start` to the present one, by the trapezoidal rule; collective only where there are loads */
 PetscErrorCode BodyAddWork(Body body, Vec start)
 {
-  Vec       sum = body->work[2], way = body->work[1];
+  Vec       sum = body->work.nodes[2], way = body->work.nodes[1];
   PetscReal work;
 
   PetscFunctionBegin;
   if (!body->loads || body->unloaded) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(body->applied, sum));
-  PetscCall(ComputeApplied(body, body->applied));
-  PetscCall(VecAXPY(sum, 1, body->applied));
+  PetscCall(VecCopy(body->state.applied, sum));
+  PetscCall(ComputeApplied(body, body->state.applied));
+  PetscCall(VecAXPY(sum, 1, body->state.applied));
   PetscCall(VecWAXPY(way, -1, start, body->state.u));
   PetscCall(VecDot(sum, way, &work));
-  body->external_work += 0.5 * work;
+  body->state.external_work += 0.5 * work;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

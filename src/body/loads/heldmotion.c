@@ -16,15 +16,15 @@ PetscErrorCode BodyPrescribeHeld(Body body, PetscReal t, Vec u, Vec v, Vec a)
 
 /* A mass matrix that is not diagonal couples held dofs, whose acceleration a at time t is given, with the others: subtracts their inertia
    M a from the force f on the others. Held dofs of f become their acceleration itself, for the factored matrix has rows of the identity
-   there. `work` and body->work[2] are overwritten. */
+   there. `work` and body->work.nodes[2] are overwritten. */
 PetscErrorCode BodySubtractHeldInertia(Body body, PetscReal t, Vec f, Vec work)
 {
   PetscFunctionBegin;
-  if (!body->any_held || body->mass_diagonal || !body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecZeroEntries(body->work[2]));
-  PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, body->work[2]));
-  PetscCall(MatMult(body->mass_matrix, body->work[2], work));
+  if (!body->held.any || body->mass.diagonal || !body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecZeroEntries(body->work.nodes[2]));
+  PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, body->work.nodes[2]));
+  PetscCall(MatMult(body->mass.matrix, body->work.nodes[2], work));
   PetscCall(VecAXPY(f, -1, work));
-  PetscCall(BodyCopyHeld(body, body->work[2], f));
+  PetscCall(BodyCopyHeld(body, body->work.nodes[2], f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -88,8 +88,9 @@ static PetscErrorCode ReadForces(Body body, PetscInt n, char **names, const char
   if (body_force) {
     Load *load = &loads->loads[loads->n_loads++];
 
-    PetscCheck(body->element->ops.points, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
-               "-%sbody_force: elements of shape '%s' do not support it", ((PetscObject)body)->prefix, DMPolytopeTypes[body->cell_shape]);
+    PetscCheck(body->model.element->ops.points, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+               "-%sbody_force: elements of shape '%s' do not support it", ((PetscObject)body)->prefix,
+               DMPolytopeTypes[body->mesh.cell_shape]);
     PetscCall(BodyLoadsGetComponents(body, "body_force", body_force, PETSC_FALSE, load->component));
     PetscCall(BodyLoadsRefuseNormal(body, "body_force", load->component));
   }
@@ -106,7 +107,7 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
   if (!text) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyLoadsGetComponents(body, "gravity", text, PETSC_FALSE, list));
   loads->has_gravity = PETSC_TRUE;
-  for (PetscInt d = 0; d < body->dim; d++) {
+  for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscBool is_number;
 
     PetscCall(ExpressionIsConstant(list[d], &is_number, &loads->gravity[d]));

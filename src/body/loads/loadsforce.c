@@ -5,7 +5,7 @@
 static PetscErrorCode GetPoints(Body body, const Load *load, PetscInt i, PetscInt *n_points, PetscInt *n_nodes, const PetscInt *nodes[])
 {
   struct _BodyLoads *loads   = body->loads;
-  const Element      element = body->element;
+  const Element      element = body->model.element;
 
   PetscFunctionBegin;
   if (load->on_faces) {
@@ -21,7 +21,7 @@ static PetscErrorCode GetPoints(Body body, const Load *load, PetscInt i, PetscIn
   PetscCall((*element->ops.points)(element, i, loads->x, loads->weights));
   for (PetscInt g = 0; g < *n_points; g++) {
     for (PetscInt d = 0; d < 3; d++) {
-      loads->points[g].x[d] = d < body->dim ? loads->x[g * body->dim + d] : 0;
+      loads->points[g].x[d] = d < body->mesh.dim ? loads->x[g * body->mesh.dim + d] : 0;
       loads->points[g].n[d] = 0;
     }
     for (PetscInt a = 0; a < *n_nodes; a++) loads->shape[g * *n_nodes + a] = loads->weights[g] * element->shape[g * *n_nodes + a];
@@ -32,7 +32,7 @@ static PetscErrorCode GetPoints(Body body, const Load *load, PetscInt i, PetscIn
 /* Adds the nodal forces of a density at time t to those of the rank's nodes, ghosts among them; NULL components are left out */
 static PetscErrorCode Integrate(Body body, const Load *load, const Expression density[], PetscReal t, PetscScalar f[])
 {
-  const PetscInt dim = body->dim, count = load->on_faces ? load->faces.count : body->element->count;
+  const PetscInt dim = body->mesh.dim, count = load->on_faces ? load->faces.count : body->model.element->count;
 
   PetscFunctionBegin;
   if (!density[0] && !density[1] && !density[2]) PetscFunctionReturn(PETSC_SUCCESS);
@@ -104,7 +104,7 @@ static PetscErrorCode Assemble(Body body, PetscInt n, const Load loads[], LoadKi
 /* M g with the body's own mass matrix, however that is lumped or redistributed: free fall has the acceleration g everywhere */
 static PetscErrorCode AddWeight(Body body, Vec f)
 {
-  const PetscInt n = body->owned_nodes * body->dim;
+  const PetscInt n = body->mesh.owned_nodes * body->mesh.dim;
   PetscScalar   *g;
   Vec            gravity, weight;
 
@@ -112,7 +112,7 @@ static PetscErrorCode AddWeight(Body body, Vec f)
   PetscCall(BodyCreateVec(body, &gravity));
   PetscCall(BodyCreateVec(body, &weight));
   PetscCall(VecGetArrayWrite(gravity, &g));
-  for (PetscInt i = 0; i < n; i++) g[i] = body->loads->gravity[i % body->dim];
+  for (PetscInt i = 0; i < n; i++) g[i] = body->loads->gravity[i % body->mesh.dim];
   PetscCall(VecRestoreArrayWrite(gravity, &g));
   PetscCall(BodyMultiplyMass(body, gravity, weight));
   PetscCall(VecAXPY(f, 1, weight));
@@ -135,13 +135,13 @@ static PetscErrorCode SetUpUniform(Body body, const Load *load)
   PetscCall(Assemble(body, 1, &unit, LOAD_UNIFORM, 0, loads->varying));
   PetscCall(ExpressionDestroy(&one));
   PetscCall(VecGetArrayRead(loads->varying, &array));
-  for (int d = 0; d < body->dim; d++) {
+  for (int d = 0; d < body->mesh.dim; d++) {
     UniformForce *force = &loads->uniform[loads->n_uniform];
 
     if (!load->part[LOAD_UNIFORM][d]) continue;
     force->density = load->part[LOAD_UNIFORM][d];
     loads->n_uniform++;
-    PetscCall(BodyLoadsCompress(body->owned_nodes * body->dim, array, d, body->dim, &force->unit));
+    PetscCall(BodyLoadsCompress(body->mesh.owned_nodes * body->mesh.dim, array, d, body->mesh.dim, &force->unit));
   }
   PetscCall(VecRestoreArrayRead(loads->varying, &array));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -149,16 +149,17 @@ static PetscErrorCode SetUpUniform(Body body, const Load *load)
 
 static PetscErrorCode SetUpForces(Body body)
 {
-  struct _BodyLoads *loads = body->loads;
-  const PetscInt n_points = PetscMax(FACE_MAX_POINTS, body->element->n_points), n_nodes = PetscMax(FACE_MAX_NODES, body->element->nodes);
-  PetscBool      has[LOAD_KINDS] = {PETSC_FALSE};
+  struct _BodyLoads *loads           = body->loads;
+  const PetscInt     n_points        = PetscMax(FACE_MAX_POINTS, body->model.element->n_points),
+                     n_nodes         = PetscMax(FACE_MAX_NODES, body->model.element->nodes);
+  PetscBool          has[LOAD_KINDS] = {PETSC_FALSE};
   const PetscScalar *array;
 
   PetscFunctionBegin;
-  PetscCheck(!loads->has_gravity || body->mass_row_sum, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+  PetscCheck(!loads->has_gravity || body->mass.row_sum, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Call BodySetUp() first: weight needs the mass");
   if (!loads->points) {
-    PetscCall(PetscMalloc4(n_points, &loads->points, n_points * body->dim, &loads->x, n_points, &loads->weights, n_points * n_nodes,
+    PetscCall(PetscMalloc4(n_points, &loads->points, n_points * body->mesh.dim, &loads->x, n_points, &loads->weights, n_points * n_nodes,
                            &loads->shape));
     PetscCall(PetscCalloc1(3 * loads->n_loads, &loads->uniform));
     PetscCall(BodyCreateVec(body, &loads->varying));
@@ -172,7 +173,7 @@ static PetscErrorCode SetUpForces(Body body)
   PetscCall(Assemble(body, loads->n_loads, loads->loads, LOAD_STEADY, 0, loads->varying));
   if (loads->has_gravity) PetscCall(AddWeight(body, loads->varying));
   PetscCall(VecGetArrayRead(loads->varying, &array));
-  PetscCall(BodyLoadsCompress(body->owned_nodes * body->dim, array, 0, 1, &loads->steady));
+  PetscCall(BodyLoadsCompress(body->mesh.owned_nodes * body->mesh.dim, array, 0, 1, &loads->steady));
   PetscCall(VecRestoreArrayRead(loads->varying, &array));
   if (has[LOAD_UNIFORM])
     for (PetscInt i = 0; i < loads->n_loads; i++) PetscCall(SetUpUniform(body, &loads->loads[i]));

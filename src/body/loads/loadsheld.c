@@ -10,11 +10,11 @@ static PetscErrorCode MarkHeld(Body body, PetscInt i, const char surface[], Vec 
   PetscScalar      *mark;
 
   PetscFunctionBegin;
-  PetscCall(MeshGetNodeSet(body->dm, surface, &n, &vertices));
+  PetscCall(MeshGetNodeSet(body->mesh.dm, surface, &n, &vertices));
   PetscCall(VecGetArray(local, &mark));
   for (PetscInt k = 0; k < n; k++)
-    for (PetscInt d = 0; d < body->dim; d++)
-      if (component[d]) mark[body->node_of_vertex[vertices[k] - body->vertex_start] * body->dim + d] = i + 1;
+    for (PetscInt d = 0; d < body->mesh.dim; d++)
+      if (component[d]) mark[body->mesh.node_of_vertex[vertices[k] - body->mesh.vertex_start] * body->mesh.dim + d] = i + 1;
   PetscCall(VecRestoreArray(local, &mark));
   PetscCall(PetscFree(vertices));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -43,10 +43,10 @@ static PetscErrorCode MarkAllHeld(Body body, PetscInt n, char **names, Vec marks
 
 static void GetPoint(Body body, PetscInt dof, PetscReal t, ExpressionPoint *point)
 {
-  const PetscReal *x = body->coordinates + dof / body->dim * body->dim;
+  const PetscReal *x = body->mesh.coordinates + dof / body->mesh.dim * body->mesh.dim;
 
   for (PetscInt d = 0; d < 3; d++) {
-    point->x[d] = d < body->dim ? x[d] : 0;
+    point->x[d] = d < body->mesh.dim ? x[d] : 0;
     point->n[d] = 0;
   }
   point->t = t;
@@ -54,17 +54,17 @@ static void GetPoint(Body body, PetscInt dof, PetscReal t, ExpressionPoint *poin
 
 static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt prescription, PetscInt component, HeldDofs *group)
 {
-  const PetscInt n     = body->owned_nodes * body->dim;
+  const PetscInt n     = body->mesh.owned_nodes * body->mesh.dim;
   PetscInt       count = 0;
 
   PetscFunctionBegin;
   group->displacement = body->loads->prescribed[prescription].component[component];
   PetscCall(ExpressionIsSteady(group->displacement, &group->steady));
   PetscCall(ExpressionIsUniform(group->displacement, &group->uniform));
-  for (PetscInt dof = component; dof < n; dof += body->dim) count += marks[dof] == prescription + 1;
+  for (PetscInt dof = component; dof < n; dof += body->mesh.dim) count += marks[dof] == prescription + 1;
   PetscCall(PetscMalloc1(count, &group->held.dofs));
   if (group->steady) PetscCall(PetscMalloc1(count, &group->held.values));
-  for (PetscInt dof = component; dof < n; dof += body->dim) {
+  for (PetscInt dof = component; dof < n; dof += body->mesh.dim) {
     ExpressionPoint point;
 
     if (marks[dof] != prescription + 1) continue;
@@ -79,7 +79,7 @@ static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt p
 PetscErrorCode BodyLoadsSetUpHeld(Body body, PetscInt n, char **names)
 {
   struct _BodyLoads *loads  = body->loads;
-  const PetscInt     n_dofs = body->owned_nodes * body->dim;
+  const PetscInt     n_dofs = body->mesh.owned_nodes * body->mesh.dim;
   PetscInt64         count[2];
   PetscScalar       *mark;
   Vec                marks;
@@ -96,9 +96,9 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body, PetscInt n, char **names)
   PetscCall(PetscMalloc1(loads->n_held, &loads->held_dofs));
   for (PetscInt dof = 0, k = 0; dof < n_dofs; dof++)
     if (mark[dof] > 0) loads->held_dofs[k++] = dof;
-  PetscCall(PetscCalloc1(n * body->dim, &loads->groups));
+  PetscCall(PetscCalloc1(n * body->mesh.dim, &loads->groups));
   for (PetscInt i = 0; i < n; i++)
-    for (PetscInt d = 0; d < body->dim; d++)
+    for (PetscInt d = 0; d < body->mesh.dim; d++)
       if (loads->prescribed[i].component[d]) PetscCall(FillGroup(body, mark, i, d, &loads->groups[loads->n_groups++]));
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(VecDestroy(&marks));
@@ -123,14 +123,14 @@ PetscErrorCode BodyLoadsGetHeld(Body body, PetscInt *n, const PetscInt *dofs[])
 /* Displacement, and with rates velocity and acceleration, of the i-th dof of a group */
 static PetscErrorCode EvaluateHeld(Body body, const HeldDofs *group, PetscInt i, PetscReal t, PetscBool rates, PetscReal values[])
 {
-  const PetscReal step = body->time_step > 0 ? body->time_step : body->controller_step;
+  const PetscReal step = body->time.step > 0 ? body->time.step : body->time.controller_step;
   ExpressionPoint point;
 
   PetscFunctionBegin;
   GetPoint(body, group->held.dofs[i], t, &point);
   if (rates) {
     PetscCheck(step > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
-    PetscCall(ExpressionEvaluateRates(group->displacement, &point, body->time_start, step, values));
+    PetscCall(ExpressionEvaluateRates(group->displacement, &point, body->time.start, step, values));
   } else PetscCall(ExpressionEvaluate(group->displacement, &point, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -145,7 +145,7 @@ PetscErrorCode BodyLoadsPrescribe(Body body, PetscReal t, Vec u, Vec v, Vec a)
   PetscFunctionBegin;
   /* ranks without held dofs must open the vectors too: PETSc keeps norms with them, and would take the reduction for done on some ranks
      alone */
-  if (!loads || !body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!loads || !body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < 3; k++)
     if (vecs[k]) PetscCall(VecGetArray(vecs[k], &arrays[k]));
   for (PetscInt g = 0; g < loads->n_groups; g++) {

@@ -10,15 +10,15 @@ static PetscErrorCode Evaluate(Body body, const Expression list[], Vec values)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(values, &value));
-  for (PetscInt node = 0; node < body->owned_nodes; node++) {
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     ExpressionPoint point = {{0}, {0}, 0};
 
-    for (PetscInt d = 0; d < body->dim; d++) point.x[d] = body->coordinates[node * body->dim + d];
-    for (PetscInt d = 0; d < body->dim; d++) {
+    for (PetscInt d = 0; d < body->mesh.dim; d++) point.x[d] = body->mesh.coordinates[node * body->mesh.dim + d];
+    for (PetscInt d = 0; d < body->mesh.dim; d++) {
       PetscReal component;
 
       PetscCall(ExpressionEvaluate(list[d], &point, &component));
-      value[node * body->dim + d] = component;
+      value[node * body->mesh.dim + d] = component;
     }
   }
   PetscCall(VecRestoreArrayWrite(values, &value));
@@ -29,7 +29,7 @@ static PetscErrorCode CheckSteady(Body body, const char name[], const Expression
 {
   PetscFunctionBegin;
   PetscCall(BodyLoadsRefuseNormal(body, name, list));
-  for (PetscInt d = 0; d < body->dim; d++) {
+  for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscBool steady;
 
     PetscCall(ExpressionIsSteady(list[d], &steady));
@@ -55,7 +55,7 @@ static PetscErrorCode ReadVector(Body body, const char name[])
   if (!error) error = Evaluate(body, list, values);
   if (!error) error = PetscObjectCompose((PetscObject)body, name, (PetscObject)values);
   PetscCall(VecDestroy(&values));
-  for (PetscInt d = 0; d < body->dim; d++) PetscCall(ExpressionDestroy(&list[d]));
+  for (PetscInt d = 0; d < body->mesh.dim; d++) PetscCall(ExpressionDestroy(&list[d]));
   PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -81,6 +81,6 @@ PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
     if (values) PetscCall(VecCopy(values, vecs[i]));
     else PetscCall(VecZeroEntries(vecs[i]));
   }
-  PetscCall(BodyLoadsPrescribe(body, body->time_start, u, v, NULL));
+  PetscCall(BodyLoadsPrescribe(body, body->time.start, u, v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

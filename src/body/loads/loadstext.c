@@ -28,17 +28,17 @@ PetscErrorCode BodyLoadsGetComponents(Body body, const char name[], const char t
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(option, sizeof(option), "%s%s", ((PetscObject)body)->prefix, name));
   PetscCall(ExpressionListCount(text, &n));
-  PetscCheck(n == body->dim, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(n == body->mesh.dim, comm, PETSC_ERR_USER_INPUT,
              "-%s '%s' has %" PetscInt_FMT " component%s; body '%s' is %" PetscInt_FMT "-dimensional%s", option, text, n, n == 1 ? "" : "s",
-             body->hdr.name, body->dim, allow_free ? " (a component may be the word free)" : "");
-  PetscCall(ExpressionListCreate(comm, option, text, body->dim, allow_free, list));
+             body->hdr.name, body->mesh.dim, allow_free ? " (a component may be the word free)" : "");
+  PetscCall(ExpressionListCreate(comm, option, text, body->mesh.dim, allow_free, list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BodyLoadsRefuseNormal(Body body, const char name[], const Expression list[])
 {
   PetscFunctionBegin;
-  for (PetscInt d = 0; d < body->dim; d++) {
+  for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscBool normal = PETSC_FALSE;
 
     if (list[d]) PetscCall(ExpressionUsesNormal(list[d], &normal));

@@ -31,9 +31,9 @@ PetscErrorCode BodyCreateCompliance(Body body)
   if (body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&body->compliance));
   c = body->compliance;
-  PetscCall(PetscCalloc6(rows->global, &c->place, rows->local, &c->roles, body->substeps * rows->local, &c->mine,
-                         body->substeps * rows->local, &c->base_displacement, body->substeps * rows->local, &c->base_force, rows->global,
-                         &c->all_roles));
+  PetscCall(PetscCalloc6(rows->global, &c->place, rows->local, &c->roles, body->time.substeps * rows->local, &c->mine,
+                         body->time.substeps * rows->local, &c->base_displacement, body->time.substeps * rows->local, &c->base_force,
+                         rows->global, &c->all_roles));
   for (PetscInt i = 0; i < rows->global; i++) c->place[i] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -42,7 +42,7 @@ PetscErrorCode BodyCreateCompliance(Body body)
 static PetscErrorCode Grow(Body body, PetscInt n)
 {
   struct _BodyCompliance *c   = body->compliance;
-  const PetscInt          old = c->capacity, s = body->substeps;
+  const PetscInt          old = c->capacity, s = body->time.substeps;
   PetscInt                capacity = PetscMin(body->rows.global, PetscMax(n, 2 * old)), *rows, *prescribed;
   PetscScalar            *levels, *ramp, *factor;
   PetscBLASInt           *pivots;
@@ -139,7 +139,7 @@ PetscErrorCode BodyForgetCompliance(Body body, const PetscMPIInt changed[])
     if (changed[c->rows[j]]) c->place[c->rows[j]] = -1;
     else from[n++] = j;
   }
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscScalar *matrix = c->levels + k * c->capacity * c->capacity;
 
     for (PetscInt j = 0; j < n; j++)
@@ -165,8 +165,8 @@ static PetscErrorCode ComputeRamp(Body body)
     for (PetscInt i = 0; i < c->n; i++) {
       PetscScalar sum = 0;
 
-      for (PetscInt l = 1; l <= body->substeps; l++)
-        sum += (PetscReal)l / body->substeps * c->levels[((body->substeps - l) * c->capacity + j) * c->capacity + i];
+      for (PetscInt l = 1; l <= body->time.substeps; l++)
+        sum += (PetscReal)l / body->time.substeps * c->levels[((body->time.substeps - l) * c->capacity + j) * c->capacity + i];
       c->ramp[j * c->capacity + i] = sum;
     }
   c->ramp_valid = PETSC_TRUE;
@@ -199,8 +199,8 @@ PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *plac
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyExtendCompliance() first");
-  PetscCheck(level >= -1 && level < body->substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
-             "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->substeps);
+  PetscCheck(level >= -1 && level < body->time.substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->time.substeps);
   if (level < 0 && !c->ramp_valid) PetscCall(ComputeRamp(body));
   *place   = c->place;
   *leading = c->capacity;
@@ -227,7 +227,7 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *exact = (PetscBool)(body->linear && body->integrator->affine);
+  *exact = (PetscBool)(body->model.linear && body->integrator->affine);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

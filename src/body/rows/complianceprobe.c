@@ -10,12 +10,12 @@ static PetscErrorCode ProbeByIntegrating(Body body, PetscInt row)
 
   PetscFunctionBegin;
   PetscCall(BodySetUnitInput(body, row, INPUT_FORCE));
-  if (local >= 0 && local < body->rows.local) body->conditions[local] = BODY_FORCED;
+  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FORCED;
   PetscCall(BodyRestore(body));
   PetscCall(BodyIntegrateWindow(body));
-  body->total_substeps -= body->substeps;
-  if (local >= 0 && local < body->rows.local) body->conditions[local] = BODY_FREE;
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  body->statistics.substeps -= body->time.substeps;
+  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FREE;
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &values));
     PetscCall(PetscArraycpy(c->mine + k * body->rows.local, values, body->rows.local));
   }
@@ -27,26 +27,26 @@ PetscErrorCode BodyProbeCompliance(Body body, PetscInt first)
 {
   struct _BodyCompliance *c          = body->compliance;
   const PetscBool         integrates = (PetscBool)(body->integrator->ops.compliancecolumn == NULL);
-  const PetscInt          counts[3]  = {body->n_prescribed, body->n_forced, body->n_robin};
+  const PetscInt          counts[3]  = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};
   BodyCondition          *kept       = NULL;
 
   PetscFunctionBegin;
   if (integrates) {
     PetscCall(BodyBeginProbe(body));
     PetscCall(PetscMalloc1(body->rows.local, &kept));
-    PetscCall(PetscArraycpy(kept, body->conditions, body->rows.local));
-    PetscCall(PetscArrayzero(body->conditions, body->rows.local));
-    body->n_prescribed = body->n_robin = 0;
-    body->n_forced                     = 1;
+    PetscCall(PetscArraycpy(kept, body->rows.conditions, body->rows.local));
+    PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));
+    body->rows.n_prescribed = body->rows.n_robin = 0;
+    body->rows.n_forced                          = 1;
     PetscCall(BodySetConstraints(body));
     PetscCall(BodyPrepareLinearized(body));
-    body->linearized = (PetscBool)!body->linear;
+    body->model.linearized = (PetscBool)!body->model.linear;
   }
   for (PetscInt j = first; j < c->n; j++) {
     if (integrates) PetscCall(ProbeByIntegrating(body, c->rows[j]));
     else PetscCall((*body->integrator->ops.compliancecolumn)(body, c->rows[j], c->mine));
     PetscCall(BodyGatherKnown(body, c->mine, c->displacement));
-    for (PetscInt k = 0; k < body->substeps; k++) {
+    for (PetscInt k = 0; k < body->time.substeps; k++) {
       PetscScalar *matrix = c->levels + k * c->capacity * c->capacity;
 
       for (PetscInt i = 0; i < c->n; i++) matrix[j * c->capacity + i] = c->displacement[k * c->n + i];
@@ -54,12 +54,12 @@ PetscErrorCode BodyProbeCompliance(Body body, PetscInt first)
     }
   }
   if (integrates) {
-    body->linearized = PETSC_FALSE;
+    body->model.linearized = PETSC_FALSE;
     PetscCall(BodyEndProbe(body));
-    PetscCall(PetscArraycpy(body->conditions, kept, body->rows.local));
-    body->n_prescribed = counts[0];
-    body->n_forced     = counts[1];
-    body->n_robin      = counts[2];
+    PetscCall(PetscArraycpy(body->rows.conditions, kept, body->rows.local));
+    body->rows.n_prescribed = counts[0];
+    body->rows.n_forced     = counts[1];
+    body->rows.n_robin      = counts[2];
     PetscCall(BodySetConstraints(body));
     PetscCall(PetscFree(kept));
   }
@@ -73,14 +73,14 @@ PetscErrorCode BodyGatherKnown(Body body, const PetscScalar mine[], PetscScalar 
   const BodyRows               *rows = &body->rows;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < body->substeps; k++)
+  for (PetscInt k = 0; k < body->time.substeps; k++)
     for (PetscInt i = 0; i < c->n; i++) {
       const PetscInt local = c->rows[i] - rows->begin;
 
       all[k * c->n + i] = local >= 0 && local < rows->local ? mine[k * rows->local + local] : 0;
     }
   if (rows->size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(body->substeps * c->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(body->time.substeps * c->n), MPIU_SCALAR, MPIU_SUM,
+                               PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

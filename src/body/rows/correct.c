@@ -9,7 +9,7 @@
 static PetscErrorCode WriteEnd(Body body, Vec vec, Trace trace)
 {
   PetscFunctionBegin;
-  PetscCall(BodyWriteTrace(body, body->interface, vec, trace, body->substeps));
+  PetscCall(BodyWriteTrace(body, body->rows.matrix, vec, trace, body->time.substeps));
   PetscCall(BodyInvalidateWindow(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -34,8 +34,8 @@ PetscErrorCode BodyAddVelocity(Body body, const PetscScalar impulse[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, impulse, body->work[2]));
-  PetscCall(VecAXPY(body->state.v, 1, body->work[2]));
+  PetscCall(BodySolveMassOfRows(body, impulse, body->work.nodes[2]));
+  PetscCall(VecAXPY(body->state.v, 1, body->work.nodes[2]));
   PetscCall(WriteEnd(body, body->state.v, body->traces.velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -60,8 +60,8 @@ PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
-  PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
+  PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
+  PetscCall(VecAXPY(body->state.a, 1, body->work.nodes[2]));
   PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -72,7 +72,7 @@ static PetscErrorCode MultiplyMarked(Body body, const PetscBool marked[], Vec x,
   PetscScalar *row;
 
   PetscFunctionBegin;
-  PetscCall(MatMult(body->interface, x, y));
+  PetscCall(MatMult(body->rows.matrix, x, y));
   PetscCall(VecGetArray(y, &row));
   for (PetscInt i = 0; i < body->rows.local; i++)
     if (!marked[i]) row[i] = 0;
@@ -99,7 +99,7 @@ orthonormal. To be called before `BodySave()`.
 @*/
 PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
 {
-  Vec         residual = body->row_vec[0], direction = body->row_vec[1], product = body->row_vec[2], change = body->work[2];
+  Vec         residual = body->work.rows[0], direction = body->work.rows[1], product = body->work.rows[2], change = body->work.nodes[2];
   PetscScalar square, first, last, curvature;
 
   PetscFunctionBegin;
@@ -109,7 +109,7 @@ PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
   PetscCall(VecDot(residual, residual, &first));
   square = first;
   for (PetscInt k = 0; k < MAX_ITERATIONS && PetscRealPart(square) > PetscSqr(LEFT_OVER) * PetscRealPart(first); k++) {
-    PetscCall(MatMultTranspose(body->interface, direction, change));
+    PetscCall(MatMultTranspose(body->rows.matrix, direction, change));
     PetscCall(MultiplyMarked(body, rows, change, product));
     PetscCall(VecDot(direction, product, &curvature));
     PetscCall(VecAXPY(body->state.a, -square / curvature, change));
@@ -144,8 +144,8 @@ PetscErrorCode BodyShiftStart(Body body, const PetscScalar shift[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, shift, body->work[2]));
-  PetscCall(VecAXPY(body->state.u, 1, body->work[2]));
+  PetscCall(BodySolveMassOfRows(body, shift, body->work.nodes[2]));
+  PetscCall(VecAXPY(body->state.u, 1, body->work.nodes[2]));
   PetscCall(VecCopy(body->state.u, body->saved.u));
   PetscCall(BodyInvalidateWindow(body));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -46,10 +46,10 @@ PetscErrorCode BodyAddEndForce(Body body, const PetscScalar force[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
-  PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
-  PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, body->work[2]));
-  PetscCall(BodyWriteTraces(body, body->substeps));
-  body->total_substeps += body->substeps;
+  PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
+  PetscCall(VecAXPY(body->state.a, 1, body->work.nodes[2]));
+  PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, body->work.nodes[2]));
+  PetscCall(BodyWriteTraces(body, body->time.substeps));
+  body->statistics.substeps += body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -51,22 +51,22 @@ static PetscErrorCode GetRowNode(Body body, PetscInt i, PetscInt *node, PetscRea
   PetscInt           n, first;
 
   PetscFunctionBegin;
-  PetscCall(VecGetOwnershipRange(body->positions, &first, NULL));
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &first, NULL));
   for (PetscInt d = 0; d < 3; d++) direction[d] = 0;
   *node = -1;
-  PetscCall(MatGetRow(body->free_rows, row, &n, &columns, &values));
+  PetscCall(MatGetRow(body->rows.free_matrix, row, &n, &columns, &values));
   for (PetscInt k = 0; k < n; k++) {
-    const PetscInt dof = columns[k] - first, of = dof / body->dim;
+    const PetscInt dof = columns[k] - first, of = dof / body->mesh.dim;
 
     if (values[k] == 0) continue; /* of a held dof */
-    if (dof < 0 || dof >= body->owned_nodes * body->dim || (*node >= 0 && of != *node)) {
+    if (dof < 0 || dof >= body->mesh.owned_nodes * body->mesh.dim || (*node >= 0 && of != *node)) {
       *node = -1;
       break;
     }
-    *node                      = of;
-    direction[dof % body->dim] = PetscRealPart(values[k]);
+    *node                           = of;
+    direction[dof % body->mesh.dim] = PetscRealPart(values[k]);
   }
-  PetscCall(MatRestoreRow(body->free_rows, row, &n, &columns, &values));
+  PetscCall(MatRestoreRow(body->rows.free_matrix, row, &n, &columns, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,7 +80,7 @@ static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
 static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt order[], const PetscReal directions[], PetscInt *size,
                                      PetscInt *most)
 {
-  BodyGram       gram  = body->gram;
+  BodyGram       gram  = body->rows.gram;
   const PetscInt n     = body->rows.local;
   PetscInt       count = 0;
 
@@ -112,9 +112,9 @@ PetscErrorCode BodySetUpGram(Body body)
   BodyGram       gram;
 
   PetscFunctionBegin;
-  PetscCall(BodyGramDestroy(&body->gram));
+  PetscCall(BodyGramDestroy(&body->rows.gram));
   PetscCall(PetscNew(&gram));
-  body->gram = gram;
+  body->rows.gram = gram;
   PetscCall(PetscMalloc3(n, &nodes, n, &order, 3 * n, &directions));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(GetRowNode(body, i, &nodes[i], directions + 3 * i));
@@ -192,7 +192,7 @@ static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscI
 /* The blocks of the rows that are prescribed now */
 PetscErrorCode BodyUpdateGram(Body body)
 {
-  BodyGram gram  = body->gram;
+  BodyGram gram  = body->rows.gram;
   PetscInt count = 0, size = 0;
 
   PetscFunctionBegin;
@@ -203,7 +203,7 @@ PetscErrorCode BodyUpdateGram(Body body)
     PetscScalar   *block = gram->inverses + size;
 
     for (PetscInt k = gram->run_offsets[run]; k < gram->run_offsets[run + 1]; k++)
-      if (body->conditions[gram->candidates[k]] == BODY_PRESCRIBED) gram->rows[count++] = k;
+      if (body->rows.conditions[gram->candidates[k]] == BODY_PRESCRIBED) gram->rows[count++] = k;
     n = count - first;
     FillBlock(gram, n, gram->rows + first, NULL, block);
     if (!n || (n == 1 && PetscAbsReal(PetscRealPart(block[0]) - 1) <= UNIT)) {
@@ -211,7 +211,7 @@ PetscErrorCode BodyUpdateGram(Body body)
       continue;
     }
     if (!Invert(n, block, gram->work, gram->dependent + first))
-      PetscCall(PseudoInvert(gram, n, gram->rows + first, body->row_weights, block));
+      PetscCall(PseudoInvert(gram, n, gram->rows + first, body->rows.weights, block));
     for (PetscInt i = first; i < count; i++) gram->rows[i] = gram->candidates[gram->rows[i]];
     gram->starts[gram->n_blocks++] = size;
     gram->offsets[gram->n_blocks]  = count;
@@ -223,7 +223,7 @@ PetscErrorCode BodyUpdateGram(Body body)
 /* Takes marks from prescribed rows that depend on others of their node: where those are zero, they are too */
 void BodyUnmarkDependent(Body body, PetscBool marked[])
 {
-  const BodyGram gram = body->gram;
+  const BodyGram gram = body->rows.gram;
 
   for (PetscInt k = 0; gram->n_blocks && k < gram->offsets[gram->n_blocks]; k++)
     if (gram->dependent[k]) marked[gram->rows[k]] = PETSC_FALSE;
@@ -232,7 +232,7 @@ void BodyUnmarkDependent(Body body, PetscBool marked[])
 /* row <- G^{-1} row, on prescribed rows */
 void BodyDivideByGram(Body body, PetscScalar row[])
 {
-  const BodyGram gram = body->gram;
+  const BodyGram gram = body->rows.gram;
 
   for (PetscInt b = 0; b < gram->n_blocks; b++) {
     const PetscInt     n = gram->offsets[b + 1] - gram->offsets[b], *rows = gram->rows + gram->offsets[b];

@@ -10,12 +10,12 @@ PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[], Vec cha
   PetscScalar *row;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
-  PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
-  PetscCall(BodyZeroHeld(body, body->work[0]));
-  PetscCall(BodySolveMass(body, body->work[0], change));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], body->work.nodes[0]));
+  PetscCall(BodyZeroHeld(body, body->work.nodes[0]));
+  PetscCall(BodySolveMass(body, body->work.nodes[0], change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -29,7 +29,7 @@ static PetscErrorCode MultiplyRows(Body body, Vec diagonal, Mat *matrix)
   PetscCall(VecDuplicate(diagonal, &root));
   PetscCall(VecCopy(diagonal, root));
   PetscCall(VecSqrtAbs(root));
-  PetscCall(MatDuplicate(body->free_rows, MAT_COPY_VALUES, &scaled));
+  PetscCall(MatDuplicate(body->rows.free_matrix, MAT_COPY_VALUES, &scaled));
   PetscCall(MatDiagonalScale(scaled, NULL, root));
   PetscCall(MatMatTransposeMult(scaled, scaled, MAT_INITIAL_MATRIX, PETSC_DETERMINE, matrix));
   PetscCall(MatDestroy(&scaled));
@@ -50,13 +50,13 @@ static PetscErrorCode ProbeRows(Body body, Mat matrix)
     const PetscInt local = j - rows->begin;
 
     if (local >= 0 && local < rows->local) unit[local] = 1;
-    PetscCall(BodySolveMassOfRows(body, unit, body->work[2]));
+    PetscCall(BodySolveMassOfRows(body, unit, body->work.nodes[2]));
     if (local >= 0 && local < rows->local) unit[local] = 0;
-    PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
-    PetscCall(VecGetArrayRead(body->row_vec[0], &moved));
+    PetscCall(MatMult(body->rows.matrix, body->work.nodes[2], body->work.rows[0]));
+    PetscCall(VecGetArrayRead(body->work.rows[0], &moved));
     for (PetscInt i = 0; i < rows->local; i++)
       if (moved[i] != 0) PetscCall(MatSetValue(matrix, rows->begin + i, j, moved[i], INSERT_VALUES));
-    PetscCall(VecRestoreArrayRead(body->row_vec[0], &moved));
+    PetscCall(VecRestoreArrayRead(body->work.rows[0], &moved));
   }
   PetscCall(PetscFree(unit));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,8 +87,8 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->inverse_mass && body->integrator->has_inertia) {
-    PetscCall(MultiplyRows(body, body->inverse_mass, matrix));
+  if (body->mass.inverse && body->integrator->has_inertia) {
+    PetscCall(MultiplyRows(body, body->mass.inverse, matrix));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCheck(!body->integrator->has_inertia || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
@@ -127,7 +127,7 @@ PetscErrorCode BodyComputeForwardCompliance(Body body, Mat *matrix)
 {
   PetscFunctionBegin;
   PetscCall(BodyComputeInverseMass(body, matrix));
-  PetscCall(MatScale(*matrix, PetscSqr(body->time_step)));
+  PetscCall(MatScale(*matrix, PetscSqr(body->time.step)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -135,10 +135,10 @@ PetscErrorCode BodyComputeForwardCompliance(Body body, Mat *matrix)
    shape functions on lines, simplices, and products of lines */
 static PetscReal LeastMass(const struct _p_Body *body)
 {
-  const PetscBool simplex = (PetscBool)(body->element->nodes == body->dim + 1);
-  const PetscReal least   = simplex ? 1.0 / (body->dim + 2) : PetscPowRealInt(3, -body->dim);
+  const PetscBool simplex = (PetscBool)(body->model.element->nodes == body->mesh.dim + 1);
+  const PetscReal least   = simplex ? 1.0 / (body->mesh.dim + 2) : PetscPowRealInt(3, -body->mesh.dim);
 
-  return body->mass_type == BODY_MASS_AVERAGED ? 0.5 * (1 + least) : least;
+  return body->mass.type == BODY_MASS_AVERAGED ? 0.5 * (1 + least) : least;
 }
 
 /*@
@@ -165,15 +165,15 @@ PetscErrorCode BodyBoundForwardCompliance(Body body, PetscReal bound[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->inverse_mass || body->rows.global <= MAX_PROBED_ROWS) PetscCall(BodyComputeForwardCompliance(body, &matrix));
+  if (body->mass.inverse || body->rows.global <= MAX_PROBED_ROWS) PetscCall(BodyComputeForwardCompliance(body, &matrix));
   else {
     Vec inverse;
 
-    PetscCall(VecDuplicate(body->mass_row_sum, &inverse));
-    PetscCall(VecCopy(body->mass_row_sum, inverse));
+    PetscCall(VecDuplicate(body->mass.row_sum, &inverse));
+    PetscCall(VecCopy(body->mass.row_sum, inverse));
     PetscCall(VecReciprocal(inverse));
     PetscCall(MultiplyRows(body, inverse, &matrix));
-    PetscCall(MatScale(matrix, PetscSqr(body->time_step) / LeastMass(body)));
+    PetscCall(MatScale(matrix, PetscSqr(body->time.step) / LeastMass(body)));
     PetscCall(VecDestroy(&inverse));
   }
   PetscCall(MatCreateVecs(matrix, NULL, &diagonal));
@@ -209,9 +209,9 @@ PetscErrorCode BodyAddImpulse(Body body, const PetscScalar force[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, force, body->work[2]));
-  PetscCall(VecAXPY(body->state.a, 1, body->work[2]));
-  PetscCall(VecAXPY(body->state.v, 0.5 * body->time_step, body->work[2]));
+  PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
+  PetscCall(VecAXPY(body->state.a, 1, body->work.nodes[2]));
+  PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, body->work.nodes[2]));
   PetscCall(VecCopy(body->state.v, body->saved.v));
   PetscCall(VecCopy(body->state.a, body->saved.a));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -27,7 +27,7 @@ static PetscErrorCode CopyTraces(Body body, PetscBool store)
 {
   const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in,
                              body->traces.displacement,    body->traces.velocity,    body->traces.acceleration,    body->traces.reaction};
-  const PetscInt n        = (body->substeps + 1) * body->rows.local;
+  const PetscInt n        = (body->time.substeps + 1) * body->rows.local;
   PetscScalar   *values;
 
   PetscFunctionBegin;
@@ -42,27 +42,27 @@ static PetscErrorCode CopyTraces(Body body, PetscBool store)
 /* Puts the body to rest */
 PetscErrorCode BodyBeginProbe(Body body)
 {
-  const Vec vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a,       body->saved.u,
-                              body->saved.v, body->saved.a, body->internal_force};
+  const Vec vecs[N_BACKUP] = {
+      body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->state.internal_force};
 
   PetscFunctionBegin;
   if (!body->probe) {
     PetscCall(PetscNew(&body->probe));
-    PetscCall(PetscMalloc1(8 * (body->substeps + 1) * body->rows.local, &body->probe->traces));
+    PetscCall(PetscMalloc1(8 * (body->time.substeps + 1) * body->rows.local, &body->probe->traces));
     for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDuplicate(body->state.u, &body->probe->vecs[k]));
-    if (body->applied) PetscCall(VecDuplicate(body->applied, &body->probe->applied));
+    if (body->state.applied) PetscCall(VecDuplicate(body->state.applied, &body->probe->applied));
   }
   for (PetscInt k = 0; k < N_BACKUP; k++) {
     PetscCall(VecCopy(vecs[k], body->probe->vecs[k]));
     PetscCall(VecZeroEntries(vecs[k]));
   }
-  if (body->applied) PetscCall(VecCopy(body->applied, body->probe->applied));
+  if (body->state.applied) PetscCall(VecCopy(body->state.applied, body->probe->applied));
   PetscCall(CopyTraces(body, PETSC_TRUE));
-  body->probe->time       = body->time;
-  body->probe->saved_time = body->saved_time;
-  body->probe->step       = body->step;
-  body->probe->saved_step = body->saved_step;
-  body->probe->work       = body->external_work;
+  body->probe->time       = body->state.time;
+  body->probe->saved_time = body->saved.time;
+  body->probe->step       = body->state.step;
+  body->probe->saved_step = body->saved.step;
+  body->probe->work       = body->state.external_work;
   body->unloaded          = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -84,19 +84,19 @@ PetscErrorCode BodySetUnitInput(Body body, PetscInt row, InputKind kind)
 
 PetscErrorCode BodyEndProbe(Body body)
 {
-  const Vec vecs[N_BACKUP] = {body->state.u, body->state.v, body->state.a,       body->saved.u,
-                              body->saved.v, body->saved.a, body->internal_force};
+  const Vec vecs[N_BACKUP] = {
+      body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->state.internal_force};
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecCopy(body->probe->vecs[k], vecs[k]));
-  if (body->applied) PetscCall(VecCopy(body->probe->applied, body->applied));
+  if (body->state.applied) PetscCall(VecCopy(body->probe->applied, body->state.applied));
   PetscCall(CopyTraces(body, PETSC_FALSE));
-  body->time          = body->probe->time;
-  body->saved_time    = body->probe->saved_time;
-  body->step          = body->probe->step;
-  body->saved_step    = body->probe->saved_step;
-  body->external_work = body->probe->work;
-  body->unloaded      = PETSC_FALSE;
-  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  body->state.time          = body->probe->time;
+  body->saved.time          = body->probe->saved_time;
+  body->state.step          = body->probe->step;
+  body->saved.step          = body->probe->saved_step;
+  body->state.external_work = body->probe->work;
+  body->unloaded            = PETSC_FALSE;
+  PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,12 +31,12 @@ PetscErrorCode BodySetBase(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyCreateCompliance(body));
   c = body->compliance;
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.force_in, k + 1, &force));
     for (PetscInt i = 0; i < body->rows.local; i++) {
       c->base_displacement[k * body->rows.local + i] = displacement[i];
-      c->base_force[k * body->rows.local + i]        = body->conditions[i] == BODY_FORCED ? force[i] : 0;
+      c->base_force[k * body->rows.local + i]        = body->rows.conditions[i] == BODY_FORCED ? force[i] : 0;
     }
   }
   c->base_gathered = PETSC_FALSE;
@@ -145,7 +145,7 @@ static PetscErrorCode GatherInputs(Body body)
     PetscCall(BodyGatherKnown(body, c->base_force, c->known_force));
     c->base_gathered = PETSC_TRUE;
   }
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement_in, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.force_in, k + 1, &force));
     for (PetscInt i = 0; i < body->rows.local; i++)
@@ -213,8 +213,8 @@ PetscErrorCode BodyRespond(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetBase() first");
   PetscCall(GatherInputs(body));
-  for (PetscInt k = 0; k < body->substeps; k++) PetscCall(RespondSubstep(body, k));
-  for (PetscInt k = 0; k < body->substeps; k++) {
+  for (PetscInt k = 0; k < body->time.substeps; k++) PetscCall(RespondSubstep(body, k));
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscScalar *displacement, *reaction;
 
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &displacement));

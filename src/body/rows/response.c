@@ -40,7 +40,8 @@ static PetscErrorCode GatherOutputs(Body body, const PetscScalar displacement[],
   PetscFunctionBegin;
   /* in steps of four, as the counts and offsets are */
   for (PetscInt i = 0; i < rows->local; i++)
-    response->mine[4 * i] = body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN ? reaction[i] : displacement[i];
+    response->mine[4 * i] = body->rows.conditions[i] == BODY_PRESCRIBED || body->rows.conditions[i] == BODY_ROBIN ? reaction[i]
+                                                                                                                  : displacement[i];
   PetscCallMPI(MPI_Allgatherv(response->mine, (PetscMPIInt)(4 * rows->local), MPIU_SCALAR, response->new_inputs, rows->counts,
                               rows->offsets, MPIU_SCALAR, PetscObjectComm((PetscObject)body)));
   for (PetscInt i = 0; i < rows->global; i++) matrix[row * rows->global + i] = response->new_inputs[4 * i];
@@ -52,7 +53,7 @@ static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
 {
   struct _BodyResponse *response = body->response;
   const Trace           traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
-  const Vec             vecs[]   = {body->state.u, body->state.v, body->state.a, body->internal_force};
+  const Vec             vecs[]   = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
   PetscScalar          *outputs[4];
   Column               *column;
 
@@ -60,8 +61,8 @@ static PetscErrorCode Probe(Body body, PetscInt row, InputKind kind)
   PetscCall(BodySetUnitInput(body, row, kind));
   PetscCall(BodyRestore(body));
   PetscCall(BodyIntegrateWindow(body));
-  body->total_substeps -= body->substeps;
-  for (PetscInt level = 1; level <= body->substeps; level++) {
+  body->statistics.substeps -= body->time.substeps;
+  for (PetscInt level = 1; level <= body->time.substeps; level++) {
     PetscScalar *matrix = response->waveform + (level - 1) * body->rows.global * body->rows.global;
 
     for (PetscInt t = 0; t < 4; t++) PetscCall(TraceGetLevel(traces[t], level, &outputs[t]));
@@ -93,10 +94,11 @@ static PetscErrorCode CreateResponse(Body body)
   PetscFunctionBegin;
   PetscCall(PetscNew(&body->response));
   response = body->response;
-  PetscCall(MaterialIsLinear(body->material, &linear));
-  response->condensed = (PetscBool)(linear && body->substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
-  PetscCall(PetscCalloc4(body->substeps * rows->global * rows->global, &response->waveform, rows->global * rows->global, &response->matrix,
-                         rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global, &response->rate_matrix[1]));
+  PetscCall(MaterialIsLinear(body->model.material, &linear));
+  response->condensed = (PetscBool)(linear && body->time.substeps == 1 && rows->global <= MAX_CONDENSED_ROWS);
+  PetscCall(PetscCalloc4(body->time.substeps * rows->global * rows->global, &response->waveform, rows->global * rows->global,
+                         &response->matrix, rows->global * rows->global, &response->rate_matrix[0], rows->global * rows->global,
+                         &response->rate_matrix[1]));
   PetscCall(PetscCalloc5(3 * rows->global, &response->columns, 4 * rows->global, &response->inputs, 4 * rows->global, &response->new_inputs,
                          4 * rows->local + 1, &response->mine, rows->local, &response->conditions));
   PetscCall(PetscMalloc1(rows->global, &response->kinds));
@@ -141,37 +143,37 @@ PetscErrorCode BodyComputeResponse(Body body, const PetscScalar *matrix[])
   kinds    = response->kinds;
   *matrix  = response->matrix;
   if (response->valid) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->linear, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+  PetscCheck(body->model.linear, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
              "Body '%s' is nonlinear, and the outer iteration wants its response as if it were linear; choose one that does without, as "
              "-schwarz_snes_type anderson, or explicit penalty",
              body->hdr.name);
   PetscCall(PetscLogEventBegin(BODY_Response, body, 0, 0, 0));
   response->n_columns = 0;
-  PetscCall(PetscArrayzero(response->waveform, body->substeps * rows->global * rows->global));
+  PetscCall(PetscArrayzero(response->waveform, body->time.substeps * rows->global * rows->global));
   PetscCall(PetscArrayzero(response->matrix, rows->global * rows->global));
   for (PetscInt k = 0; k < 2; k++) PetscCall(PetscArrayzero(response->rate_matrix[k], rows->global * rows->global));
   PetscCall(BodyBeginProbe(body));
   for (PetscInt row = 0; row < rows->global; row++) {
     const PetscInt local = row - rows->begin;
 
-    kinds[row] = local >= 0 && local < rows->local ? (PetscMPIInt)body->conditions[local] : 0;
+    kinds[row] = local >= 0 && local < rows->local ? (PetscMPIInt)body->rows.conditions[local] : 0;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, kinds, (PetscMPIInt)rows->global, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
   for (PetscInt row = 0; row < rows->global; row++) {
     if (kinds[row] == BODY_FORCED || kinds[row] == BODY_ROBIN) PetscCall(Probe(body, row, INPUT_FORCE));
     if (kinds[row] != BODY_PRESCRIBED) continue;
     PetscCall(Probe(body, row, INPUT_DISPLACEMENT));
-    if (!body->prescribed_mass || body->substeps > 1) continue;
+    if (!body->rows.have_mass || body->time.substeps > 1) continue;
     PetscCall(Probe(body, row, INPUT_VELOCITY));
     PetscCall(Probe(body, row, INPUT_ACCELERATION));
   }
   PetscCall(BodyEndProbe(body));
   /* a linear rise is a sum of hats */
-  for (PetscInt level = 1; level <= body->substeps; level++)
+  for (PetscInt level = 1; level <= body->time.substeps; level++)
     for (PetscInt i = 0; i < rows->global * rows->global; i++)
-      response->matrix[i] += (PetscReal)level / body->substeps *
-                             response->waveform[(body->substeps - level) * rows->global * rows->global + i];
-  PetscCall(PetscArraycpy(response->conditions, body->conditions, rows->local));
+      response->matrix[i] += (PetscReal)level / body->time.substeps *
+                             response->waveform[(body->time.substeps - level) * rows->global * rows->global + i];
+  PetscCall(PetscArraycpy(response->conditions, body->rows.conditions, rows->local));
   response->made = response->valid = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(BODY_Response, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

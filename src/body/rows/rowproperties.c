@@ -34,16 +34,16 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
   for (PetscInt j = 0; j < rows->global; j++) {
     const PetscInt local = j - rows->begin;
 
-    PetscCall(VecZeroEntries(body->row_vec[0]));
-    if (local >= 0 && local < rows->local) PetscCall(VecSetValue(body->row_vec[0], j, 1, INSERT_VALUES));
-    PetscCall(VecAssemblyBegin(body->row_vec[0]));
-    PetscCall(VecAssemblyEnd(body->row_vec[0]));
-    PetscCall(MatMultTranspose(body->interface, body->row_vec[0], body->work[0]));
-    PetscCall(MatMult(K, body->work[0], body->work[2]));
-    PetscCall(MatMult(body->interface, body->work[2], body->row_vec[0]));
-    PetscCall(VecGetArrayRead(body->row_vec[0], &row));
+    PetscCall(VecZeroEntries(body->work.rows[0]));
+    if (local >= 0 && local < rows->local) PetscCall(VecSetValue(body->work.rows[0], j, 1, INSERT_VALUES));
+    PetscCall(VecAssemblyBegin(body->work.rows[0]));
+    PetscCall(VecAssemblyEnd(body->work.rows[0]));
+    PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], body->work.nodes[0]));
+    PetscCall(MatMult(K, body->work.nodes[0], body->work.nodes[2]));
+    PetscCall(MatMult(body->rows.matrix, body->work.nodes[2], body->work.rows[0]));
+    PetscCall(VecGetArrayRead(body->work.rows[0], &row));
     if (local >= 0 && local < rows->local) stiffness[local] = PetscRealPart(row[local]);
-    PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
+    PetscCall(VecRestoreArrayRead(body->work.rows[0], &row));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

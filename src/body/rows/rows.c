@@ -29,8 +29,8 @@ PetscErrorCode BodySetInterface(Body body, Mat B)
   PetscValidHeaderSpecific(B, MAT_CLASSID, 2);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
   PetscCall(PetscObjectReference((PetscObject)B));
-  PetscCall(MatDestroy(&body->interface));
-  body->interface = B;
+  PetscCall(MatDestroy(&body->rows.matrix));
+  body->rows.matrix = B;
   PetscCall(MatGetLocalSize(B, &rows->local, NULL));
   PetscCall(MatGetSize(B, &rows->global, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -42,17 +42,17 @@ PetscErrorCode BodySetUpFreeRows(Body body)
   Vec mask;
 
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&body->free_rows));
-  if (body->any_held) {
-    PetscCall(MatDuplicate(body->interface, MAT_COPY_VALUES, &body->free_rows));
+  PetscCall(MatDestroy(&body->rows.free_matrix));
+  if (body->held.any) {
+    PetscCall(MatDuplicate(body->rows.matrix, MAT_COPY_VALUES, &body->rows.free_matrix));
     PetscCall(VecDuplicate(body->state.u, &mask));
     PetscCall(VecSet(mask, 1));
     PetscCall(BodyZeroHeld(body, mask));
-    PetscCall(MatDiagonalScale(body->free_rows, NULL, mask));
+    PetscCall(MatDiagonalScale(body->rows.free_matrix, NULL, mask));
     PetscCall(VecDestroy(&mask));
   } else {
-    PetscCall(PetscObjectReference((PetscObject)body->interface));
-    body->free_rows = body->interface;
+    PetscCall(PetscObjectReference((PetscObject)body->rows.matrix));
+    body->rows.free_matrix = body->rows.matrix;
   }
   PetscCall(BodySetUpGram(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -81,7 +81,7 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  body->traction = type;
+  body->rows.traction = type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,7 +107,7 @@ PetscErrorCode BodySetRowWeights(Body body, const PetscReal weights[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  body->row_weights = weights;
+  body->rows.weights = weights;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,7 +132,7 @@ PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
-  PetscCall(PetscArraycpy(body->robin, stiffness, body->rows.local));
+  PetscCall(PetscArraycpy(body->rows.robin, stiffness, body->rows.local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,8 +160,8 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt i = 0; i < body->rows.local; i++) {
-    if (conditions[i] != body->conditions[i]) changed = PETSC_TRUE;
-    body->conditions[i] = conditions[i];
+    if (conditions[i] != body->rows.conditions[i]) changed = PETSC_TRUE;
+    body->rows.conditions[i] = conditions[i];
     counts[0] += conditions[i] == BODY_PRESCRIBED;
     counts[1] += conditions[i] == BODY_FORCED || conditions[i] == BODY_ROBIN;
     counts[2] += conditions[i] == BODY_ROBIN;
@@ -178,9 +178,9 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
     known     = (PetscBool)(all[3] == 0);
   }
   if (!changed) PetscFunctionReturn(PETSC_SUCCESS);
-  body->n_prescribed = counts[0];
-  body->n_forced     = counts[1];
-  body->n_robin      = counts[2];
+  body->rows.n_prescribed = counts[0];
+  body->rows.n_forced     = counts[1];
+  body->rows.n_robin      = counts[2];
   PetscCall(BodyValidateResponse(body, known));
   PetscCall(BodySetConstraints(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -192,15 +192,15 @@ PetscErrorCode BodySetConstraints(Body body)
   PetscFunctionBegin;
   PetscCall(BodyUpdateGram(body));
   for (PetscInt i = 0; i < body->rows.local; i++) {
-    body->held[i]        = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED || body->conditions[i] == BODY_ROBIN);
-    body->flexibility[i] = body->conditions[i] == BODY_ROBIN ? 1 / body->robin[i] : 0;
+    body->rows.constrained[i] = (PetscBool)(body->rows.conditions[i] == BODY_PRESCRIBED || body->rows.conditions[i] == BODY_ROBIN);
+    body->rows.flexibility[i] = body->rows.conditions[i] == BODY_ROBIN ? 1 / body->rows.robin[i] : 0;
   }
-  BodyUnmarkDependent(body, body->held);
-  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->held, body->flexibility));
-  if (body->mass_solver && body->integrator->divides_by_mass && body->prescribed_mass) {
-    for (PetscInt i = 0; i < body->rows.local; i++) body->held[i] = (PetscBool)(body->conditions[i] == BODY_PRESCRIBED);
-    BodyUnmarkDependent(body, body->held);
-    PetscCall(ConstrainedSolverSetConstraints(body->mass_solver, body->held, NULL));
+  BodyUnmarkDependent(body, body->rows.constrained);
+  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->rows.constrained, body->rows.flexibility));
+  if (body->mass.solver && body->integrator->divides_by_mass && body->rows.have_mass) {
+    for (PetscInt i = 0; i < body->rows.local; i++) body->rows.constrained[i] = (PetscBool)(body->rows.conditions[i] == BODY_PRESCRIBED);
+    BodyUnmarkDependent(body, body->rows.constrained);
+    PetscCall(ConstrainedSolverSetConstraints(body->mass.solver, body->rows.constrained, NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,20 +213,20 @@ PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec
   PetscScalar *row, *target;
 
   PetscFunctionBegin;
-  if (!body->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(trace ? body->interface : body->free_rows, vec, body->row_vec[0]));
-  PetscCall(VecGetArray(body->row_vec[0], &row));
+  if (!body->rows.n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMult(trace ? body->rows.matrix : body->rows.free_matrix, vec, body->work.rows[0]));
+  PetscCall(VecGetArray(body->work.rows[0], &row));
   if (trace) {
-    PetscCall(VecGetArrayWrite(body->row_vec[1], &target));
+    PetscCall(VecGetArrayWrite(body->work.rows[1], &target));
     PetscCall(TraceInterpolate(trace, position, 0, body->rows.local, target));
-    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? target[i] - row[i] : 0;
-    PetscCall(VecRestoreArrayWrite(body->row_vec[1], &target));
+    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->rows.conditions[i] == BODY_PRESCRIBED ? target[i] - row[i] : 0;
+    PetscCall(VecRestoreArrayWrite(body->work.rows[1], &target));
   } else {
-    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->conditions[i] == BODY_PRESCRIBED ? -row[i] : 0;
+    for (PetscInt i = 0; i < body->rows.local; i++) row[i] = body->rows.conditions[i] == BODY_PRESCRIBED ? -row[i] : 0;
   }
   BodyDivideByGram(body, row);
-  PetscCall(VecRestoreArray(body->row_vec[0], &row));
-  PetscCall(MatMultTransposeAdd(body->free_rows, body->row_vec[0], vec, vec));
+  PetscCall(VecRestoreArray(body->work.rows[0], &row));
+  PetscCall(MatMultTransposeAdd(body->rows.free_matrix, body->work.rows[0], vec, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,19 +238,19 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
   PetscScalar       *row;
 
   PetscFunctionBegin;
-  if (!body->n_forced) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayWrite(body->row_vec[0], &row));
+  if (!body->rows.n_forced) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   PetscCall(TraceInterpolate(body->traces.force_in, position, 0, body->rows.local, row));
-  if (body->n_robin) {
-    PetscCall(MatMult(body->interface, u, body->row_vec[1]));
-    PetscCall(VecGetArrayRead(body->row_vec[1], &at));
+  if (body->rows.n_robin) {
+    PetscCall(MatMult(body->rows.matrix, u, body->work.rows[1]));
+    PetscCall(VecGetArrayRead(body->work.rows[1], &at));
     for (PetscInt i = 0; i < body->rows.local; i++)
-      if (body->conditions[i] == BODY_ROBIN) row[i] -= body->robin[i] * at[i];
-    PetscCall(VecRestoreArrayRead(body->row_vec[1], &at));
+      if (body->rows.conditions[i] == BODY_ROBIN) row[i] -= body->rows.robin[i] * at[i];
+    PetscCall(VecRestoreArrayRead(body->work.rows[1], &at));
   }
   for (PetscInt i = 0; i < body->rows.local; i++)
-    row[i] = body->conditions[i] == BODY_FORCED || body->conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
-  PetscCall(VecRestoreArrayWrite(body->row_vec[0], &row));
-  PetscCall(MatMultTransposeAdd(body->interface, body->row_vec[0], f, f));
+    row[i] = body->rows.conditions[i] == BODY_FORCED || body->rows.conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTransposeAdd(body->rows.matrix, body->work.rows[0], f, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

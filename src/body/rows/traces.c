@@ -8,11 +8,11 @@ PetscErrorCode BodyWriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscIn
   PetscScalar       *values;
 
   PetscFunctionBegin;
-  PetscCall(MatMult(rows, vec, body->row_vec[0]));
+  PetscCall(MatMult(rows, vec, body->work.rows[0]));
   PetscCall(TraceGetLevel(trace, level, &values));
-  PetscCall(VecGetArrayRead(body->row_vec[0], &row));
+  PetscCall(VecGetArrayRead(body->work.rows[0], &row));
   PetscCall(PetscArraycpy(values, row, body->rows.local));
-  PetscCall(VecRestoreArrayRead(body->row_vec[0], &row));
+  PetscCall(VecRestoreArrayRead(body->work.rows[0], &row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -23,31 +23,31 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyWriteTrace(body, body->interface, body->state.u, body->traces.displacement, level));
-  PetscCall(BodyWriteTrace(body, body->interface, body->state.v, body->traces.velocity, level));
-  PetscCall(BodyWriteTrace(body, body->interface, body->state.a, body->traces.acceleration, level));
-  if (body->n_prescribed) {
-    Vec force = body->internal_force;
+  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.u, body->traces.displacement, level));
+  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.v, body->traces.velocity, level));
+  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, level));
+  if (body->rows.n_prescribed) {
+    Vec force = body->state.internal_force;
 
-    if (body->traction == BODY_TRACTION_REACTION || body->loads || body->n_forced) {
-      force = body->work[0];
-      if (body->traction == BODY_TRACTION_REACTION) {
+    if (body->rows.traction == BODY_TRACTION_REACTION || body->loads || body->rows.n_forced) {
+      force = body->work.nodes[0];
+      if (body->rows.traction == BODY_TRACTION_REACTION) {
         PetscCall(BodyMultiplyMass(body, body->state.a, force));
-        PetscCall(VecAXPY(force, 1, body->internal_force));
-      } else PetscCall(VecCopy(body->internal_force, force));
+        PetscCall(VecAXPY(force, 1, body->state.internal_force));
+      } else PetscCall(VecCopy(body->state.internal_force, force));
       /* what is loaded and prescribed at once has the load in its balance */
-      PetscCall(BodyAddExternalForce(body, body->time, -1, force));
-      PetscCall(BodyAddContactForce(body, (PetscReal)level / body->substeps, -1, body->state.u, force));
+      PetscCall(BodyAddExternalForce(body, body->state.time, -1, force));
+      PetscCall(BodyAddContactForce(body, (PetscReal)level / body->time.substeps, -1, body->state.u, force));
     }
-    PetscCall(BodyWriteTrace(body, body->free_rows, force, body->traces.reaction, level));
+    PetscCall(BodyWriteTrace(body, body->rows.free_matrix, force, body->traces.reaction, level));
   }
   PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
-  if (body->n_prescribed) BodyDivideByGram(body, reaction);
+  if (body->rows.n_prescribed) BodyDivideByGram(body, reaction);
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
   for (PetscInt i = 0; i < body->rows.local; i++) {
-    if (body->conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->robin[i] * displacement[i];
-    else if (body->conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
+    if (body->rows.conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->rows.robin[i] * displacement[i];
+    else if (body->rows.conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

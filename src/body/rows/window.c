@@ -11,7 +11,7 @@ PetscBool BodyMatchResponse(Body body)
 
   if (!response || !response->made) return PETSC_FALSE;
   for (PetscInt i = 0; i < body->rows.local; i++)
-    if (response->conditions[i] != body->conditions[i]) return PETSC_FALSE;
+    if (response->conditions[i] != body->rows.conditions[i]) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -42,7 +42,7 @@ static PetscErrorCode GatherInputs(Body body, PetscScalar all[])
 
   PetscFunctionBegin;
   for (PetscInt kind = 0; kind < 4; kind++) {
-    PetscCall(TraceGetLevel(traces[kind], body->substeps, &values));
+    PetscCall(TraceGetLevel(traces[kind], body->time.substeps, &values));
     for (PetscInt i = 0; i < rows->local; i++) mine[4 * i + kind] = values[i];
   }
   if (rows->size > 1)
@@ -65,14 +65,14 @@ PetscErrorCode BodyNoteWindow(Body body)
 static PetscErrorCode AddColumn(Body body, const Column *column, PetscScalar change)
 {
   const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
-  const Vec    vecs[]   = {body->state.u, body->state.v, body->state.a, body->internal_force};
+  const Vec    vecs[]   = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
   PetscScalar *values;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < 4; k++)
     if (column->changes[k]) PetscCall(VecAXPY(vecs[k], change, column->change[k]));
   for (PetscInt t = 0; t < 4; t++) {
-    PetscCall(TraceGetLevel(traces[t], body->substeps, &values));
+    PetscCall(TraceGetLevel(traces[t], body->time.substeps, &values));
     for (PetscInt i = 0; i < body->rows.local; i++) values[i] += change * column->rows[t * body->rows.local + i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -94,7 +94,7 @@ PetscErrorCode BodyIntegrateByResponse(Body body, PetscBool *done)
     if (change != 0) PetscCall(AddColumn(body, &response->columns[c], change));
   }
   PetscCall(PetscArraycpy(response->inputs, response->new_inputs, 4 * body->rows.global));
-  body->total_substeps += body->substeps;
+  body->statistics.substeps += body->time.substeps;
   *done = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

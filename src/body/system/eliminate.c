@@ -7,9 +7,9 @@ PetscErrorCode BodyZeroHeld(Body body, Vec vec)
   PetscScalar *array;
 
   PetscFunctionBegin;
-  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS); /* on all ranks alike, see BodyLoadsPrescribe() */
+  if (!body->held.any) PetscFunctionReturn(PETSC_SUCCESS); /* on all ranks alike, see BodyLoadsPrescribe() */
   PetscCall(VecGetArray(vec, &array));
-  for (PetscInt i = 0; i < body->n_held; i++) array[body->held_dofs[i]] = 0;
+  for (PetscInt i = 0; i < body->held.n; i++) array[body->held.dofs[i]] = 0;
   PetscCall(VecRestoreArray(vec, &array));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -21,10 +21,10 @@ PetscErrorCode BodyCopyHeld(Body body, Vec from, Vec to)
   PetscScalar       *target;
 
   PetscFunctionBegin;
-  if (!body->any_held) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(from, &source));
   PetscCall(VecGetArray(to, &target));
-  for (PetscInt i = 0; i < body->n_held; i++) target[body->held_dofs[i]] = source[body->held_dofs[i]];
+  for (PetscInt i = 0; i < body->held.n; i++) target[body->held.dofs[i]] = source[body->held.dofs[i]];
   PetscCall(VecRestoreArray(to, &target));
   PetscCall(VecRestoreArrayRead(from, &source));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -37,10 +37,10 @@ PetscErrorCode BodyEliminateHeld(Body body, Mat A)
 
   PetscFunctionBegin;
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(body->n_held, &rows));
-  for (PetscInt i = 0; i < body->n_held; i++) rows[i] = rstart + body->held_dofs[i];
-  PetscCall(MatZeroRowsColumns(A, body->n_held, rows, 1, NULL, NULL));
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(body->held.n, &rows));
+  for (PetscInt i = 0; i < body->held.n; i++) rows[i] = rstart + body->held.dofs[i];
+  PetscCall(MatZeroRowsColumns(A, body->held.n, rows, 1, NULL, NULL));
   PetscCall(PetscFree(rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

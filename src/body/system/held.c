@@ -23,10 +23,10 @@ static PetscReal RigidMotion(PetscInt dim, PetscInt motion, const PetscReal r[3]
  */
 static void AddFixed(Body body, PetscInt dof, const PetscReal box[6], PetscReal size, PetscInt n, PetscReal gram[])
 {
-  const PetscInt dim = body->dim, component = dof % dim;
+  const PetscInt dim = body->mesh.dim, component = dof % dim;
   PetscReal      r[3] = {0};
 
-  for (PetscInt d = 0; d < dim; d++) r[d] = (body->coordinates[dof - component + d] - 0.5 * (box[d] + box[3 + d])) / size;
+  for (PetscInt d = 0; d < dim; d++) r[d] = (body->mesh.coordinates[dof - component + d] - 0.5 * (box[d] + box[3 + d])) / size;
   for (PetscInt a = 0; a < n; a++)
     for (PetscInt b = 0; b < n; b++) gram[a * n + b] += RigidMotion(dim, a, r, component) * RigidMotion(dim, b, r, component);
 }
@@ -36,15 +36,15 @@ static void AddFixed(Body body, PetscInt dof, const PetscReal box[6], PetscReal 
 static PetscErrorCode IsLoose(Body body, PetscInt n_fixed, const PetscInt fixed[], PetscBool others, PetscBool *loose)
 {
   MPI_Comm       comm = PetscObjectComm((PetscObject)body);
-  const PetscInt dim = body->dim, n = dim == 1 ? 1 : 3 * (dim - 1);
+  const PetscInt dim = body->mesh.dim, n = dim == 1 ? 1 : 3 * (dim - 1);
   PetscReal      gram[MAX_RIGID * MAX_RIGID] = {0}, eigenvalues[MAX_RIGID], work[4 * MAX_RIGID], box[6] = {0}, size = 0;
   PetscBLASInt   order = (PetscBLASInt)n, lwork = 4 * MAX_RIGID, info;
   PetscInt       next = 0;
 
   PetscFunctionBegin;
-  PetscCall(DMGetBoundingBox(body->dm, box, box + 3));
+  PetscCall(DMGetBoundingBox(body->mesh.dm, box, box + 3));
   for (PetscInt d = 0; d < dim; d++) size = PetscMax(size, box[3 + d] - box[d]);
-  for (PetscInt dof = 0; dof < body->owned_nodes * dim; dof++) {
+  for (PetscInt dof = 0; dof < body->mesh.owned_nodes * dim; dof++) {
     const PetscBool listed = (PetscBool)(next < n_fixed && fixed[next] == dof);
 
     if (listed) next++;
@@ -64,19 +64,19 @@ PetscErrorCode BodyCheckHeld(Body body)
 {
   MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
   const char *prefix = ((PetscObject)body)->prefix;
-  PetscBool   loose, layer = (PetscBool)(body->n_layer_dofs > 0);
+  PetscBool   loose, layer = (PetscBool)(body->layer.n_dofs > 0);
 
   PetscFunctionBegin;
   PetscCall(BodyAnyRank(body, &layer));
   if (!body->integrator->has_inertia) {
-    PetscCall(IsLoose(body, body->n_held, body->held_dofs, PETSC_FALSE, &loose));
+    PetscCall(IsLoose(body, body->held.n, body->held.dofs, PETSC_FALSE, &loose));
     PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT,
                "Body '%s' is static, but nothing holds it, or not in all directions: it can move or turn as a whole; prescribe more "
                "displacements with -%sboundary_displacement%s",
                body->hdr.name, prefix, body->rows.global ? ", since contact cannot hold what has no stiffness of its own" : "");
   }
   if (layer) {
-    PetscCall(IsLoose(body, body->n_layer_dofs, body->layer_dofs, PETSC_TRUE, &loose));
+    PetscCall(IsLoose(body, body->layer.n_dofs, body->layer.dofs, PETSC_TRUE, &loose));
     PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT,
                "Body '%s' has too few nodes with mass to hold its massless contact nodes, which can turn about them; refine the mesh, or "
                "set -%smass_redistribute false",

@@ -18,22 +18,22 @@ struct _n_LayerElements {
 /* The number of each dof of this rank's nodes, ghosts too, within the layer; -1 for others */
 static PetscErrorCode NumberLayer(Body body, PetscInt **number)
 {
-  PetscInt           first = body->n_layer_dofs;
+  PetscInt           first = body->layer.n_dofs;
   const PetscScalar *read;
   PetscScalar       *write;
   Vec                numbers, local;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Scan(&body->n_layer_dofs, &first, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  first -= body->n_layer_dofs;
+  PetscCallMPI(MPI_Scan(&body->layer.n_dofs, &first, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  first -= body->layer.n_dofs;
   PetscCall(BodyCreateVec(body, &numbers));
   PetscCall(VecSet(numbers, -1));
   PetscCall(VecGetArray(numbers, &write));
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++) write[body->layer_dofs[i]] = first + i;
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) write[body->layer.dofs[i]] = first + i;
   PetscCall(VecRestoreArray(numbers, &write));
   PetscCall(BodyGetLocalRead(body, numbers, &local, &read));
-  PetscCall(PetscMalloc1(body->local_nodes * body->dim, number));
-  for (PetscInt i = 0; i < body->local_nodes * body->dim; i++) (*number)[i] = (PetscInt)PetscRealPart(read[i]);
+  PetscCall(PetscMalloc1(body->mesh.local_nodes * body->mesh.dim, number));
+  for (PetscInt i = 0; i < body->mesh.local_nodes * body->mesh.dim; i++) (*number)[i] = (PetscInt)PetscRealPart(read[i]);
   PetscCall(BodyRestoreLocalRead(body, numbers, &local, &read));
   PetscCall(VecDestroy(&numbers));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -41,11 +41,11 @@ static PetscErrorCode NumberLayer(Body body, PetscInt **number)
 
 static PetscBool TouchesLayer(Body body, PetscInt e, const PetscInt number[])
 {
-  const PetscInt *nodes = body->connectivity + e * body->element->nodes;
+  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
 
-  for (PetscInt a = 0; a < body->element->nodes; a++)
-    for (PetscInt d = 0; d < body->dim; d++)
-      if (number[nodes[a] * body->dim + d] >= 0) return PETSC_TRUE;
+  for (PetscInt a = 0; a < body->model.element->nodes; a++)
+    for (PetscInt d = 0; d < body->mesh.dim; d++)
+      if (number[nodes[a] * body->mesh.dim + d] >= 0) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -53,22 +53,22 @@ static PetscBool TouchesLayer(Body body, PetscInt e, const PetscInt number[])
 static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerElements layer, PetscInt *count, PetscInt *n_nodes,
                                      PetscInt *nodes[])
 {
-  const PetscInt n = body->element->nodes;
+  const PetscInt n = body->model.element->nodes;
   PetscInt      *compact;
 
   PetscFunctionBegin;
   *count = *n_nodes = 0;
-  for (PetscInt e = 0; e < body->element->count; e++)
+  for (PetscInt e = 0; e < body->model.element->count; e++)
     if (TouchesLayer(body, e, number)) (*count)++;
   PetscCall(PetscMalloc1(*count * n, &layer->connectivity));
   PetscCall(PetscMalloc1(*count * n, nodes));
-  PetscCall(PetscMalloc1(body->local_nodes, &compact));
-  for (PetscInt node = 0; node < body->local_nodes; node++) compact[node] = -1;
+  PetscCall(PetscMalloc1(body->mesh.local_nodes, &compact));
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++) compact[node] = -1;
   *count = 0;
-  for (PetscInt e = 0; e < body->element->count; e++) {
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
     if (!TouchesLayer(body, e, number)) continue;
     for (PetscInt a = 0; a < n; a++) {
-      const PetscInt node = body->connectivity[e * n + a];
+      const PetscInt node = body->mesh.connectivity[e * n + a];
 
       if (compact[node] < 0) {
         compact[node]          = *n_nodes;
@@ -85,23 +85,24 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
 /* From a vector of the body to the nodes of the elements, and from there to the layer */
 static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[], Vec of_layer)
 {
-  const PetscInt dim = body->dim;
+  const PetscInt dim = body->mesh.dim;
   PetscInt       rstart, n = 0, *dofs, *from, *to;
   IS             is, to_is;
 
   PetscFunctionBegin;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, layer->n_dofs, &layer->u));
   PetscCall(VecDuplicate(layer->u, &layer->f));
-  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
   PetscCall(PetscMalloc1(layer->n_dofs, &dofs));
   for (PetscInt k = 0; k < n_nodes; k++) {
-    const PetscInt first = nodes[k] < body->owned_nodes ? rstart + nodes[k] * dim : body->ghost_dofs[(nodes[k] - body->owned_nodes) * dim];
+    const PetscInt first = nodes[k] < body->mesh.owned_nodes ? rstart + nodes[k] * dim
+                                                             : body->mesh.ghost_dofs[(nodes[k] - body->mesh.owned_nodes) * dim];
 
     for (PetscInt d = 0; d < dim; d++) dofs[k * dim + d] = first + d;
   }
   /* no blocks of `dim`: PETSc takes its type for them apart, and allocates memory, in each scatter */
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, layer->n_dofs, dofs, PETSC_OWN_POINTER, &is));
-  PetscCall(VecScatterCreate(body->positions, is, layer->u, NULL, &layer->gather));
+  PetscCall(VecScatterCreate(body->mesh.positions, is, layer->u, NULL, &layer->gather));
   PetscCall(ISDestroy(&is));
   PetscCall(PetscMalloc2(layer->n_dofs, &from, layer->n_dofs, &to));
   for (PetscInt i = 0; i < layer->n_dofs; i++) {
@@ -121,7 +122,7 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
 /* Needs the scatters */
 static PetscErrorCode FindNear(Body body, LayerElements layer)
 {
-  const PetscInt     n = body->owned_nodes * body->dim;
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *mark;
   Vec                marks;
 
@@ -132,11 +133,11 @@ static PetscErrorCode FindNear(Body body, LayerElements layer)
   PetscCall(VecScatterBegin(layer->gather, layer->u, marks, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(layer->gather, layer->u, marks, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecGetArrayRead(marks, &mark));
-  for (PetscInt i = 0; i < n; i++) layer->n_near += PetscRealPart(mark[i]) > 0 || body->in_layer[i / body->dim];
+  for (PetscInt i = 0; i < n; i++) layer->n_near += PetscRealPart(mark[i]) > 0 || body->layer.contains[i / body->mesh.dim];
   PetscCall(PetscMalloc1(layer->n_near, &layer->near));
   layer->n_near = 0;
   for (PetscInt i = 0; i < n; i++)
-    if (PetscRealPart(mark[i]) > 0 || body->in_layer[i / body->dim]) layer->near[layer->n_near++] = i;
+    if (PetscRealPart(mark[i]) > 0 || body->layer.contains[i / body->mesh.dim]) layer->near[layer->n_near++] = i;
   PetscCall(VecRestoreArrayRead(marks, &mark));
   PetscCall(VecDestroy(&marks));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -145,22 +146,22 @@ static PetscErrorCode FindNear(Body body, LayerElements layer)
 /* of_layer: any vector of the layer, one number for each of its dofs */
 PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
 {
-  const PetscInt dim = body->dim;
+  const PetscInt dim = body->mesh.dim;
   PetscInt       count, n_nodes, *nodes, *number;
   LayerElements  layer;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&layer));
-  body->layer_elements = layer;
+  body->layer.elements = layer;
   PetscCall(NumberLayer(body, &number));
   PetscCall(SelectElements(body, number, layer, &count, &n_nodes, &nodes));
   layer->n_dofs = n_nodes * dim;
   PetscCall(PetscMalloc2(layer->n_dofs, &layer->coordinates, layer->n_dofs, &layer->numbers));
   for (PetscInt k = 0; k < n_nodes; k++) {
-    PetscCall(PetscArraycpy(layer->coordinates + k * dim, body->coordinates + nodes[k] * dim, dim));
+    PetscCall(PetscArraycpy(layer->coordinates + k * dim, body->mesh.coordinates + nodes[k] * dim, dim));
     PetscCall(PetscArraycpy(layer->numbers + k * dim, number + nodes[k] * dim, dim));
   }
-  PetscCall(ElementCreateLike(body->element, body->material, &layer->element));
+  PetscCall(ElementCreateLike(body->model.element, body->model.material, &layer->element));
   PetscCall(ElementSetUp(layer->element, count, layer->connectivity, layer->coordinates));
   PetscCall(CreateScatters(body, layer, n_nodes, nodes, of_layer));
   PetscCall(FindNear(body, layer));
@@ -189,7 +190,7 @@ PetscErrorCode BodyLayerElementsDestroy(LayerElements *layer)
 /* The element of linearized forces; `material` is kept by reference */
 PetscErrorCode BodyLayerLinearize(Body body, Material material)
 {
-  LayerElements layer = body->layer_elements;
+  LayerElements layer = body->layer.elements;
 
   PetscFunctionBegin;
   if (!layer || layer->linearized) PetscFunctionReturn(PETSC_SUCCESS);
@@ -201,15 +202,15 @@ PetscErrorCode BodyLayerLinearize(Body body, Material material)
 /* The owned dofs, rank numbering, on which the balance of the layer and the rows of contact nodes depend */
 void BodyGetNearLayer(Body body, PetscInt *n, const PetscInt *dofs[])
 {
-  *n    = body->layer_elements->n_near;
-  *dofs = body->layer_elements->near;
+  *n    = body->layer.elements->n_near;
+  *dofs = body->layer.elements->near;
 }
 
 /* rhs -= internal force of the layer for displacement u of the body [N] */
 PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
 {
-  LayerElements      layer   = body->layer_elements;
-  Element            element = body->linearized && layer->linearized ? layer->linearized : layer->element;
+  LayerElements      layer   = body->layer.elements;
+  Element            element = body->model.linearized && layer->linearized ? layer->linearized : layer->element;
   const PetscScalar *u_array;
   PetscScalar       *f_array;
 
@@ -233,7 +234,7 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
 PetscErrorCode BodyCreateLayerVec(Body body, Vec *near)
 {
   PetscFunctionBegin;
-  PetscCall(VecDuplicate(body->layer_elements->u, near));
+  PetscCall(VecDuplicate(body->layer.elements->u, near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,16 +242,16 @@ PetscErrorCode BodyCreateLayerVec(Body body, Vec *near)
 PetscErrorCode BodyGatherLayer(Body body, Vec u, Vec near)
 {
   PetscFunctionBegin;
-  PetscCall(VecScatterBegin(body->layer_elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(body->layer_elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterBegin(body->layer.elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(body->layer.elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m] */
 PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
 {
-  LayerElements      layer = body->layer_elements;
-  const PetscInt     nodes = body->element->nodes, n = nodes * body->dim;
+  LayerElements      layer = body->layer.elements;
+  const PetscInt     nodes = body->model.element->nodes, n = nodes * body->mesh.dim;
   PetscInt           dofs[ELEMENT_MAX_DOFS];
   PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
   const PetscScalar *at;
@@ -259,7 +260,8 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
   PetscCall(MatZeroEntries(K));
   PetscCall(VecGetArrayRead(near, &at));
   for (PetscInt e = 0; e < layer->element->count; e++) {
-    for (PetscInt i = 0; i < n; i++) dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->dim] * body->dim + i % body->dim];
+    for (PetscInt i = 0; i < n; i++)
+      dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->mesh.dim] * body->mesh.dim + i % body->mesh.dim];
     PetscCall((*layer->element->ops.stiffness)(layer->element, e, at, element));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES)); /* leaves negative numbers out */
   }
@@ -274,11 +276,11 @@ PetscErrorCode BodyCreateLayerMatrix(Body body, Mat *K)
 {
   PetscFunctionBegin;
   PetscCall(MatCreate(PetscObjectComm((PetscObject)body), K));
-  PetscCall(MatSetSizes(*K, body->n_layer_dofs, body->n_layer_dofs, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetSizes(*K, body->layer.n_dofs, body->layer.n_dofs, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(*K, MATAIJ));
   PetscCall(MatSetUp(*K));
   PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(VecZeroEntries(body->layer_elements->u));
-  PetscCall(BodyAssembleLayer(body, body->layer_elements->u, *K));
+  PetscCall(VecZeroEntries(body->layer.elements->u));
+  PetscCall(BodyAssembleLayer(body, body->layer.elements->u, *K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,7 +13,7 @@
 
   Notes:
   The same mesh, cross-section or thickness, with the linear elastic material of `MaterialLinearize()`. Internal forces and tangents
-  come from there while `body->linearized` is set. A linear body is its own.
+  come from there while `body->model.linearized` is set. A linear body is its own.
 
   The second call and later ones cost nothing.
 
@@ -24,11 +24,11 @@ PetscErrorCode BodyPrepareLinearized(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
-  if (body->linear || body->linearized_element) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MaterialLinearize(body->material, &body->linearized_material));
-  PetscCall(ElementCreateLike(body->element, body->linearized_material, &body->linearized_element));
-  PetscCall(ElementSetUp(body->linearized_element, body->element->count, body->connectivity, body->coordinates));
-  PetscCall(BodyLayerLinearize(body, body->linearized_material));
+  if (body->model.linear || body->model.linearized_element) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MaterialLinearize(body->model.material, &body->model.linearized_material));
+  PetscCall(ElementCreateLike(body->model.element, body->model.linearized_material, &body->model.linearized_element));
+  PetscCall(ElementSetUp(body->model.linearized_element, body->model.element->count, body->mesh.connectivity, body->mesh.coordinates));
+  PetscCall(BodyLayerLinearize(body, body->model.linearized_material));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,10 +36,10 @@ PetscErrorCode BodyPrepareLinearized(Body body)
 PetscErrorCode BodyGetElement(Body body, Element *element)
 {
   PetscFunctionBegin;
-  *element = body->element;
-  if (!body->linearized || body->linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->linearized_element, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+  *element = body->model.element;
+  if (!body->model.linearized || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(body->model.linearized_element, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Body '%s': call BodyPrepareLinearized() before its forces are linearized", body->hdr.name);
-  *element = body->linearized_element;
+  *element = body->model.linearized_element;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

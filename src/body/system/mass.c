@@ -6,14 +6,14 @@ const char *const BodyMassTypes[] = {"lumped", "consistent", "averaged", "BodyMa
 /* The mass matrix of one element as the body uses it, row by row */
 PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 {
-  const PetscInt *nodes   = body->connectivity + e * body->element->nodes;
-  const PetscInt  n_nodes = body->element->nodes, dim = body->dim, n = n_nodes * dim;
+  const PetscInt *nodes   = body->mesh.connectivity + e * body->model.element->nodes;
+  const PetscInt  n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
   PetscInt        inner = 0;
 
   PetscFunctionBegin;
-  PetscCall((*body->element->ops.mass)(body->element, e, M));
-  if (body->mass_type != BODY_MASS_CONSISTENT) {
-    const PetscReal lumped = body->mass_type == BODY_MASS_LUMPED ? 1.0 : 0.5;
+  PetscCall((*body->model.element->ops.mass)(body->model.element, e, M));
+  if (body->mass.type != BODY_MASS_CONSISTENT) {
+    const PetscReal lumped = body->mass.type == BODY_MASS_LUMPED ? 1.0 : 0.5;
 
     for (PetscInt i = 0; i < n; i++) {
       PetscScalar sum = 0;
@@ -25,8 +25,8 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
       M[i * n + i] += lumped * sum;
     }
   }
-  if (!body->mass_redistribute) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt a = 0; a < n_nodes; a++) inner += !body->in_layer[nodes[a]];
+  if (!body->mass.redistribute) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt a = 0; a < n_nodes; a++) inner += !body->layer.contains[nodes[a]];
   if (inner == n_nodes) PetscFunctionReturn(PETSC_SUCCESS);
   if (!inner) {
     PetscCall(PetscArrayzero(M, n * n)); /* BodyRedistributeOrphans() finds its mass a place */
@@ -37,38 +37,38 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 
     for (PetscInt a = 0; a < n_nodes; a++)
       for (PetscInt b = 0; b < n_nodes; b++)
-        if (body->in_layer[nodes[a]] || body->in_layer[nodes[b]]) {
+        if (body->layer.contains[nodes[a]] || body->layer.contains[nodes[b]]) {
           moved += M[(a * dim + d) * n + b * dim + d];
           M[(a * dim + d) * n + b * dim + d] = 0;
         }
     for (PetscInt a = 0; a < n_nodes; a++)
-      if (!body->in_layer[nodes[a]]) M[(a * dim + d) * n + a * dim + d] += moved / inner;
+      if (!body->layer.contains[nodes[a]]) M[(a * dim + d) * n + a * dim + d] += moved / inner;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode AssembleMass(Body body)
 {
-  const PetscInt n = body->element->nodes * body->dim;
+  const PetscInt n = body->model.element->nodes * body->mesh.dim;
   PetscInt       dofs[ELEMENT_MAX_DOFS];
   PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], diagonal[ELEMENT_MAX_DOFS];
 
   PetscFunctionBegin;
-  if (body->mass_type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass_diagonal));
-  else PetscCall(BodyCreateMatrix(body, &body->mass_matrix));
-  for (PetscInt e = 0; e < body->element->count; e++) {
+  if (body->mass.type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass.diagonal));
+  else PetscCall(BodyCreateMatrix(body, &body->mass.matrix));
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall(BodyGetElementMass(body, e, M));
     PetscCall(BodyGetElementDofs(body, e, dofs));
     for (PetscInt i = 0; i < n; i++) diagonal[i] = M[i * n + i];
-    if (body->mass_diagonal) PetscCall(VecSetValues(body->mass_diagonal, n, dofs, diagonal, ADD_VALUES));
-    else PetscCall(MatSetValues(body->mass_matrix, n, dofs, n, dofs, M, ADD_VALUES));
+    if (body->mass.diagonal) PetscCall(VecSetValues(body->mass.diagonal, n, dofs, diagonal, ADD_VALUES));
+    else PetscCall(MatSetValues(body->mass.matrix, n, dofs, n, dofs, M, ADD_VALUES));
   }
-  if (body->mass_diagonal) {
-    PetscCall(VecAssemblyBegin(body->mass_diagonal));
-    PetscCall(VecAssemblyEnd(body->mass_diagonal));
+  if (body->mass.diagonal) {
+    PetscCall(VecAssemblyBegin(body->mass.diagonal));
+    PetscCall(VecAssemblyEnd(body->mass.diagonal));
   } else {
-    PetscCall(MatAssemblyBegin(body->mass_matrix, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(body->mass_matrix, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyBegin(body->mass.matrix, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(body->mass.matrix, MAT_FINAL_ASSEMBLY));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -76,34 +76,34 @@ static PetscErrorCode AssembleMass(Body body)
 /* Mass times position, summed over this rank's elements as the shape functions have it, and over its nodes as the body has it */
 static PetscErrorCode ComputeMassShift(Body body)
 {
-  const PetscInt     n = body->element->nodes, dim = body->dim;
+  const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim;
   PetscScalar        M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
   PetscReal          sums[3] = {0};
   const PetscScalar *mass;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < body->element->count; e++) {
-    const PetscInt *nodes = body->connectivity + e * n;
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    const PetscInt *nodes = body->mesh.connectivity + e * n;
     PetscBool       moved = PETSC_FALSE;
 
-    for (PetscInt a = 0; a < n; a++) moved = (PetscBool)(moved || body->in_layer[nodes[a]]);
+    for (PetscInt a = 0; a < n; a++) moved = (PetscBool)(moved || body->layer.contains[nodes[a]]);
     if (!moved) continue;
-    PetscCall((*body->element->ops.mass)(body->element, e, M));
+    PetscCall((*body->model.element->ops.mass)(body->model.element, e, M));
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt b = 0; b < n; b++)
-        for (PetscInt d = 0; d < dim; d++) sums[d] -= M[(a * dim) * n * dim + b * dim] * body->coordinates[nodes[a] * dim + d];
+        for (PetscInt d = 0; d < dim; d++) sums[d] -= M[(a * dim) * n * dim + b * dim] * body->mesh.coordinates[nodes[a] * dim + d];
     PetscCall(BodyGetElementMass(body, e, M));
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt b = 0; b < n; b++)
-        for (PetscInt d = 0; d < dim; d++) sums[d] += M[(a * dim) * n * dim + b * dim] * body->coordinates[nodes[a] * dim + d];
+        for (PetscInt d = 0; d < dim; d++) sums[d] += M[(a * dim) * n * dim + b * dim] * body->mesh.coordinates[nodes[a] * dim + d];
   }
-  if (body->orphan_mass) {
-    PetscCall(VecGetArrayRead(body->orphan_mass, &mass));
-    for (PetscInt i = 0; i < body->owned_nodes * dim; i++) sums[i % dim] += mass[i] * body->coordinates[i];
-    PetscCall(VecRestoreArrayRead(body->orphan_mass, &mass));
+  if (body->mass.orphans) {
+    PetscCall(VecGetArrayRead(body->mass.orphans, &mass));
+    for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) sums[i % dim] += mass[i] * body->mesh.coordinates[i];
+    PetscCall(VecRestoreArrayRead(body->mass.orphans, &mass));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  for (PetscInt d = 0; d < dim; d++) body->mass_shift[d] = sums[d] / body->total_mass;
+  for (PetscInt d = 0; d < dim; d++) body->mass.shift[d] = sums[d] / body->mass.total;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,16 +113,16 @@ static PetscErrorCode SetUpLayer(Body body)
   PetscInt held = 0;
 
   PetscFunctionBegin;
-  body->n_layer_dofs = 0;
-  PetscCall(PetscMalloc1(body->mass_redistribute ? body->owned_nodes * body->dim : 0, &body->layer_dofs));
-  if (!body->mass_redistribute) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt node = 0; node < body->owned_nodes; node++)
-    for (PetscInt d = 0; d < body->dim; d++) {
-      const PetscInt dof = node * body->dim + d;
+  body->layer.n_dofs = 0;
+  PetscCall(PetscMalloc1(body->mass.redistribute ? body->mesh.owned_nodes * body->mesh.dim : 0, &body->layer.dofs));
+  if (!body->mass.redistribute) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++)
+    for (PetscInt d = 0; d < body->mesh.dim; d++) {
+      const PetscInt dof = node * body->mesh.dim + d;
 
-      while (held < body->n_held && body->held_dofs[held] < dof) held++;
-      if (held < body->n_held && body->held_dofs[held] == dof) continue;
-      if (body->in_layer[node]) body->layer_dofs[body->n_layer_dofs++] = dof;
+      while (held < body->held.n && body->held.dofs[held] < dof) held++;
+      if (held < body->held.n && body->held.dofs[held] == dof) continue;
+      if (body->layer.contains[node]) body->layer.dofs[body->layer.n_dofs++] = dof;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -136,25 +136,25 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
   PetscCall(AssembleMass(body));
-  if (body->mass_redistribute) PetscCall(BodyRedistributeOrphans(body));
-  PetscCall(BodyCreateVec(body, &body->mass_row_sum));
+  if (body->mass.redistribute) PetscCall(BodyRedistributeOrphans(body));
+  PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));
-  PetscCall(BodyMultiplyMass(body, ones, body->mass_row_sum));
+  PetscCall(BodyMultiplyMass(body, ones, body->mass.row_sum));
   PetscCall(VecDestroy(&ones));
-  PetscCall(VecSum(body->mass_row_sum, &sum));
-  body->total_mass = sum / body->dim;
-  if (body->mass_redistribute) PetscCall(ComputeMassShift(body));
-  if (body->mass_diagonal) {
+  PetscCall(VecSum(body->mass.row_sum, &sum));
+  body->mass.total = sum / body->mesh.dim;
+  if (body->mass.redistribute) PetscCall(ComputeMassShift(body));
+  if (body->mass.diagonal) {
     PetscScalar       *inverse;
     const PetscScalar *mass;
 
-    PetscCall(BodyCreateVec(body, &body->inverse_mass));
-    PetscCall(VecGetArrayRead(body->mass_diagonal, &mass));
-    PetscCall(VecGetArrayWrite(body->inverse_mass, &inverse));
-    for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) inverse[i] = mass[i] > 0 ? 1 / mass[i] : 0;
-    PetscCall(VecRestoreArrayWrite(body->inverse_mass, &inverse));
-    PetscCall(VecRestoreArrayRead(body->mass_diagonal, &mass));
+    PetscCall(BodyCreateVec(body, &body->mass.inverse));
+    PetscCall(VecGetArrayRead(body->mass.diagonal, &mass));
+    PetscCall(VecGetArrayWrite(body->mass.inverse, &inverse));
+    for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) inverse[i] = mass[i] > 0 ? 1 / mass[i] : 0;
+    PetscCall(VecRestoreArrayWrite(body->mass.inverse, &inverse));
+    PetscCall(VecRestoreArrayRead(body->mass.diagonal, &mass));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -168,15 +168,15 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscInt rstart;
 
   PetscFunctionBegin;
-  PetscCall(MatDuplicate(body->mass_matrix, MAT_COPY_VALUES, &solvable));
-  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  for (PetscInt i = 0; i < body->n_layer_dofs; i++)
-    PetscCall(MatSetValue(solvable, rstart + body->layer_dofs[i], rstart + body->layer_dofs[i], 1, ADD_VALUES));
+  PetscCall(MatDuplicate(body->mass.matrix, MAT_COPY_VALUES, &solvable));
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++)
+    PetscCall(MatSetValue(solvable, rstart + body->layer.dofs[i], rstart + body->layer.dofs[i], 1, ADD_VALUES));
   PetscCall(MatAssemblyBegin(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(BodyEliminateHeld(body, solvable));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(solvable, body->free_rows, body->dim, prefix, &body->mass_solver));
+  PetscCall(ConstrainedSolverCreate(solvable, body->rows.free_matrix, body->mesh.dim, prefix, &body->mass.solver));
   PetscCall(MatDestroy(&solvable));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -185,8 +185,8 @@ PetscErrorCode BodySetUpMassSolver(Body body)
 PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
 {
   PetscFunctionBegin;
-  if (body->mass_diagonal) PetscCall(VecPointwiseMult(y, body->mass_diagonal, x));
-  else PetscCall(MatMult(body->mass_matrix, x, y));
+  if (body->mass.diagonal) PetscCall(VecPointwiseMult(y, body->mass.diagonal, x));
+  else PetscCall(MatMult(body->mass.matrix, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,12 +198,12 @@ PetscErrorCode BodySolveMass(Body body, Vec f, Vec a)
 
   PetscFunctionBegin;
   if (!body->integrator->has_inertia) PetscCall(VecZeroEntries(a));
-  else if (body->inverse_mass) PetscCall(VecPointwiseMult(a, body->inverse_mass, f));
+  else if (body->mass.inverse) PetscCall(VecPointwiseMult(a, body->mass.inverse, f));
   else {
-    if (!body->mass_solver) PetscCall(BodySetUpMassSolver(body));
-    PetscCall(ConstrainedSolverSolve(body->mass_solver, f, a));
+    if (!body->mass.solver) PetscCall(BodySetUpMassSolver(body));
+    PetscCall(ConstrainedSolverSolve(body->mass.solver, f, a));
     PetscCall(VecGetArray(a, &array));
-    for (PetscInt i = 0; i < body->n_layer_dofs; i++) array[body->layer_dofs[i]] = 0;
+    for (PetscInt i = 0; i < body->layer.n_dofs; i++) array[body->layer.dofs[i]] = 0;
     PetscCall(VecRestoreArray(a, &array));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -49,21 +49,21 @@ static PetscErrorCode CloseLocal(Body body, Vec vec, Vec *local, PetscScalar **a
 /* The mass of orphaned elements, in equal parts on their nodes */
 static PetscErrorCode CollectMass(Body body, Vec vec)
 {
-  const PetscInt n = body->element->nodes, dim = body->dim;
+  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *mass;
   Vec            local;
 
   PetscFunctionBegin;
   PetscCall(OpenLocal(body, vec, &local, &mass));
-  PetscCall(PetscArrayzero(mass, body->local_nodes * dim));
-  for (PetscInt e = 0; e < body->element->count; e++) {
-    const PetscInt *nodes = body->connectivity + e * n;
+  PetscCall(PetscArrayzero(mass, body->mesh.local_nodes * dim));
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    const PetscInt *nodes = body->mesh.connectivity + e * n;
     PetscInt        inner = 0;
     PetscScalar     sum   = 0;
 
-    for (PetscInt a = 0; a < n; a++) inner += !body->in_layer[nodes[a]];
+    for (PetscInt a = 0; a < n; a++) inner += !body->layer.contains[nodes[a]];
     if (inner) continue;
-    PetscCall((*body->element->ops.mass)(body->element, e, M));
+    PetscCall((*body->model.element->ops.mass)(body->model.element, e, M));
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt b = 0; b < n; b++) sum += M[a * dim * n * dim + b * dim];
     for (PetscInt a = 0; a < n; a++) mass[nodes[a] * dim] += sum / n;
@@ -76,16 +76,16 @@ static PetscErrorCode CollectMass(Body body, Vec vec)
 /* The nodes that are `at` elements away, once those that are nearer are known */
 static PetscErrorCode FindNodes(Body body, PetscInt at, Orphans *orphans, Vec counts)
 {
-  const PetscInt n = body->element->nodes, dim = body->dim;
+  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   PetscScalar   *distance, *nearer, *count;
   Vec            local[3];
 
   PetscFunctionBegin;
   PetscCall(OpenLocal(body, orphans->distance, &local[0], &distance));
   PetscCall(OpenLocal(body, counts, &local[1], &count));
-  PetscCall(PetscArrayzero(count, body->local_nodes * dim));
-  for (PetscInt e = 0; e < body->element->count; e++) {
-    const PetscInt *nodes = body->connectivity + e * n;
+  PetscCall(PetscArrayzero(count, body->mesh.local_nodes * dim));
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    const PetscInt *nodes = body->mesh.connectivity + e * n;
     PetscInt        near  = 0;
 
     for (PetscInt a = 0; a < n; a++) near += distance[nodes[a] * dim] == at - 1;
@@ -96,7 +96,7 @@ static PetscErrorCode FindNodes(Body body, PetscInt at, Orphans *orphans, Vec co
   PetscCall(AddGhosts(body, counts));
   PetscCall(OpenLocal(body, counts, &local[1], &count));
   PetscCall(OpenLocal(body, orphans->nearer, &local[2], &nearer));
-  for (PetscInt i = 0; i < body->local_nodes * dim; i += dim) {
+  for (PetscInt i = 0; i < body->mesh.local_nodes * dim; i += dim) {
     if (count[i] == 0) continue;
     distance[i] = at;
     nearer[i]   = count[i];
@@ -110,13 +110,13 @@ static PetscErrorCode FindNodes(Body body, PetscInt at, Orphans *orphans, Vec co
 /* Distances up to that of the furthest node with mass; `left` is the mass on nodes of which none was found [kg] */
 static PetscErrorCode FindDistances(Body body, Orphans *orphans, Vec counts, PetscInt *furthest, PetscReal *left)
 {
-  const PetscInt dim = body->dim;
+  const PetscInt dim = body->mesh.dim;
   PetscScalar   *distance, *mass;
   Vec            local;
 
   PetscFunctionBegin;
   PetscCall(OpenLocal(body, orphans->distance, &local, &distance));
-  for (PetscInt i = 0; i < body->local_nodes * dim; i++) distance[i] = body->in_layer[i / dim] ? -1 : 0;
+  for (PetscInt i = 0; i < body->mesh.local_nodes * dim; i++) distance[i] = body->layer.contains[i / dim] ? -1 : 0;
   PetscCall(CloseLocal(body, orphans->distance, &local, &distance));
   *left = 1;
   for (*furthest = 0; *furthest < MAX_DISTANCE && *left > 0;) {
@@ -124,7 +124,7 @@ static PetscErrorCode FindDistances(Body body, Orphans *orphans, Vec counts, Pet
     *left = 0;
     PetscCall(VecGetArray(orphans->distance, &distance));
     PetscCall(VecGetArray(orphans->mass, &mass));
-    for (PetscInt i = 0; i < body->owned_nodes * dim; i += dim)
+    for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i += dim)
       if (distance[i] < 0) *left += mass[i];
     PetscCall(VecRestoreArray(orphans->mass, &mass));
     PetscCall(VecRestoreArray(orphans->distance, &distance));
@@ -136,7 +136,7 @@ static PetscErrorCode FindDistances(Body body, Orphans *orphans, Vec counts, Pet
 /* From nodes that are `from` elements away to their nearer neighbours */
 static PetscErrorCode HandOn(Body body, PetscInt from, Orphans *orphans, Vec handed)
 {
-  const PetscInt n = body->element->nodes, dim = body->dim;
+  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   PetscScalar   *mass, *distance, *nearer, *given;
   Vec            local[4];
 
@@ -145,9 +145,9 @@ static PetscErrorCode HandOn(Body body, PetscInt from, Orphans *orphans, Vec han
   PetscCall(OpenLocal(body, orphans->distance, &local[1], &distance));
   PetscCall(OpenLocal(body, orphans->nearer, &local[2], &nearer));
   PetscCall(OpenLocal(body, handed, &local[3], &given));
-  PetscCall(PetscArrayzero(given, body->local_nodes * dim));
-  for (PetscInt e = 0; e < body->element->count; e++) {
-    const PetscInt *nodes = body->connectivity + e * n;
+  PetscCall(PetscArrayzero(given, body->mesh.local_nodes * dim));
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    const PetscInt *nodes = body->mesh.connectivity + e * n;
 
     for (PetscInt a = 0; a < n; a++) {
       const PetscInt node = nodes[a] * dim;
@@ -160,7 +160,7 @@ static PetscErrorCode HandOn(Body body, PetscInt from, Orphans *orphans, Vec han
   PetscCall(CloseLocal(body, handed, &local[3], &given));
   PetscCall(AddGhosts(body, handed));
   PetscCall(OpenLocal(body, handed, &local[3], &given));
-  for (PetscInt i = 0; i < body->local_nodes * dim; i += dim) mass[i] = distance[i] == from ? 0 : mass[i] + given[i];
+  for (PetscInt i = 0; i < body->mesh.local_nodes * dim; i += dim) mass[i] = distance[i] == from ? 0 : mass[i] + given[i];
   PetscCall(CloseLocal(body, handed, &local[3], &given));
   PetscCall(CloseLocal(body, orphans->nearer, &local[2], &nearer));
   PetscCall(CloseLocal(body, orphans->distance, &local[1], &distance));
@@ -175,7 +175,7 @@ static PetscErrorCode CopyToComponents(Body body, Vec mass)
 
   PetscFunctionBegin;
   PetscCall(VecGetArray(mass, &array));
-  for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) array[i] = array[i - i % body->dim];
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) array[i] = array[i - i % body->mesh.dim];
   PetscCall(VecRestoreArray(mass, &array));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -196,7 +196,7 @@ PetscErrorCode BodyRedistributeOrphans(Body body)
     PetscCall(VecDestroy(&orphans.mass));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  body->orphan_mass = orphans.mass;
+  body->mass.orphans = orphans.mass;
   PetscCall(BodyCreateVec(body, &orphans.distance));
   PetscCall(BodyCreateVec(body, &orphans.nearer));
   PetscCall(BodyCreateVec(body, &work));
@@ -210,7 +210,7 @@ PetscErrorCode BodyRedistributeOrphans(Body body)
              "mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false",
              body->hdr.name, (double)left, ((PetscObject)body)->prefix);
   PetscCall(CopyToComponents(body, orphans.mass));
-  if (body->mass_diagonal) PetscCall(VecAXPY(body->mass_diagonal, 1, orphans.mass));
-  else PetscCall(MatDiagonalSet(body->mass_matrix, orphans.mass, ADD_VALUES));
+  if (body->mass.diagonal) PetscCall(VecAXPY(body->mass.diagonal, 1, orphans.mass));
+  else PetscCall(MatDiagonalSet(body->mass.matrix, orphans.mass, ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

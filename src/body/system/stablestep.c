@@ -27,15 +27,15 @@
 
 static PetscBool IsMassless(Body body, PetscInt node)
 {
-  return (PetscBool)(body->mass_redistribute && body->in_layer[node]);
+  return (PetscBool)(body->mass.redistribute && body->layer.contains[node]);
 }
 
 /* Largest eigenvalue of one element with its massless nodes held, which is a bound whether they are free or prescribed; zero: a
    displacement of this rank's nodes */
 static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscScalar zero[], PetscReal *largest)
 {
-  const PetscInt *nodes = body->connectivity + e * body->element->nodes;
-  const PetscInt  n     = body->element->nodes * body->dim;
+  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
+  const PetscInt  n     = body->model.element->nodes * body->mesh.dim;
   PetscScalar     K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], work[4 * ELEMENT_MAX_DOFS];
   PetscReal       eigenvalues[ELEMENT_MAX_DOFS];
   PetscInt        kept[ELEMENT_MAX_DOFS], n_kept = 0;
@@ -43,10 +43,10 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscSca
 
   PetscFunctionBegin;
   *largest = 0;
-  PetscCall((*body->element->ops.stiffness)(body->element, e, zero, K));
+  PetscCall((*body->model.element->ops.stiffness)(body->model.element, e, zero, K));
   PetscCall(BodyGetElementMass(body, e, M));
   for (PetscInt i = 0; i < n; i++)
-    if (!IsMassless(body, nodes[i / body->dim])) kept[n_kept++] = i;
+    if (!IsMassless(body, nodes[i / body->mesh.dim])) kept[n_kept++] = i;
   if (!n_kept) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < n_kept; i++)
     for (PetscInt j = 0; j < n_kept; j++) {
@@ -72,12 +72,12 @@ typedef struct {
 
 static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
 {
-  const PetscInt n = body->element->nodes, dim = body->dim;
+  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBegin;
   for (PetscInt c = 0; c < chunk->count; c++) {
-    const PetscInt *nodes  = body->connectivity + (begin + c) * n;
+    const PetscInt *nodes  = body->mesh.connectivity + (begin + c) * n;
     PetscReal       extent = 0;
 
     PetscCall(BodyGetElementMass(body, begin + c, M));
@@ -89,8 +89,8 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
         const PetscInt  i    = a * dim + d;
         const PetscReal mass = M[i * n * dim + i];
 
-        chunk->coordinates[own * dim + d] = body->coordinates[nodes[a] * dim + d];
-        extent = PetscMax(extent, PetscAbsReal(body->coordinates[nodes[a] * dim + d] - body->coordinates[nodes[0] * dim + d]));
+        chunk->coordinates[own * dim + d] = body->mesh.coordinates[nodes[a] * dim + d];
+        extent = PetscMax(extent, PetscAbsReal(body->mesh.coordinates[nodes[a] * dim + d] - body->mesh.coordinates[nodes[0] * dim + d]));
         chunk->inverse_mass[own * dim + d] = mass > 0 && !IsMassless(body, nodes[a]) ? 1 / mass : 0;
         /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
         chunk->u[own * dim + d] = PetscSinReal(1 + 7.3 * i * i + 2.1 * i);
@@ -104,7 +104,7 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
 /* Rayleigh quotients after some iterations, one for each element of the chunk */
 static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscReal eigenvalues[])
 {
-  const PetscInt n = body->element->nodes * body->dim;
+  const PetscInt n = body->model.element->nodes * body->mesh.dim;
 
   PetscFunctionBegin;
   for (PetscInt iteration = 0; iteration <= POWER_ITERATIONS; iteration++) {
@@ -136,17 +136,17 @@ static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscRea
 /* Estimates for all elements of this rank */
 static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
 {
-  const PetscInt n = body->element->nodes, dim = body->dim;
+  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   Chunk          chunk;
   Element        element;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc6(CHUNK * n, &chunk.connectivity, CHUNK * n * dim, &chunk.coordinates, CHUNK, &chunk.size, CHUNK * n * dim,
                          &chunk.inverse_mass, CHUNK * n * dim, &chunk.u, CHUNK * n * dim, &chunk.f));
-  for (PetscInt begin = 0; begin < body->element->count; begin += CHUNK) {
-    chunk.count = PetscMin(CHUNK, body->element->count - begin);
+  for (PetscInt begin = 0; begin < body->model.element->count; begin += CHUNK) {
+    chunk.count = PetscMin(CHUNK, body->model.element->count - begin);
     PetscCall(FillChunk(body, begin, &chunk));
-    PetscCall(ElementCreate(PETSC_COMM_SELF, ((PetscObject)body)->prefix, body->cell_shape, body->material, &element));
+    PetscCall(ElementCreate(PETSC_COMM_SELF, ((PetscObject)body)->prefix, body->mesh.cell_shape, body->model.material, &element));
     PetscCall(ElementSetUp(element, chunk.count, chunk.connectivity, chunk.coordinates));
     PetscCall(Iterate(body, element, &chunk, eigenvalues + begin));
     PetscCall(ElementDestroy(&element));
@@ -157,7 +157,7 @@ static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
 
 static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], PetscReal *largest)
 {
-  const PetscInt count = body->element->count;
+  const PetscInt count = body->model.element->count;
   PetscReal     *eigenvalues, top = 0, exact, last = -1;
   PetscInt       n_exact = 0;
 
@@ -186,11 +186,11 @@ PetscErrorCode BodyComputeStableStep(Body body)
   PetscScalar *zero;
 
   PetscFunctionBegin;
-  if (body->stable_step > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
-  if (body->mass_type == BODY_MASS_LUMPED && body->dim > 1) PetscCall(LargestOfLumped(body, zero, &largest));
+  if (body->time.stable_step > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(body->mesh.local_nodes * body->mesh.dim, &zero));
+  if (body->mass.type == BODY_MASS_LUMPED && body->mesh.dim > 1) PetscCall(LargestOfLumped(body, zero, &largest));
   else
-    for (PetscInt e = 0; e < body->element->count; e++) {
+    for (PetscInt e = 0; e < body->model.element->count; e++) {
       PetscReal eigenvalue;
 
       PetscCall(GetElementEigenvalue(body, e, zero, &eigenvalue));
@@ -198,6 +198,6 @@ PetscErrorCode BodyComputeStableStep(Body body)
     }
   PetscCall(PetscFree(zero));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
-  body->stable_step = 2 / PetscSqrtReal(largest);
+  body->time.stable_step = 2 / PetscSqrtReal(largest);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

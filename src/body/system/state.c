@@ -24,13 +24,13 @@ PetscErrorCode BodyRestore(Body body)
   PetscCall(VecCopy(body->saved.u, body->state.u));
   PetscCall(VecCopy(body->saved.v, body->state.v));
   PetscCall(VecCopy(body->saved.a, body->state.a));
-  body->time = body->saved_time;
-  body->step = body->saved_step;
+  body->state.time = body->saved.time;
+  body->state.step = body->saved.step;
   if (body->loads) {
-    PetscCall(VecCopy(body->saved_applied, body->applied));
-    body->external_work = body->saved_work;
+    PetscCall(VecCopy(body->saved.applied, body->state.applied));
+    body->state.external_work = body->saved.external_work;
   }
-  PetscCall(TSSecondOrderSetState(body->ts, body->time, body->time_step, body->step));
+  PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

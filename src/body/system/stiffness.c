@@ -16,7 +16,7 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscCall(BodyGetLocalRead(body, u, &u_local, &u_array));
   if (ghosted) PetscCall(VecGhostGetLocalForm(f, &f_local));
   PetscCall(VecGetArrayWrite(f_local, &f_array));
-  PetscCall(PetscArrayzero(f_array, body->local_nodes * body->dim));
+  PetscCall(PetscArrayzero(f_array, body->mesh.local_nodes * body->mesh.dim));
   PetscCall((*element->ops.internalforce)(element, u_array, f_array));
   PetscCall(VecRestoreArrayWrite(f_local, &f_array));
   PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
@@ -34,7 +34,7 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
 PetscErrorCode BodyCheckInverted(Body body)
 {
   MPI_Comm       comm      = PetscObjectComm((PetscObject)body);
-  const PetscInt n         = body->element->nodes;
+  const PetscInt n         = body->model.element->nodes;
   PetscReal      centre[3] = {0};
   PetscInt       e, number, offset;
   PetscMPIInt    rank, first;
@@ -47,51 +47,53 @@ PetscErrorCode BodyCheckInverted(Body body)
   first = e < 0 ? body->rows.size : rank;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm));
   if (first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Scan(&body->element->count, &offset, 1, MPIU_INT, MPI_SUM, comm));
-  number = offset - body->element->count + e;
+  PetscCallMPI(MPI_Scan(&body->model.element->count, &offset, 1, MPIU_INT, MPI_SUM, comm));
+  number = offset - body->model.element->count + e;
   PetscCallMPI(MPI_Bcast(&number, 1, MPIU_INT, first, comm));
   if (rank == first)
     for (PetscInt a = 0; a < n; a++)
-      for (PetscInt d = 0; d < body->dim; d++) centre[d] += body->coordinates[body->connectivity[e * n + a] * body->dim + d] / n;
+      for (PetscInt d = 0; d < body->mesh.dim; d++)
+        centre[d] += body->mesh.coordinates[body->mesh.connectivity[e * n + a] * body->mesh.dim + d] / n;
   PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, comm));
   SETERRQ(comm, PETSC_ERR_FP,
           "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or "
           "not a number, at time %.9g s (step %" PetscInt_FMT
           " of the body); is a time step too large, a load too strong, or the mesh too coarse there?",
-          body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->time, body->step);
+          body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->state.time, body->state.step);
 }
 
 /* The global numbers of an element's displacements, from the numbers of its nodes on this rank */
 PetscErrorCode BodyGetElementDofs(Body body, PetscInt e, PetscInt dofs[])
 {
-  const PetscInt *nodes = body->connectivity + e * body->element->nodes;
+  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
   PetscInt        rstart;
 
   PetscFunctionBegin;
-  PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
-  for (PetscInt n = 0; n < body->element->nodes; n++)
-    for (PetscInt d = 0; d < body->dim; d++)
-      dofs[n * body->dim + d] = nodes[n] < body->owned_nodes ? rstart + nodes[n] * body->dim + d
-                                                             : body->ghost_dofs[(nodes[n] - body->owned_nodes) * body->dim + d];
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
+  for (PetscInt n = 0; n < body->model.element->nodes; n++)
+    for (PetscInt d = 0; d < body->mesh.dim; d++)
+      dofs[n * body->mesh.dim + d] = nodes[n] < body->mesh.owned_nodes
+                                         ? rstart + nodes[n] * body->mesh.dim + d
+                                         : body->mesh.ghost_dofs[(nodes[n] - body->mesh.owned_nodes) * body->mesh.dim + d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Which nodes share an element, as a matrix of nodes by nodes: far smaller than one of displacements, and quick to make */
 static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
 {
-  const PetscInt n = body->element->nodes;
+  const PetscInt n = body->model.element->nodes;
   PetscScalar    ones[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
   PetscInt       nodes[ELEMENT_MAX_DOFS], dofs[ELEMENT_MAX_DOFS];
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n * n; i++) ones[i] = 1;
   PetscCall(MatCreate(PetscObjectComm((PetscObject)body), graph));
-  PetscCall(MatSetSizes(*graph, body->owned_nodes, body->owned_nodes, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetSizes(*graph, body->mesh.owned_nodes, body->mesh.owned_nodes, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(*graph, MATAIJ));
   PetscCall(MatSetUp(*graph));
-  for (PetscInt e = 0; e < body->element->count; e++) {
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall(BodyGetElementDofs(body, e, dofs));
-    for (PetscInt a = 0; a < n; a++) nodes[a] = dofs[a * body->dim] / body->dim;
+    for (PetscInt a = 0; a < n; a++) nodes[a] = dofs[a * body->mesh.dim] / body->mesh.dim;
     PetscCall(MatSetValues(*graph, n, nodes, n, nodes, ones, INSERT_VALUES));
   }
   PetscCall(MatAssemblyBegin(*graph, MAT_FINAL_ASSEMBLY));
@@ -103,7 +105,7 @@ static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
    as long as that of the graph. */
 PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
 {
-  const PetscInt dim = body->dim, n = body->owned_nodes * dim;
+  const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes * dim;
   PetscInt       begin, end, *here, *elsewhere;
   Mat            graph;
 
@@ -140,7 +142,7 @@ PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
 /* K = tangent stiffness at displacement u; NULL: undeformed [N/m] */
 PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
 {
-  const PetscInt     n = body->element->nodes * body->dim;
+  const PetscInt     n = body->model.element->nodes * body->mesh.dim;
   PetscInt           dofs[ELEMENT_MAX_DOFS];
   PetscScalar        tangent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero = NULL;
   const PetscScalar *array;
@@ -153,10 +155,10 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
   PetscCall(MatZeroEntries(K));
   if (u) PetscCall(BodyGetLocalRead(body, u, &local, &array));
   else {
-    PetscCall(PetscCalloc1(body->local_nodes * body->dim, &zero));
+    PetscCall(PetscCalloc1(body->mesh.local_nodes * body->mesh.dim, &zero));
     array = zero;
   }
-  for (PetscInt e = 0; e < body->element->count; e++) {
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall((*element->ops.stiffness)(element, e, array, tangent));
     PetscCall(BodyGetElementDofs(body, e, dofs));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, tangent, ADD_VALUES));
@@ -173,11 +175,11 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
 PetscErrorCode BodyGetStiffness(Body body, Mat *K)
 {
   PetscFunctionBegin;
-  if (!body->stiffness) {
-    PetscCall(BodyCreateMatrix(body, &body->stiffness));
-    PetscCall(BodyAssembleTangent(body, NULL, body->stiffness));
+  if (!body->model.stiffness) {
+    PetscCall(BodyCreateMatrix(body, &body->model.stiffness));
+    PetscCall(BodyAssembleTangent(body, NULL, body->model.stiffness));
   }
-  *K = body->stiffness;
+  *K = body->model.stiffness;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -205,7 +207,7 @@ PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  PetscCall((*body->element->ops.stress)(body->element, u, stress));
+  PetscCall((*body->model.element->ops.stress)(body->model.element, u, stress));
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
