@@ -6,104 +6,142 @@
 #include <solver/constrainedsolver.h>
 #include <body/layout/integrator.h>
 
-/* Displacement, velocity and acceleration of a body: what a restore brings back. */
-typedef struct {
-  Vec u, v, a;
-} BodyState;
-
-/* Rows of this rank within all rows, and how to have all of them on every rank. */
-typedef struct {
-  PetscMPIInt  size;
-  PetscInt     local, global, begin;
-  PetscMPIInt *counts, *offsets;
-} BodyRows;
-
 typedef struct _n_LayerElements *LayerElements;
 typedef struct _n_BodyGram      *BodyGram;
 
-struct _p_Body {
-  PETSCHEADER(int);
-  /* mesh and numbering: nodes of this rank are numbered owned first, then ghosts */
+/* Nodes of this rank are numbered owned first, then ghosts */
+typedef struct {
   DM             dm;
   PetscInt       dim;
-  PetscInt       owned_nodes, local_nodes;
+  PetscInt       owned_nodes, local_nodes; /* the latter with ghosts */
   DMPolytopeType cell_shape;
-  PetscInt       vertex_start;
-  PetscInt      *node_of_vertex;
-  PetscInt      *connectivity;
-  PetscReal     *coordinates;                 /* local_nodes x dim */
-  PetscInt      *ghost_dofs;                  /* global numbers */
-  Vec            positions;                   /* reference positions of owned nodes [m] */
-  Element        element, linearized_element; /* the latter NULL until BodyPrepareLinearized() */
-  Material       material, linearized_material;
-  PetscBool      linear;     /* constant stiffness */
-  PetscBool      linearized; /* forces are those of the linearized elements */
-  /* mass */
-  BodyMassType      mass_type;
-  PetscBool         mass_redistribute;
-  PetscBool        *in_layer;                  /* per local node: belongs to a contact surface */
-  PetscInt          n_layer_dofs;              /* owned */
-  PetscInt         *layer_dofs;                /* owned dof (rank numbering) of massless nodes; empty unless redistributed */
-  Vec               mass_row_sum;              /* M 1: the lumped mass */
-  Vec               mass_diagonal;             /* the mass matrix where it is diagonal, else NULL */
-  Mat               mass_matrix;               /* the mass matrix where it is not diagonal, else NULL */
-  Vec               orphan_mass;               /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
-  Vec               inverse_mass;              /* diagonal: 1/m, 0 on massless nodes */
-  ConstrainedSolver mass_solver;               /* not diagonal; an implicit body makes it when first needed */
-  PetscReal         total_mass, mass_shift[3]; /* [kg]; how far redistribution has moved the centre of mass [m] */
-  Mat               stiffness;                 /* of the undeformed body; NULL until BodyGetStiffness() */
-  /* time */
-  TS             ts;
-  BodyIntegrator integrator;     /* that goes with it */
-  PetscReal      requested_step; /* 0: the controller step; < 0: automatic */
-  PetscReal      controller_step, time_step, time_start;
-  PetscInt       substeps;
-  PetscReal      stable_step; /* 0 until BodyComputeStableStep() */
-  /* state */
-  BodyState    state, saved, substep_start; /* of the latter, u and v only, and NULL unless loads or the integrator read it */
-  PetscReal    time, saved_time;
-  PetscInt     step, saved_step;
-  Vec          internal_force; /* at state.u */
-  Vec          previous_u;     /* state.u after the last BodyIntegrate() that began at the saved state */
-  PetscBool    swept;          /* previous_u holds such a state */
-  Vec          kept[4];        /* displacement, velocity, acceleration, internal force put aside by BodyKeep() */
-  PetscScalar *kept_traces;
-  Vec          work[3];
-  /* interface rows */
-  Mat               interface;
-  Mat               free_rows;   /* without held dofs; the same matrix where none is held */
-  PetscBool         any_oblique; /* on any rank there are rows of one node that are not orthonormal */
-  BodyGram          gram;        /* of prescribed rows that are not orthonormal */
-  const PetscReal  *row_weights; /* of rows that depend on each other; borrowed, NULL: they are equal */
-  BodyRows          rows;
-  BodyCondition    *conditions;             /* local rows */
-  PetscBool        *held;                   /* those that are prescribed, or Robin rows */
-  PetscReal        *flexibility;            /* per local row: of its Robin spring [m/N]; 0: it is held */
-  PetscReal        *robin;                  /* per local row: stiffness of its Robin spring [N/m] */
-  PetscInt          n_prescribed, n_forced; /* over all ranks; Robin rows are forced ones */
-  PetscInt          n_robin;
-  PetscBool         prescribed_mass; /* prescribed nodes carry mass */
-  BodyTractionType  traction;
-  BodyTraces        traces;
-  PetscInt          substep; /* 0 to substeps - 1 */
-  Vec               row_vec[3];
+  PetscInt       vertex_start;   /* point of the first vertex in the DM */
+  PetscInt      *node_of_vertex; /* of the vertices in their order */
+  PetscInt      *connectivity;   /* nodes of the elements, element by element */
+  PetscReal     *coordinates;    /* local_nodes x dim: reference positions [m] */
+  PetscInt      *ghost_dofs;     /* global numbers */
+  Vec            positions;      /* reference positions of owned nodes, laid out as displacements [m] */
+} BodyMesh;
+
+/* What internal forces come from */
+typedef struct {
+  Element   element;
+  Material  material;
+  PetscBool linear;              /* the stiffness is constant */
+  Element   linearized_element;  /* NULL until BodyPrepareLinearized() */
+  Material  linearized_material; /* the same */
+  PetscBool linearized;          /* forces are those of the linearized element at present */
+  Mat       stiffness;           /* of the undeformed body; NULL until BodyGetStiffness() */
+} BodyModel;
+
+typedef struct {
+  BodyMassType      type;
+  PetscBool         redistribute; /* contact nodes become massless */
+  Vec               row_sum;      /* M 1: the lumped mass */
+  Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
+  Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
+  Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
+  ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
+  Vec               orphans;      /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
+  PetscReal         total;        /* [kg] */
+  PetscReal         shift[3];     /* how far redistribution has moved the centre of mass [m] */
+} BodyMass;
+
+/* The contact nodes, and those of their dofs that are massless */
+typedef struct {
+  PetscBool    *contains; /* per local node: it belongs to a contact surface */
+  PetscInt      n_dofs;   /* owned */
+  PetscInt     *dofs;     /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
+  LayerElements elements; /* those that touch massless nodes; NULL unless the integrator balances them */
+} BodyLayer;
+
+typedef struct {
+  TS        ts;
+  PetscReal start, controller_step, step; /* of the simulation; from one synchronisation of all bodies to the next; substep [s] */
+  PetscReal requested_step;               /* 0: the controller step; < 0: automatic */
+  PetscReal stable_step;                  /* 0 until BodyComputeStableStep() */
+  PetscInt  substeps;                     /* of a controller step */
+  PetscInt  substep;                      /* the one that is being made, 0 to substeps - 1 */
+} BodyTime;
+
+/* What a step starts from and ends with. A member that is NULL in one of two states is left out where one is copied to the other. */
+typedef struct {
+  Vec       u, v, a;
+  Vec       internal_force; /* at u [N]; not of the saved state, since the next step computes it */
+  Vec       applied;        /* forces from outside and reactions of held dofs; NULL without loads [N] */
+  PetscReal external_work;  /* done by them since the start [J] */
+  PetscReal time;
+  PetscInt  step; /* substeps since the start */
+} BodyState;
+
+/* The rows of the interface: of this rank, and how to have all of them on every rank */
+typedef struct {
+  Mat              matrix;      /* B: rows of all ranks x displacements */
+  Mat              free_matrix; /* without held dofs; the same matrix where none is held */
+  PetscMPIInt      size;        /* ranks */
+  PetscInt         local, global, begin;
+  PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
+  BodyGram         gram;             /* of prescribed rows that are not orthonormal */
+  PetscBool        any_oblique;      /* on any rank there are rows of one node that are not orthonormal */
+  const PetscReal *weights;          /* of rows that depend on each other; borrowed, NULL: they are equal */
+  BodyTractionType traction;
+  PetscBool        have_mass; /* prescribed nodes carry mass */
+  /* conditions */
+  BodyCondition *conditions;                      /* per local row */
+  PetscBool     *constrained;                     /* per local row: prescribed, or a Robin row */
+  PetscReal     *flexibility;                     /* per local row: of its Robin spring [m/N]; 0: it is held */
+  PetscReal     *robin;                           /* per local row: stiffness of its Robin spring [N/m] */
+  PetscInt       n_prescribed, n_forced, n_robin; /* over all ranks; Robin rows are forced ones */
+  PetscScalar   *kept_traces;                     /* output traces put aside by BodyKeep() */
+} BodyRows;
+
+/* Dofs whose displacement the user prescribes */
+typedef struct {
+  PetscInt        n;
+  PetscBool       any;  /* there are some on any rank */
+  const PetscInt *dofs; /* owned ones, rank numbering, ascending; owned by the loads */
+} BodyHeld;
+
+struct _p_Body {
+  PETSCHEADER(int);
+  PetscBool         setup;
+  BodyMesh          mesh;
+  BodyModel         model;
+  BodyMass          mass;
+  BodyLayer         layer;
+  BodyTime          time;
+  BodyIntegrator    integrator;
   ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
-  LayerElements     layer_elements; /* those that touch the massless layer; NULL: nobody balances it */
+  /* state: as it is, at the start of the controller step, put aside by BodyKeep(), and u and v at the start of the substep, which are NULL
+     unless loads or the integrator read them */
+  BodyState state, saved, substep_start;
+  Vec       kept[4]; /* displacement, velocity, acceleration, internal force put aside by BodyKeep() */
+  /* interface */
+  BodyRows                rows;
+  BodyTraces              traces;
   struct _BodyCompliance *compliance;
+  struct _BodyProbe      *probe; /* room for the state while unit forces are tried; NULL until then */
   struct _BodyRepeat     *repeat;
   PetscBool repeats; /* the present end state is that of an integration from the saved state, under the present conditions and inputs */
-  struct _BodyProbe *probe; /* room for the state while unit inputs are tried; NULL until then */
   /* loads */
   struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
-  PetscInt           n_held;
-  PetscBool          any_held;                  /* on any rank */
-  const PetscInt    *held_dofs;                 /* owned dofs whose displacement is prescribed; owned by the loads */
-  PetscBool          unloaded;                  /* while its compliance is probed: no forces from outside, held dofs at zero */
-  Vec                applied, saved_applied;    /* forces from outside and reactions of held dofs; NULL without loads [N] */
-  PetscReal          external_work, saved_work; /* done by them since the start [J] */
-  PetscInt64         total_substeps;
-  PetscLogDouble     seconds;
-  PetscBool          setup;
+  BodyHeld           held;
+  PetscBool          unloaded; /* while its compliance is probed: no forces from outside, held dofs at zero */
+  /* what BodyGetPositionChange() compares with */
+  struct {
+    Vec       u;
+    PetscBool known; /* it is of this controller step */
+  } iterate;
+  /* work space of one function at a time: nothing is in it when the function that has filled it returns, and what that calls may overwrite
+   * it */
+  struct {
+    Vec nodes[3]; /* laid out as displacements */
+    Vec rows[3];  /* one number for each row */
+  } work;
+  struct {
+    PetscInt64     substeps; /* in all sweeps */
+    PetscLogDouble seconds;  /* in BodyIntegrate() */
+  } statistics;
 };
 
 PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
