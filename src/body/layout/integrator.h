@@ -8,6 +8,9 @@
 
 typedef struct _n_BodyIntegrator *BodyIntegrator;
 
+/* Where a state is put aside: the start of the controller step, or the end of one, while another is tried */
+typedef enum { BODY_SLOT_SAVED, BODY_SLOT_KEPT, BODY_SLOTS } BodySlot;
+
 /* Those marked (NULL) may be missing */
 typedef struct {
   PetscErrorCode (*setfromoptions)(Body); /* sets the defaults of the TS, calls TSSetFromOptions(), reads and checks its parameters */
@@ -15,11 +18,11 @@ typedef struct {
   PetscErrorCode (*setrows)(Body, const PetscBool[]); /* the rows of this rank that are marked have new entries */
   PetscErrorCode (*checksubstep)(
       Body); /* (NULL) after TSStep(): an error that says why where the equations of the substep were not solved */
-  PetscErrorCode (*finishsubstep)(Body); /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever
-                                            else of the state the TS leaves undone */
-  PetscErrorCode (*save)(Body);          /* (NULL) the present state has become the saved one */
-  PetscErrorCode (*restore)(Body); /* (NULL) the saved state is there again: what the integrator remembers must be as it was then, so that
-                                      the same integration gives the same bits */
+  PetscErrorCode (*finishsubstep)(Body);  /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever
+                                             else of the state the TS leaves undone */
+  PetscErrorCode (*save)(Body, BodySlot); /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
+  PetscErrorCode (*restore)(Body, BodySlot); /* (NULL) the state has been brought back: what the integrator remembers must be as it was
+                                                then, so that the same integration gives the same bits */
   PetscErrorCode (*freerows)(Body, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of the controller step if no
                                                       contact acts on any, without integrating [m]; may be set in setup() */
   PetscErrorCode (*compliancecolumn)(Body, PetscInt, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of each substep,
