@@ -4,8 +4,10 @@
      K_LL du = (forces - internal force)_L,
 
    with prescribed rows held and Robin rows on their springs. One round is exact for a linear material. Others repeat it by chord Newton's
-   method: with the factors of the undeformed layer or, since these become worse as the body turns (they fail at 23 degrees), of the layer
-   as it was when they had become slow.
+   method, with the factors of K_LL at a displacement that may lie many steps back, at first that of the undeformed body. These factors
+   become worse as the body turns, and fail after 23 degrees. When a balance has become slow, new ones are made: at the start of the next
+   controller step or, within a controller step, before the next substep's balance. In the second case they are not those that the step
+   began with, so that a restore has to make these again, for the step to end with the same bits when it is repeated.
 */
 #include "explicitimpl.h"
 
