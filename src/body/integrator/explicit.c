@@ -100,17 +100,17 @@ static PetscErrorCode SetRows(Body body, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Save(Body body)
+static PetscErrorCode Save(Body body, BodySlot slot)
 {
   PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceSave(GetLayer(body), body));
+  if (GetLayer(body)) PetscCall(LayerBalanceSave(GetLayer(body), body, slot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Restore(Body body)
+static PetscErrorCode Restore(Body body, BodySlot slot)
 {
   PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceRestore(GetLayer(body), body));
+  if (GetLayer(body)) PetscCall(LayerBalanceRestore(GetLayer(body), body, slot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

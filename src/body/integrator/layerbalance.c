@@ -4,8 +4,10 @@
      K_LL du = (forces - internal force)_L,
 
    with prescribed rows held and Robin rows on their springs. One round is exact for a linear material. Others repeat it by chord Newton's
-   method: with the factors of the undeformed layer or, since these become worse as the body turns (they fail at 23 degrees), of the layer
-   as it was when they had become slow.
+   method, with the factors of K_LL at a displacement that may lie many steps back, at first that of the undeformed body. These factors
+   become worse as the body turns, and fail after 23 degrees. When a balance has become slow, new ones are made: at the start of the next
+   controller step or, within a controller step, before the next substep's balance. In the second case they are not those that the step
+   began with, so that a restore has to make these again, for the step to end with the same bits when it is repeated.
 */
 #include "explicitimpl.h"
 
@@ -19,15 +21,20 @@
 /* or below this part of the norm of displacements and reference positions of all nodes, whose round-off is part of any change */
 #define ROUND_OFF (4 * PETSC_MACHINE_EPSILON)
 
+/* Factors of a nonlinear layer */
+typedef struct {
+  Vec       point;  /* the displacement that they are made at [m] */
+  PetscInt  number; /* of these factors, counted as they are made */
+  PetscBool slow;   /* the last balance with them was */
+} Factors;
+
 struct _n_LayerBalance {
   IS         dofs;          /* of the layer, numbers in the vectors of the body */
   Vec        rhs, solution; /* of the layer */
   VecScatter scatter;       /* from a vector of the body */
   PetscReal  reach;         /* norm of the reference positions of all nodes [m] */
-  /* of nonlinear bodies */
-  PetscBool slow;         /* the last balance was */
-  Vec       point, saved; /* where the factors are made, and where those were that the controller step began with [m] */
-  PetscBool changed;      /* these are not the same */
+  Factors    now, aside[BODY_SLOTS];
+  PetscInt   n_made;
 };
 
 /* With contact: under the constraints of the rows; else as if there were no rows */
@@ -44,7 +51,6 @@ static PetscErrorCode SolveLayer(LayerBalance layer, Body body, PetscBool contac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The factors at layer->point */
 static PetscErrorCode Refactor(LayerBalance layer, Body body)
 {
   KSP ksp;
@@ -53,35 +59,47 @@ static PetscErrorCode Refactor(LayerBalance layer, Body body)
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
   PetscCall(KSPGetOperators(ksp, &K, NULL));
-  PetscCall(BodyAssembleLayer(body, layer->point, K));
+  PetscCall(BodyAssembleLayer(body, layer->now.point, K));
   PetscCall(ConstrainedSolverRefactor(body->solver));
-  layer->slow = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The state of the body has become the start of the next controller step */
-PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body)
+/* New factors at displacement u of the body */
+static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
 {
   PetscFunctionBegin;
-  if (layer->slow) {
-    PetscCall(BodyGatherLayer(body, body->state.u, layer->point));
-    PetscCall(Refactor(layer, body));
-    layer->changed = PETSC_TRUE;
-  }
-  if (layer->changed) PetscCall(VecCopy(layer->point, layer->saved));
-  layer->changed = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The controller step begins again */
-PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body)
-{
-  PetscFunctionBegin;
-  layer->slow = PETSC_FALSE;
-  if (!layer->changed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(layer->saved, layer->point));
+  PetscCall(BodyGatherLayer(body, u, layer->now.point));
+  layer->now.number = ++layer->n_made;
+  layer->now.slow   = PETSC_FALSE;
   PetscCall(Refactor(layer, body));
-  layer->changed = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The state of the body has been put aside. That of an accepted step is where slow factors are made anew, for all that starts there. */
+PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body, BodySlot slot)
+{
+  Factors *aside = &layer->aside[slot];
+
+  PetscFunctionBegin;
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  if (slot == BODY_SLOT_SAVED && layer->now.slow) PetscCall(RefactorAt(layer, body, body->state.u));
+  if (aside->number != layer->now.number) PetscCall(VecCopy(layer->now.point, aside->point));
+  aside->number = layer->now.number;
+  aside->slow   = layer->now.slow;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body, BodySlot slot)
+{
+  const Factors *aside = &layer->aside[slot];
+
+  PetscFunctionBegin;
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  layer->now.slow = aside->slow;
+  if (aside->number == layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
+  layer->now.number = aside->number;
+  PetscCall(VecCopy(aside->point, layer->now.point));
+  PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -95,11 +113,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
 
   PetscFunctionBegin;
   if (!linear) {
-    if (contact && layer->slow) {
-      PetscCall(BodyGatherLayer(body, u, layer->point));
-      PetscCall(Refactor(layer, body));
-      layer->changed = PETSC_TRUE;
-    }
+    if (contact && layer->now.slow) PetscCall(RefactorAt(layer, body, u));
     PetscCall(VecNorm(u, NORM_2, &round_off));
     round_off = ROUND_OFF * (round_off + layer->reach);
   }
@@ -120,7 +134,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     PetscCall(VecNorm(layer->solution, NORM_2, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
-    if (contact) layer->slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
+    if (contact) layer->now.slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
     if (change <= TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
   }
   SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
@@ -192,10 +206,12 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscCall(MatDestroy(&K));
   PetscCall(MatDestroy(&B));
   if (!body->model.linear) {
-    PetscCall(BodyCreateLayerVec(body, &layer->point));
-    PetscCall(VecZeroEntries(layer->point));
-    PetscCall(VecDuplicate(layer->point, &layer->saved));
-    PetscCall(VecCopy(layer->point, layer->saved));
+    PetscCall(BodyCreateLayerVec(body, &layer->now.point));
+    PetscCall(VecZeroEntries(layer->now.point));
+    for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
+      PetscCall(VecDuplicate(layer->now.point, &layer->aside[slot].point));
+      PetscCall(VecZeroEntries(layer->aside[slot].point));
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -207,8 +223,8 @@ PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
   PetscCall(ISDestroy(&(*layer)->dofs));
   PetscCall(VecDestroy(&(*layer)->rhs));
   PetscCall(VecDestroy(&(*layer)->solution));
-  PetscCall(VecDestroy(&(*layer)->point));
-  PetscCall(VecDestroy(&(*layer)->saved));
+  PetscCall(VecDestroy(&(*layer)->now.point));
+  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) PetscCall(VecDestroy(&(*layer)->aside[slot].point));
   PetscCall(VecScatterDestroy(&(*layer)->scatter));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);

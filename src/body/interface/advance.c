@@ -15,14 +15,12 @@
 @*/
 PetscErrorCode BodySave(Body body)
 {
-  PetscScalar *start, *end;
+  const PetscBool stepped = (PetscBool)(body->state.step != body->saved.step);
+  PetscScalar    *start, *end;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(VecCopy(body->state.u, body->saved.u));
-  PetscCall(VecCopy(body->state.v, body->saved.v));
-  PetscCall(VecCopy(body->state.a, body->saved.a));
-  if (body->rows.local && body->state.step != body->saved.step) {
+  if (body->rows.local && stepped) {
     const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
 
     for (PetscInt i = 0; i < 4; i++) {
@@ -31,19 +29,14 @@ PetscErrorCode BodySave(Body body)
       PetscCall(PetscArraycpy(start, end, body->rows.local));
     }
   }
-  if (body->loads) {
-    /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
-    if (body->time.substeps == 1 && body->state.step != body->saved.step) PetscCall(BodyAddWork(body, body->substep_start.u));
-    PetscCall(VecCopy(body->state.applied, body->saved.applied));
-    body->saved.external_work = body->state.external_work;
-  }
+  /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
+  if (body->loads && body->time.substeps == 1 && stepped) PetscCall(BodyAddWork(body, body->substep_start.u));
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
-  if (body->state.step != body->saved.step) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
-  body->saved.time = body->state.time;
-  body->saved.step = body->state.step;
-  /* The TS has added up its substeps, with another round-off than body->time. Loads are to see the same time whenever the step is made. */
+  if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
+  PetscCall(BodyStateCopy(&body->state, &body->saved));
+  /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
+  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
   body->iterate.known = PETSC_FALSE;
   body->repeats       = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -82,11 +75,10 @@ static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
 @*/
 PetscErrorCode BodyKeep(Body body)
 {
-  const Vec from[] = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(from[i], body->kept[i]));
+  PetscCall(BodyStateCopy(&body->state, &body->kept));
+  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,11 +97,10 @@ PetscErrorCode BodyKeep(Body body)
 @*/
 PetscErrorCode BodyReinstate(Body body)
 {
-  const Vec to[] = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  for (PetscInt i = 0; i < 4; i++) PetscCall(VecCopy(body->kept[i], to[i]));
+  PetscCall(BodyStateCopy(&body->kept, &body->state));
+  if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
   body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -201,26 +201,17 @@ static PetscErrorCode SetUpRows(Body body)
 @*/
 PetscErrorCode BodySetUp(Body body)
 {
-  Vec *always[] = {&body->state.u,
-                   &body->state.v,
-                   &body->state.a,
-                   &body->saved.u,
-                   &body->saved.v,
-                   &body->saved.a,
-                   &body->state.internal_force,
-                   &body->work.nodes[0],
-                   &body->work.nodes[1],
-                   &body->work.nodes[2]};
-  Vec *sweeps[] = {&body->iterate.u, &body->kept[0], &body->kept[1], &body->kept[2], &body->kept[3]};
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(body->mesh.dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
   PetscCall(SetUpRows(body));
-  for (size_t i = 0; i < sizeof(always) / sizeof(always[0]); i++) PetscCall(BodyCreateVec(body, always[i]));
-  if (body->rows.global) {
-    for (size_t i = 0; i < sizeof(sweeps) / sizeof(sweeps[0]); i++) PetscCall(BodyCreateVec(body, sweeps[i]));
+  PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));
+  PetscCall(BodyStateCreate(body, PETSC_FALSE, &body->saved));
+  for (PetscInt k = 0; k < 3; k++) PetscCall(BodyCreateVec(body, &body->work.nodes[k]));
+  if (body->rows.global) { /* else nobody repeats a step */
+    PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->kept));
+    PetscCall(BodyCreateVec(body, &body->iterate.u));
   }
   PetscCall(BodySetUpFreeRows(body));
   PetscCall(BodySetUpMass(body));
@@ -264,17 +255,11 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec   *vecs[]   = {&b->state.u,         &b->state.v,         &b->state.a,
-                       &b->saved.u,         &b->saved.v,         &b->saved.a,
-                       &b->substep_start.u, &b->substep_start.v, &b->state.internal_force,
-                       &b->iterate.u,       &b->work.nodes[0],   &b->work.nodes[1],
-                       &b->work.nodes[2],   &b->mesh.positions,  &b->mass.row_sum,
-                       &b->mass.orphans,    &b->state.applied,   &b->saved.applied,
-                       &b->mass.diagonal,   &b->mass.inverse,    &b->work.rows[0],
-                       &b->work.rows[1],    &b->work.rows[2],    &b->kept[0],
-                       &b->kept[1],         &b->kept[2],         &b->kept[3]};
-    Trace *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
-                       &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
+    Vec       *vecs[]   = {&b->iterate.u,     &b->mesh.positions, &b->mass.row_sum,  &b->mass.orphans, &b->mass.diagonal, &b->mass.inverse,
+                           &b->work.nodes[0], &b->work.nodes[1],  &b->work.nodes[2], &b->work.rows[0], &b->work.rows[1],  &b->work.rows[2]};
+    BodyState *states[] = {&b->state, &b->saved, &b->kept, &b->substep_start};
+    Trace     *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
+                           &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
 
     PetscCall(BodyDestroyRepeat(b));
     PetscCall(BodyIntegratorDestroy(b));
@@ -282,6 +267,7 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscCall(BodyDestroyProbe(b));
     PetscCall(BodyLoadsDestroy(b));
     for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
+    for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) PetscCall(BodyStateDestroy(states[i]));
     for (size_t i = 0; i < sizeof(traces) / sizeof(traces[0]); i++) PetscCall(TraceDestroy(traces[i]));
   }
   PetscCall(ConstrainedSolverDestroy(&b->solver));

@@ -112,10 +112,9 @@ struct _p_Body {
   BodyTime          time;
   BodyIntegrator    integrator;
   ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
-  /* state: as it is, at the start of the controller step, put aside by BodyKeep(), and u and v at the start of the substep, which are NULL
-     unless loads or the integrator read them */
-  BodyState state, saved, substep_start;
-  Vec       kept[4]; /* displacement, velocity, acceleration, internal force put aside by BodyKeep() */
+  BodyState         state, saved;  /* as it is; at the start of the controller step */
+  BodyState         kept;          /* put aside by BodyKeep() */
+  BodyState         substep_start; /* u and v, which are NULL unless loads or the integrator read them */
   /* interface */
   BodyRows                rows;
   BodyTraces              traces;
@@ -151,6 +150,9 @@ PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyGetLocalRead(Body, Vec, Vec *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyRestoreLocalRead(Body, Vec, Vec *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyCreateVec(Body, Vec *);
+PETSC_INTERN PetscErrorCode BodyStateCreate(Body, PetscBool, BodyState *);
+PETSC_INTERN PetscErrorCode BodyStateCopy(const BodyState *, BodyState *);
+PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);

@@ -8,6 +8,9 @@
 
 typedef struct _n_BodyIntegrator *BodyIntegrator;
 
+/* Where a state is put aside: the start of the controller step, or the end of one, while another is tried */
+typedef enum { BODY_SLOT_SAVED, BODY_SLOT_KEPT, BODY_SLOTS } BodySlot;
+
 /* Those marked (NULL) may be missing */
 typedef struct {
   PetscErrorCode (*setfromoptions)(Body); /* sets the defaults of the TS, calls TSSetFromOptions(), reads and checks its parameters */
@@ -15,15 +18,15 @@ typedef struct {
   PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* the rows that are marked, of all ranks, have new entries */
   PetscErrorCode (*checksubstep)(
       Body); /* (NULL) after TSStep(): an error that says why where the equations of the substep were not solved */
-  PetscErrorCode (*finishsubstep)(Body); /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever
-                                            else of the state the TS leaves undone */
-  PetscErrorCode (*repeat)(Body, const PetscScalar[],
-                           const PetscScalar[]); /* (NULL) after the one substep of a controller step: moves
-                 its end state to the present inputs, given by how much more force acts on forced and Robin rows [N],
-                 and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
-  PetscErrorCode (*save)(Body);                  /* (NULL) the present state has become the saved one */
-  PetscErrorCode (*restore)(Body); /* (NULL) the saved state is there again: what the integrator remembers must be as it was then, so that
-                                      the same integration gives the same bits */
+  /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever else of the state the TS leaves undone
+   */
+  PetscErrorCode (*finishsubstep)(Body);
+  /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
+     forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
+  PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
+  PetscErrorCode (*save)(Body, BodySlot);    /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
+  PetscErrorCode (*restore)(Body, BodySlot); /* (NULL) the state has been brought back: what the integrator remembers must be as it was
+                                                then, so that the same integration gives the same bits */
   PetscErrorCode (*freerows)(Body, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of the controller step if no
                                                       contact acts on any, without integrating [m]; may be set in setup() */
   PetscErrorCode (*compliancecolumn)(Body, PetscInt, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of each substep,

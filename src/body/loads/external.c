@@ -57,10 +57,6 @@ PetscErrorCode BodySetUpWork(Body body)
 {
   PetscFunctionBegin;
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!body->state.applied) {
-    PetscCall(BodyCreateVec(body, &body->state.applied));
-    PetscCall(BodyCreateVec(body, &body->saved.applied));
-  }
   body->state.external_work = body->saved.external_work = 0;
   PetscCall(ComputeApplied(body, body->state.applied));
   PetscCall(VecCopy(body->state.applied, body->saved.applied));

@@ -1,5 +1,43 @@
-/* The state of a body at the start of the controller step, brought back. */
+/* The state of a body as one thing: made, copied, brought back. */
 #include <body/layout/bodyimpl.h>
+
+/* With room for displacement, velocity, acceleration, what loads do, and for the internal force where it is wanted */
+PetscErrorCode BodyStateCreate(Body body, PetscBool internal_force, BodyState *state)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyCreateVec(body, &state->u));
+  PetscCall(BodyCreateVec(body, &state->v));
+  PetscCall(BodyCreateVec(body, &state->a));
+  if (internal_force) PetscCall(BodyCreateVec(body, &state->internal_force));
+  if (body->loads) PetscCall(BodyCreateVec(body, &state->applied));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What both have room for */
+PetscErrorCode BodyStateCopy(const BodyState *from, BodyState *to)
+{
+  PetscFunctionBegin;
+  PetscCall(VecCopy(from->u, to->u));
+  PetscCall(VecCopy(from->v, to->v));
+  PetscCall(VecCopy(from->a, to->a));
+  if (from->internal_force && to->internal_force) PetscCall(VecCopy(from->internal_force, to->internal_force));
+  if (from->applied && to->applied) PetscCall(VecCopy(from->applied, to->applied));
+  to->external_work = from->external_work;
+  to->time          = from->time;
+  to->step          = from->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyStateDestroy(BodyState *state)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDestroy(&state->u));
+  PetscCall(VecDestroy(&state->v));
+  PetscCall(VecDestroy(&state->a));
+  PetscCall(VecDestroy(&state->internal_force));
+  PetscCall(VecDestroy(&state->applied));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   BodyRestore - goes back to the state of the last `BodySave()`, bit for bit
@@ -21,17 +59,9 @@ PetscErrorCode BodyRestore(Body body)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(VecCopy(body->saved.u, body->state.u));
-  PetscCall(VecCopy(body->saved.v, body->state.v));
-  PetscCall(VecCopy(body->saved.a, body->state.a));
-  body->repeats    = PETSC_FALSE;
-  body->state.time = body->saved.time;
-  body->state.step = body->saved.step;
-  if (body->loads) {
-    PetscCall(VecCopy(body->saved.applied, body->state.applied));
-    body->state.external_work = body->saved.external_work;
-  }
+  PetscCall(BodyStateCopy(&body->saved, &body->state));
+  body->repeats = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body));
+  if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_SAVED));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

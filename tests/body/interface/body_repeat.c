@@ -171,11 +171,64 @@ static void a_lag_from_step_to_step_is_refused(void **state)
   }
 }
 
+/* A step, in between perhaps another that is taken back, and the next step */
+static BodyMeasures two_steps(const char integrator[], PetscBool tries)
+{
+  Body         body;
+  BodyTraces   traces;
+  BodyMeasures kept = {0}, other = {0}, back = {0}, end = {0};
+  NodeRows     rows;
+  PetscOptions options = solid_body_create(
+      &body, BLOCK "-ts_type %s -ts_time_step %.17g -gravity 0.3,-0.2 -boundary_displacement ymin -boundary_displacement_ymin 0,0.1*t",
+      integrator, STEP / 3);
+
+  touch_side(body, "ymax");
+  ok(BodySetControllerStep(body, 0, STEP));
+  set_node_rows(body, ROWS, row_nodes, row_directions, &rows);
+  ok(BodySetUp(body));
+  ok(BodyGetTraces(body, &traces));
+  condition_rows(body, &rows, BODY_FORCED);
+  load(&rows, &traces, 3, 0, 1e-2);
+  ok(BodyIntegrate(body));
+  if (tries) {
+    ok(BodyGetMeasures(body, &kept));
+    ok(BodyKeep(body));
+    load(&rows, &traces, 3, 0, 1);
+    ok(BodyIntegrate(body));
+    ok(BodyGetMeasures(body, &other));
+    assert_true(other.external_work != kept.external_work);
+    ok(BodyReinstate(body));
+    ok(BodyGetMeasures(body, &back));
+    assert_memory_equal(&back, &kept, sizeof(kept));
+  }
+  ok(BodySave(body));
+  load(&rows, &traces, 3, 1, 1e-2);
+  ok(BodyIntegrate(body));
+  ok(BodyGetMeasures(body, &end));
+  bar_destroy(&body, options);
+  return end;
+}
+
+/* The work of loads is part of the state that BodyKeep() puts aside: with several substeps, it is counted while they are made */
+static void what_is_kept_comes_back_with_its_work(void **state)
+{
+  static const char *const integrators[] = {TSALPHA2, TSCENTRALDIFFERENCE};
+
+  (void)state;
+  for (PetscInt i = 0; i < 2; i++) {
+    const BodyMeasures straight = two_steps(integrators[i], PETSC_FALSE), tried = two_steps(integrators[i], PETSC_TRUE);
+
+    assert_true(straight.external_work != 0);
+    assert_memory_equal(&tried, &straight, sizeof(tried));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(explicit_bodies_repeat_as_they_turn),
       cmocka_unit_test(implicit_bodies_repeat_as_they_turn),
+      cmocka_unit_test(what_is_kept_comes_back_with_its_work),
       cmocka_unit_test(a_lag_from_step_to_step_is_refused),
   };
 
