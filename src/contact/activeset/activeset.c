@@ -133,14 +133,6 @@ PetscErrorCode ContactSetConditions(Contact contact, ContactConditions condition
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a flag (0 or 1) is up on any rank */
-PetscErrorCode ContactOr(Contact contact, int *flag)
-{
-  PetscFunctionBegin;
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds what a body does to all gaps under unit contact forces; `displacement` is its rows' displacement under unit forces on
    them, all rows by all rows. A contact force pushes Neumann sides along the rows and Dirichlet sides against them, and so their
    displacements open and close the gap. */
