@@ -36,7 +36,8 @@ typedef const char *ContactType;
 
    Values:
 + `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
-- `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start stay there: all components of the displacement are equal
+- `CONTACT_LAW_TIED`         - nodes that lie within half a face, in 1-D half an element, of the partner at the start stay beside it:
+                               all components of the displacement are equal
 
    Level: beginner
 

@@ -22,7 +22,7 @@ PetscErrorCode ControllerRegisterAll(void)
 }
 
 /*@
-  ControllerCreate - creates a simulation; all about it comes from options
+  ControllerCreate - creates a simulation, whose times, bodies and contact come from options
 
   Collective
 
@@ -112,10 +112,9 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscCheck(controller->time_end > controller->time_start, comm, PETSC_ERR_USER_INPUT,
              "-time_end %g s must be later than -time_start %g s", (double)controller->time_end, (double)controller->time_start);
   quotient = (controller->time_end - controller->time_start) / controller->time_step;
-  PetscCheck(quotient < 2e9, comm, PETSC_ERR_USER_INPUT, "-time_step %g s is too small for %g s of simulated time",
+  PetscCheck(quotient < MOST_STEPS, comm, PETSC_ERR_USER_INPUT, "-time_step %g s is too small for %g s of simulated time",
              (double)controller->time_step, (double)(controller->time_end - controller->time_start));
-  /* the tolerance keeps a quotient that is a whole number but for round-off from being counted up */
-  controller->steps = (PetscInt)PetscCeilReal(quotient * (1 - 1e-12) - 1e-9);
+  controller->steps = (PetscInt)PetscCeilReal(quotient * (1 - STEPS_ROUND_OFF) - STEPS_FLOOR);
   for (PetscInt b = 0; b < controller->n_bodies; b++)
     PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ContactCreate(comm, &controller->contact));
@@ -166,7 +165,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CPU time of a process, its own and the system's on its behalf */
+/* CPU time of a process: in its own code, and in the system on its behalf [s] */
 static PetscLogDouble Seconds(const struct rusage *usage)
 {
   return (PetscLogDouble)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) +

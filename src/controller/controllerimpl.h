@@ -1,8 +1,14 @@
+/* Private to src/controller. */
 #pragma once
 #include <impakt/controller.h>
 #include <petsc/private/petscimpl.h>
 
 #define MAX_MONITORS 16
+/* Most controller steps in a run: they are counted in PetscInt, which has 32 bits */
+#define MOST_STEPS 2e9
+/* If the duration exceeds a whole number of controller steps by no more than this, relative and in steps, no step is added: round-off */
+#define STEPS_ROUND_OFF 1e-12
+#define STEPS_FLOOR     1e-9
 
 struct _p_Controller {
   PETSCHEADER(int);
@@ -16,9 +22,9 @@ struct _p_Controller {
   ControllerMonitorFn *monitor[MAX_MONITORS];
   void                *monitor_ctx[MAX_MONITORS];
   PetscErrorCode (*monitor_destroy[MAX_MONITORS])(void **);
-  /* the frame they see */
+  /* what they are shown, see ControllerFrame */
   BodyMeasures     *measures;
-  PetscBool        *has_obstacle; /* per body: it may touch one, which is something outside */
+  PetscBool        *has_obstacle; /* per body: it may touch an obstacle, whose force is one from outside */
   PetscReal        *contact_positions, *contact_velocities;
   ContactPairState *pair_states;
   /* cost */

@@ -1,7 +1,11 @@
-/* What exact solutions need to know of the bodies, in their initial state. */
+/* The two bars of an exact solution, from the initial state of the bodies. */
 #include "exactimpl.h"
 
-/* Smallest and largest of positions . normal over all nodes */
+/* Bars move as a whole and undeformed if their energies are those of their mean velocity but for this part: round-off of sums over all
+   nodes */
+#define ENERGY_ROUND_OFF 1e-9
+
+/* Smallest and largest coordinate along the normal of all nodes [m] */
 static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal normal[], PetscReal *lower, PetscReal *upper)
 {
   const PetscScalar *x;
@@ -25,6 +29,7 @@ static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal nor
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A bar and its energies at the start */
 static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar, BodyMeasures *measures)
 {
   Material  material;
@@ -59,7 +64,7 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Two bars, undeformed, that fly towards each other along the normal without turning */
+/* Ends with an error unless the two bars are undeformed and fly towards each other along the normal without turning */
 static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar bars[2], const BodyMeasures measures[2])
 {
   PetscFunctionBegin;
@@ -71,8 +76,9 @@ static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar ba
     const PetscReal scale   = bars[i].mass * (PetscSqr(bars[0].velocity) + PetscSqr(bars[1].velocity));
     const PetscReal kinetic = 0.5 * bars[i].mass * PetscSqr(bars[i].velocity);
 
-    PetscCheck(PetscAbsReal(measures[i].potential) <= 1e-9 * scale && PetscAbsReal(measures[i].kinetic - kinetic) <= 1e-9 * scale, comm,
-               PETSC_ERR_USER_INPUT,
+    PetscCheck(PetscAbsReal(measures[i].potential) <= ENERGY_ROUND_OFF * scale &&
+                   PetscAbsReal(measures[i].kinetic - kinetic) <= ENERGY_ROUND_OFF * scale,
+               comm, PETSC_ERR_USER_INPUT,
                "-exact %s needs bars that start undeformed and move as a whole along the contact normal, but '%s' starts with %g J "
                "potential and %g J kinetic energy, where its mean velocity makes %g J; change its initial state, or leave -exact out",
                type, bars[i].name, (double)measures[i].potential, (double)measures[i].kinetic, (double)kinetic);
@@ -80,7 +86,7 @@ static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar ba
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The two bars, where and when they first touch, and the velocity of their centre of mass */
+/* Finds the two bars, where and when they first touch, and the velocity of their centre of mass */
 PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
 {
   MPI_Comm     comm = PetscObjectComm((PetscObject)controller);

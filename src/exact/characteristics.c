@@ -2,46 +2,53 @@
    Impact of two linear elastic bars of any lengths, materials and cross-sections by the method of characteristics.
 
    In a bar of wave speed c = sqrt(E / rho) and impedance Z = sqrt(E rho) A, velocity and compressive force are v = o + i and
-   f = +-Z (o - i), where o runs from the contact face inwards and i towards it, both with speed c and unchanged on their way.
-   The other end is free and sends back what comes: at the contact face i(t) = o(t - 2 L/c), half of the initial velocity at first.
+   f = +-Z (o - i). The wave o runs from the contact face inwards, the wave i runs towards the contact face, both with speed c and without
+   changing. The other end is free and reflects: at the contact face i(t) = o(t - 2 L/c), which is half of the initial velocity at first.
 
-   A contact force f >= 0 makes o = i -+ f / Z, minus on the Dirichlet side, whose contact normal points to the partner. While the
-   gap is closed, equal velocities of both faces ask for f = 2 (i_0 - i_1) / (1/Z_0 + 1/Z_1); where that is a pull, the force is
-   zero, and the gap opens at the rate 2 (i_1 - i_0). So everything at the contact faces is constant from event to event: what went
-   out in an earlier event comes back from a free end, or an open gap closes.
+   A contact force f >= 0 makes o = i -+ f / Z, with a minus on the Dirichlet side, whose contact normal points to the partner. While the
+   gap is closed, both faces have the same velocity if f = 2 (i_0 - i_1) / (1/Z_0 + 1/Z_1). If this f is a pull, the force is zero instead,
+   and the gap opens at the rate 2 (i_1 - i_0). So velocities and force at the contact faces are constant from one event to the next. An
+   event is the return of a wave that went out in an earlier event, or the closing of an open gap.
 */
 #include "exactimpl.h"
 #include <math.h>
 
-#define ROUND_OFF  1e-12 /* relative to the duration, the velocities, or the length: what counts as the same */
+/* Times, velocities and positions are the same if they differ by less, relative to the duration, the speed of approach, and the length:
+   some 10^4 times the round-off of one of them, since round-off adds up over reflections */
+#define ROUND_OFF 1e-12
+/* The limit of events, and so of memory and time, where bars are short beside the duration of the run */
 #define MAX_EVENTS 20000
+/* The mean force is that of the time from impact to release without this part at either end, as in the summary of a run */
+#define FORCE_MARGIN 0.2
 
-/* What is true from one event to the next */
+/* What holds from an event to the next one */
 typedef struct {
-  PetscReal time;                       /* of the event [s] */
-  PetscReal out[2], velocity[2], force; /* of each side's wave from the contact face, of the face [m/s]; N */
-  PetscReal position[2];                /* of the contact faces at the event [m] */
+  PetscReal time;        /* of the event [s] */
+  PetscReal out[2];      /* o of each side [m/s] */
+  PetscReal velocity[2]; /* of each contact face [m/s] */
+  PetscReal force;       /* N */
+  PetscReal position[2]; /* of each contact face at the event [m] */
 } Event;
 
 typedef struct {
   PetscReal impedance[2]; /* kg/s */
   PetscReal period[2];    /* 2 L/c [s] */
-  PetscReal before[2];    /* what went out before the run [m/s] */
-  PetscReal end;          /* of the run [s] */
+  PetscReal before[2];    /* o of each side before the run [m/s] */
+  PetscReal end;          /* end of the run [s] */
   PetscReal time_scale, velocity_scale, length_scale;
   PetscInt  n, capacity;
   Event    *events; /* the first at the start of the run */
 } Characteristics;
 
-/* What makes the events, as it is after the last of them */
+/* The state after the last event, from which the next one follows */
 typedef struct {
-  PetscReal in[2];   /* m/s */
-  PetscInt  next[2]; /* event that each side's free end sends back next */
+  PetscReal in[2];   /* i of each side [m/s] */
+  PetscInt  next[2]; /* the event whose o the free end of each side reflects next */
   PetscReal gap;     /* m */
   PetscBool closed;
 } State;
 
-/* Adds an event with what follows from the waves that come in: contact force, waves that go out, whether the gap opens */
+/* Adds an event: contact force, waves that go out and opening of the gap follow from the waves that come in */
 static PetscErrorCode AddEvent(Characteristics *c, State *state, PetscReal time, const PetscReal position[2])
 {
   const PetscReal approach = 2 * (state->in[0] - state->in[1]), small = ROUND_OFF * c->velocity_scale;
@@ -60,7 +67,7 @@ static PetscErrorCode AddEvent(Characteristics *c, State *state, PetscReal time,
     const PetscReal before = c->n ? event[-1].out[side] : c->before[side];
 
     event->out[side] = state->in[side] + (side ? 1 : -1) * event->force / c->impedance[side];
-    /* a jump of round-off is none: it would come back as an event, and so for ever */
+    /* a jump of round-off is ignored: it would come back as an event, again and again */
     if (PetscAbsReal(event->out[side] - before) <= small) event->out[side] = before;
     event->velocity[side] = state->in[side] + event->out[side];
     event->position[side] = position[side];
@@ -69,7 +76,7 @@ static PetscErrorCode AddEvent(Characteristics *c, State *state, PetscReal time,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The next jump that a free end sends back, infinite where there is none yet */
+/* When the next jump that a free end reflects arrives at the contact face [s]; infinite if there is none */
 static PetscReal NextArrival(const Characteristics *c, State *state, PetscInt side)
 {
   const Event *events = c->events;
@@ -79,6 +86,7 @@ static PetscReal NextArrival(const Characteristics *c, State *state, PetscInt si
   return *k < c->n ? events[*k].time + c->period[side] : PETSC_INFINITY;
 }
 
+/* Finds all events of the run */
 static PetscErrorCode FindEvents(MPI_Comm comm, Characteristics *c, const ExactBar bars[2], PetscReal start)
 {
   const PetscReal small       = ROUND_OFF * c->time_scale;
@@ -114,7 +122,7 @@ static PetscErrorCode FindEvents(MPI_Comm comm, Characteristics *c, const ExactB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The last event before a time, by more than round-off; -1 where there is none */
+/* The last event before a time; -1 if there is none */
 static PetscInt FindEvent(const Characteristics *c, PetscReal time)
 {
   PetscInt before = -1, after = c->n;
@@ -129,8 +137,8 @@ static PetscInt FindEvent(const Characteristics *c, PetscReal time)
 }
 
 /*
-   Integrals over a bar of o + i, (o + i)^2 and (o - i)^2, with the time s = x/c that a wave takes from the contact face to x for
-   measure. At x, o is what went out s before, and i what went out 2 L/c - s before.
+   Integrals over a bar of o + i, (o + i)^2 and (o - i)^2 with respect to s = x/c, the time that a wave takes from the contact face to x. At
+   x, o left the contact face a time s ago, and i a time 2 L/c - s ago.
 */
 static void Integrate(const Characteristics *c, PetscInt side, PetscReal time, PetscReal integrals[3])
 {
@@ -169,13 +177,13 @@ static PetscErrorCode ExactEvaluate_Characteristics(Exact exact, PetscInt side, 
   solution->contact_velocity = event->velocity[side];
   solution->contact_force    = event->force;
   solution->mean_velocity    = 2 / c->period[side] * integrals[0];
-  /* rho A / 2 v^2 dx = Z / 2 v^2 ds, and sigma^2 A / (2 E) dx the same with f / Z for v */
+  /* rho A / 2 v^2 dx = Z / 2 v^2 ds, and sigma^2 A / (2 E) dx = Z / 2 (f / Z)^2 ds */
   solution->kinetic   = 0.5 * c->impedance[side] * integrals[1];
   solution->potential = 0.5 * c->impedance[side] * integrals[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Impulse between two times, not later than the end of the run */
+/* Impulse between two times of the run [N s] */
 static PetscReal Impulse(const Characteristics *c, PetscReal begin, PetscReal end)
 {
   PetscReal sum = 0;
@@ -188,7 +196,7 @@ static PetscReal Impulse(const Characteristics *c, PetscReal begin, PetscReal en
   return sum;
 }
 
-/* Times of contact, mean force and impulse; what the run does not reach is not a number */
+/* Times of contact, mean force and impulse; not-a-number if the run ends before them */
 static void SummariseContact(Exact exact, const Characteristics *c)
 {
   PetscReal duration;
@@ -198,10 +206,12 @@ static void SummariseContact(Exact exact, const Characteristics *c)
     if (c->events[k].force == 0 && c->events[k - 1].force > 0) exact->release = c->events[k].time;
   if (c->events[c->n - 1].force > 0) exact->release = NAN;
   duration       = exact->release - exact->impact;
-  exact->force   = Impulse(c, exact->impact + 0.2 * duration, exact->release - 0.2 * duration) / (0.6 * duration);
+  exact->force   = Impulse(c, exact->impact + FORCE_MARGIN * duration, exact->release - FORCE_MARGIN * duration) /
+                   ((1 - 2 * FORCE_MARGIN) * duration);
   exact->impulse = PetscIsNanReal(exact->release) ? NAN : Impulse(c, exact->start, c->end);
 }
 
+/* Notes the potential energy at a time if it is the largest so far */
 static PetscErrorCode TryPeak(Exact exact, PetscReal time)
 {
   ExactSolution solution;
@@ -216,8 +226,8 @@ static PetscErrorCode TryPeak(Exact exact, PetscReal time)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The potential energy is linear between the times at which jumps enter or leave the bar, or meet in it: one that went out at t
-   meets one that went out at t' <= t and has been reflected at L/c + (t + t') / 2 */
+/* Finds the peak of the potential energy, which is linear in time between the times at which jumps enter the bar, leave it, or meet in it.
+   A jump that went out at t meets one that went out at t' <= t, and has been reflected, at the time L/c + (t + t') / 2. */
 static PetscErrorCode FindPeak(Exact exact)
 {
   const Characteristics *c = (const Characteristics *)exact->data;
@@ -242,7 +252,7 @@ static PetscErrorCode ExactDestroy_Characteristics(Exact exact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For any bars; refuses a run in which waves arrive too often */
+/* The solution for any two bars. Ends with an error if waves arrive at the contact too often in the run. */
 PetscErrorCode ExactCreate_Characteristics(Controller controller, Exact exact)
 {
   const ExactBar  *bars = exact->bars;

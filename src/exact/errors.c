@@ -7,6 +7,7 @@ enum { CONTACT_POSITION, CONTACT_VELOCITY, CONTACT_FORCE, KINETIC, POTENTIAL, ME
 
 _Static_assert(sizeof(ExactSolution) == EXACT_QUANTITIES * sizeof(PetscReal), "ExactSolution is read as an array here");
 
+/* Component along the normal */
 static PetscReal Along(const PetscReal normal[], const PetscReal x[])
 {
   return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2];
@@ -90,7 +91,7 @@ static PetscReal RelativeMaximum(const ExactDistance *distance)
   Level: intermediate
 
   Note:
-  The peak of the potential energy is not told of a run that ends before it, the release not of one that ends in contact.
+  The error of the peak of the potential energy is not-a-number if the run ends before the peak; that of the release if it ends in contact.
 
 .seealso: `Exact`, `ExactMonitor()`
 @*/

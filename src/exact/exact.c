@@ -1,4 +1,4 @@
-/* The class: creation, what every type tells, destruction. */
+/* The class: creation, what all types of solution tell, destruction. */
 #include "exactimpl.h"
 #include <math.h>
 
@@ -28,14 +28,14 @@ static const struct {
   Level: intermediate
 
   Note:
-  Refuses, with the reason, bodies for which it is not the solution: more than two, ones that do not approach or are not at rest in
-  themselves, and what else the type demands.
+  Ends with an error that gives the reason if it is not the solution for these bodies: if there are more than two, if they do not approach
+  each other or are deformed at the start, or if they do not meet what the type demands.
 
 .seealso: `Exact`, `ExactEvaluate()`, `ExactMonitor()`
 @*/
 PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
 {
-  struct _n_Exact e          = {0}; /* memory is taken when nothing is left to refuse */
+  struct _n_Exact e          = {0}; /* on the stack, so that nothing is left to be freed after an error */
   char            known[256] = "none";
   PetscInt        found      = -1;
 

@@ -1,3 +1,4 @@
+/* What the exact solutions share. Private to src/exact. */
 #pragma once
 #include <impakt/exact.h>
 
@@ -17,27 +18,27 @@ typedef struct {
   PetscReal   velocity;               /* m/s */
 } ExactBar;
 
-/* Between the run and the solution, over the steps so far */
+/* How far one quantity of the run is from the solution, over the steps so far */
 typedef struct {
-  PetscReal square, largest;     /* of the solution: sum of its squares, and largest without sign */
-  PetscReal error_square, worst; /* the same of the error */
+  PetscReal square, largest;     /* sum of the squares of the exact values, and the largest of them without sign */
+  PetscReal error_square, worst; /* the same of the errors */
 } ExactDistance;
 
 struct _n_Exact {
   ExactType type;
   ExactOps  ops;
-  void     *data; /* of the type */
+  void     *data; /* what the type keeps */
   /* the problem */
   PetscInt  body[2];         /* the bars on the Dirichlet and the Neumann side, among the controller's bodies */
   ExactBar  bars[2];         /* in the same order */
   PetscReal normal[3];       /* of the contact face on the Dirichlet side, outward */
   PetscReal start;           /* s */
   PetscReal frame_velocity;  /* of the centre of mass [m/s] */
-  PetscReal impact_position; /* point of impact along the normal, as it lies at the start [m] */
-  /* the solution, in short; each type fills it in */
+  PetscReal impact_position; /* where the bars meet, along the normal, as seen from the centre of mass at the start [m] */
+  /* figures of the solution, which each type fills in */
   PetscReal impact, release; /* first contact, end of the last contact [s] */
-  PetscReal turn, peak;      /* when the bar on the Dirichlet side has its largest potential energy [s], and that [J] */
-  PetscReal force, impulse;  /* mean over the middle three fifths from impact to release [N]; over all of it [N s] */
+  PetscReal turn, peak;      /* when the potential energy of the bar on the Dirichlet side is largest [s], and how large it is then [J] */
+  PetscReal force, impulse;  /* mean force over the middle three fifths of the time from impact to release [N]; impulse of the run [N s] */
   /* the run */
   ExactDistance distance[2][EXACT_QUANTITIES]; /* of each bar, of each member of ExactSolution */
   PetscReal     peak_potential;                /* of the bar on the Dirichlet side [J] */

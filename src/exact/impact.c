@@ -1,28 +1,33 @@
 /* Impact of two equal elastic bars: Hoy, Tezaur, Mota, eqs. (4.1) to (4.7), after Carpenter, Taylor, Katona (1991). */
 #include "exactimpl.h"
 
+/* Figures of the bars that differ by less, relative, are equal: options have some digits, and masses are sums over nodes */
+#define EQUAL 1e-9
+/* Times are the same if they differ by less than this part of the duration of contact or of the start: steps add up round-off */
+#define ROUND_OFF 1e-12
+
 static PetscErrorCode CheckEqual(MPI_Comm comm, const ExactBar bars[2], const char what[], const char unit[], PetscReal one,
                                  PetscReal other)
 {
   PetscFunctionBegin;
-  PetscCheck(PetscAbsReal(one - other) <= 1e-9 * PetscMax(PetscAbsReal(one), PetscAbsReal(other)), comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(PetscAbsReal(one - other) <= EQUAL * PetscMax(PetscAbsReal(one), PetscAbsReal(other)), comm, PETSC_ERR_USER_INPUT,
              "-exact impact is known for two equal bars only, but the %s of '%s' is %.12g %s and that of '%s' %.12g %s; make them equal, "
              "or leave -exact out",
              what, bars[0].name, (double)one, unit, bars[1].name, (double)other, unit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Half the speed of approach: what each bar has, seen from the point of impact */
+/* The speed of each bar as seen from the centre of mass: half the speed of approach [m/s] */
 static PetscReal Speed(Exact exact)
 {
   return 0.5 * (exact->bars[0].velocity - exact->bars[1].velocity);
 }
 
-/* Seen from the point of impact, the partner is the mirror image */
+/* As seen from the centre of mass, the bar on the other side is the mirror image of the first */
 static PetscErrorCode ExactEvaluate_Impact(Exact exact, PetscInt side, PetscReal time, ExactSolution *solution)
 {
   const PetscReal v = Speed(exact), frame = exact->frame_velocity, mass = exact->bars[0].mass, energy = exact->peak, sign = side ? -1 : 1;
-  const PetscReal tolerance = 1e-12 * PetscMax(PetscAbsReal(exact->start), exact->release - exact->start);
+  const PetscReal tolerance = ROUND_OFF * PetscMax(PetscAbsReal(exact->start), exact->release - exact->start);
   PetscReal       position, velocity, mean, potential;
 
   PetscFunctionBegin;
@@ -32,7 +37,8 @@ static PetscErrorCode ExactEvaluate_Impact(Exact exact, PetscInt side, PetscReal
     mean      = v;
     potential = 0;
   } else if (time <= exact->release + tolerance) {
-    const PetscReal part = (time - exact->impact) / (exact->turn - exact->impact); /* of the bar that the wave has met: 2 at release */
+    /* of the bar that the wave has passed: 1 when it is at the free end, 2 when it is back */
+    const PetscReal part = (time - exact->impact) / (exact->turn - exact->impact);
 
     position  = 0;
     velocity  = 0;
@@ -53,7 +59,7 @@ static PetscErrorCode ExactEvaluate_Impact(Exact exact, PetscInt side, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses, with the reason, bars that are not equal */
+/* The solution for two equal bars. Ends with an error if they are not equal. */
 PetscErrorCode ExactCreate_Impact(Controller controller, Exact exact)
 {
   MPI_Comm        comm = PetscObjectComm((PetscObject)controller);

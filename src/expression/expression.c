@@ -1,5 +1,7 @@
+/* The class: a formula, a table or a number, and what it depends on. */
 #include "expressionimpl.h"
 
+/* Finds out what the text of an expression is, and reads or parses it */
 static PetscErrorCode Fill(Expression expression, MPI_Comm comm)
 {
   PetscBool is_table, is_free;
@@ -72,7 +74,7 @@ PetscErrorCode ExpressionCreate(MPI_Comm comm, const char option[], const char t
 - point      - place, normal and time
 
   Output Parameter:
-. value - finite, or there is an error
+. value - a finite number; if the expression has none there, the call ends with an error
 
   Level: intermediate
 
@@ -93,7 +95,7 @@ PetscErrorCode ExpressionEvaluate(Expression expression, const ExpressionPoint *
 }
 
 /*@
-  ExpressionIsConstant - whether it is a plain number
+  ExpressionIsConstant - whether an expression has the same value everywhere and at all times
 
   Not Collective
 
@@ -117,7 +119,7 @@ PetscErrorCode ExpressionIsConstant(Expression expression, PetscBool *constant, 
 }
 
 /*@
-  ExpressionIsSteady - whether it does without time
+  ExpressionIsSteady - whether an expression does not depend on time
 
   Not Collective
 
@@ -139,7 +141,7 @@ PetscErrorCode ExpressionIsSteady(Expression expression, PetscBool *steady)
 }
 
 /*@
-  ExpressionIsUniform - whether it is the same everywhere
+  ExpressionIsUniform - whether an expression has the same value everywhere
 
   Not Collective
 
@@ -161,7 +163,7 @@ PetscErrorCode ExpressionIsUniform(Expression expression, PetscBool *uniform)
 }
 
 /*@
-  ExpressionUsesNormal - whether it makes sense on surfaces only
+  ExpressionUsesNormal - whether an expression depends on the normal, and so has a meaning on surfaces only
 
   Not Collective
 

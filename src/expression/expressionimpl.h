@@ -1,3 +1,4 @@
+/* What formulas and tables share. Private to src/expression. */
 #pragma once
 #include <impakt/expression.h>
 
@@ -6,8 +7,8 @@ typedef struct _n_Table *Table;
 struct _n_Expression {
   char           *option, *text;
   PetscBool       uses_position, uses_normal, uses_time;
-  PetscReal       constant; /* the value, where it uses none of these */
-  void           *parser;   /* muParser's, with its variables bound to `point`; NULL: constant, or a table */
+  PetscReal       constant; /* the value, if it uses none of these */
+  void           *parser;   /* muParser's, which reads its variables from `point`; NULL for a constant or a table */
   ExpressionPoint point;
   Table           table;
 };

@@ -2,13 +2,13 @@
 #include "expressionimpl.h"
 #include <muParserDLL.h>
 
-/* muParser would print errors of formulas on standard output; mupError() tells of them as well */
+/* An error handler that does nothing: muParser's own would print errors on standard output, and mupError() tells of them as well */
 static void KeepQuiet(muParserHandle_t parser)
 {
   (void)parser;
 }
 
-/* This interface has no say in how wide the characters of the library are, and could only pass garbage to a wide one */
+/* Ends with an error if muParser was built for wide characters, which its C interface here cannot pass */
 static PetscErrorCode CheckNarrow(muParserHandle_t parser, MPI_Comm comm)
 {
   const char *version = (const char *)mupGetVersion(parser);
@@ -19,7 +19,7 @@ static PetscErrorCode CheckNarrow(muParserHandle_t parser, MPI_Comm comm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* muParser lets a formula set its variables (x = 3) */
+/* Whether a formula sets a variable (x = 3), which muParser would allow */
 static PetscBool Assigns(const char text[])
 {
   for (const char *c = text; *c; c++) {
@@ -30,7 +30,8 @@ static PetscBool Assigns(const char text[])
   return PETSC_FALSE;
 }
 
-/* reason: empty if all is well; position: from 1, 0 where it is not known */
+/* Compiles a formula. `reason` says why that is not possible, and is empty if it is; `position` is the character in question, from 1, or 0
+   if it is not known. */
 static PetscErrorCode Compile(muParserHandle_t parser, const char text[], char reason[], size_t size, PetscInt *position)
 {
   int n_values = 0;
@@ -51,12 +52,13 @@ static PetscErrorCode Compile(muParserHandle_t parser, const char text[], char r
 
     PetscCall(PetscStrncpy(reason, mupGetErrorMsg(parser), size));
     PetscCall(PetscStrlen(reason, &length));
-    while (length && strchr(". ", reason[length - 1])) reason[--length] = 0; /* the sentence goes on */
+    while (length && strchr(". ", reason[length - 1])) reason[--length] = 0; /* the message goes on after it */
     *position = (PetscInt)mupGetErrorPos(parser) + 1;
   } else if (n_values != 1) PetscCall(PetscSNPrintf(reason, size, "it has %d values, separated by commas, where one is wanted", n_values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds out which variables a formula uses, and its value at zero */
 static PetscErrorCode FindVariables(Expression expression)
 {
   const int n = mupGetExprVarNum(expression->parser);
@@ -71,11 +73,12 @@ static PetscErrorCode FindVariables(Expression expression)
     else if (variable >= expression->point.x && variable < expression->point.x + 3) expression->uses_position = PETSC_TRUE;
     else expression->uses_normal = PETSC_TRUE;
   }
-  expression->constant = mupEval(expression->parser); /* at zero; from now on, it is compiled */
+  expression->constant = mupEval(expression->parser); /* at zero; this also makes muParser compile the formula */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds what the formula depends on, and keeps a parser if that is anything. All ranks parse the same text, so all succeed or none. */
+/* Parses a formula, finds out what it depends on, and keeps the parser if that is anything. All ranks parse the same text, so that all of
+   them succeed or none. */
 PetscErrorCode ExpressionParse(Expression expression, MPI_Comm comm)
 {
   const char *const positions[] = {"x", "y", "z"}, *const normals[] = {"nx", "ny", "nz"};
@@ -86,7 +89,7 @@ PetscErrorCode ExpressionParse(Expression expression, MPI_Comm comm)
   PetscFunctionBegin;
   parser = mupCreate(muBASETYPE_FLOAT);
   PetscCheck(parser, comm, PETSC_ERR_LIB, "muParser cannot be started");
-  expression->parser = parser; /* freed with the expression, whatever happens next */
+  expression->parser = parser; /* from now on it is freed with the expression */
   PetscCall(CheckNarrow(parser, comm));
   mupSetErrorHandler(parser, KeepQuiet);
   for (int d = 0; d < 3; d++) {
@@ -111,7 +114,7 @@ PetscErrorCode ExpressionParse(Expression expression, MPI_Comm comm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At expression->point */
+/* The value of a formula at expression->point */
 PetscErrorCode ExpressionEvaluateFormula(Expression expression, PetscReal *value)
 {
   PetscFunctionBegin;

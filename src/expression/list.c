@@ -1,7 +1,7 @@
 /* Several expressions in one text. */
 #include "expressionimpl.h"
 
-/* The length of the text up to the next comma outside parentheses */
+/* Length of the text up to the next comma outside parentheses, or to its end */
 static size_t FindComma(const char text[])
 {
   int    depth = 0;
@@ -42,7 +42,7 @@ PetscErrorCode ExpressionListCount(const char text[], PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One component, without the blanks around it; NULL for a free one */
+/* The expression of one component, without the blanks around it; NULL if the component is the word `free` */
 static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const char text[], size_t length, PetscBool allow_free,
                                       Expression *expression)
 {
@@ -76,7 +76,7 @@ static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const 
 - allow_free - whether a component may be the word `free`
 
   Output Parameter:
-. list - n expressions, `NULL` for free ones; none of them is left to be freed after an error
+. list - n expressions, `NULL` for components that are free; after an error all are freed
 
   Level: intermediate
 

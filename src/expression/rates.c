@@ -1,10 +1,13 @@
 /* Derivatives in time of what users give as functions of time. */
 #include "expressionimpl.h"
 
+/* Points of a difference formula; the notes of ExpressionEvaluateRates() give its errors */
 #define RATE_POINTS 7
+/* Their distance, in parts of the step */
+#define RATE_SPACING 0.25
 
-/* Weights of the values at 0, 1, 2, ... for value, first and second derivative at x (Fornberg 1988, Generation of finite
-   difference formulas on arbitrarily spaced grids, Math. Comp. 51, recursion of section 2) */
+/* Weights of the values at 0, 1, 2, ..., by which value, first and second derivative at x are sums of these (Fornberg 1988, Generation of
+   finite difference formulas on arbitrarily spaced grids, Math. Comp. 51, recursion of section 2) */
 static void FindWeights(PetscReal x, PetscReal weights[3][RATE_POINTS])
 {
   PetscReal c1 = 1;
@@ -57,7 +60,7 @@ static void FindWeights(PetscReal x, PetscReal weights[3][RATE_POINTS])
 PetscErrorCode ExpressionEvaluateRates(Expression expression, const ExpressionPoint *point, PetscReal start, PetscReal step,
                                        PetscReal values[])
 {
-  const PetscReal h      = step / 4;
+  const PetscReal h      = RATE_SPACING * step;
   ExpressionPoint at     = *point;
   PetscReal       offset = RATE_POINTS / 2, weights[3][RATE_POINTS];
 

@@ -7,7 +7,8 @@ struct _n_Table {
   PetscReal *times, *values;
 };
 
-#define TABLE_ROWS_MAX 100000000 /* more than a file that somebody means; two arrays of doubles stay below 2 GB */
+/* More lines than any table that is meant: the two arrays of numbers stay below 2 GB, and their sizes below PETSC_INT_MAX */
+#define TABLE_ROWS_MAX 100000000
 
 static PetscErrorCode AddRow(Table table, PetscReal time, PetscReal value)
 {
@@ -22,8 +23,8 @@ static PetscErrorCode AddRow(Table table, PetscReal time, PetscReal value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One number, what separates it from the next one skipped too; NULL where there is none. Numbers are read as the C locale has
-   them, which no part of the program leaves. */
+/* Reads a number and skips what separates it from the next one; returns where that begins, or NULL if there is no number. Numbers have the
+   form of the C locale, which no part of the program changes. */
 static char *ReadNumber(char text[], PetscReal *value)
 {
   char *end;
@@ -36,7 +37,7 @@ static char *ReadNumber(char text[], PetscReal *value)
   return end;
 }
 
-/* Returns with a reason in `problem` where the file is not a table */
+/* Reads a table. If the file is none, `problem` says why. */
 static PetscErrorCode ReadRows(FILE *file, Table table, char problem[], size_t size)
 {
   char     line[1024];
@@ -96,7 +97,7 @@ static PetscErrorCode ReadFile(const char path[], Table table, char problem[], s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first rank reads, and tells the others what it has found, be that a table or why there is none */
+/* Reads a table on the first rank and sends it to the others; if there is none, all ranks end with an error that says why */
 PetscErrorCode TableRead(MPI_Comm comm, const char option[], const char path[], Table *table)
 {
   char        problem[256] = "";
@@ -117,6 +118,7 @@ PetscErrorCode TableRead(MPI_Comm comm, const char option[], const char path[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The value at a time: linear between lines, constant before the first and after the last */
 PetscReal TableEvaluate(Table table, PetscReal t)
 {
   PetscInt low = 0, high = table->n - 1;

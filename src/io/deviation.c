@@ -1,10 +1,11 @@
+/* How far bodies are from displacements that the user gives as formulas. */
 #include "deviation.h"
 #include <math.h>
 
 struct _n_Deviation {
   PetscInt    n_bodies;
   const Body *bodies; /* borrowed */
-  Expression *exact;  /* three for each body; NULL where none is given */
+  Expression *exact;  /* three for each body; NULL if none is given */
 };
 
 /*
@@ -56,7 +57,7 @@ PetscErrorCode DeviationCreate(Controller controller, Deviation *deviation)
 . deviation - the `Deviation`
 
   Output Parameter:
-. errors - one for each body; not-a-number where no exact displacement is given, and absolute where that is zero
+. errors - one for each body; not-a-number if no exact displacement is given; absolute [m] if that is zero
 */
 PetscErrorCode DeviationCompute(Deviation deviation, PetscReal errors[])
 {

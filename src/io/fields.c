@@ -9,10 +9,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Frames in a run that does not say how often */
+/* Most frames in a run whose options do not say how often */
 #define DEFAULT_FRAMES 100
 
-/* The XDMF file is written anew with every frame, as long as that takes at most 2 % of the run */
+/* With each frame the whole XDMF file is written again, unless it is less than this many times as long ago that it was written as the
+   writing took: so writing takes at most 2 % of the run */
 #define XDMF_SHARE 50.0
 
 struct _n_Fields {
@@ -20,18 +21,18 @@ struct _n_Fields {
   PetscBool       first_rank;
   char            path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], xdmf[PETSC_MAX_PATH_LEN];
   FieldsPrecision precision;
-  PetscInt        interval, n_frames; /* in steps; of the whole run */
+  PetscInt        interval, n_frames; /* controller steps from frame to frame; frames of the whole run */
   FieldsMesh      mesh;
-  PetscInt        n_fields; /* in each frame */
-  ContactFields   contact;  /* NULL: no bodies can touch */
-  PetscInt        written;  /* frames in the file */
-  PetscReal      *times;    /* of them [s] */
-  PetscReal      *stress;   /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
-  PetscReal      *nodal;    /* of each node of this rank, what ContactFieldsCompute() gives */
-  void           *buffer;   /* one field of a frame, in the file's precision */
-  hid_t           file;     /* < 0: not begun */
-  PetscInt        listed;   /* frames in the XDMF file */
-  PetscLogDouble  list_ended, list_seconds;
+  PetscInt        n_fields;                 /* fields of each frame */
+  ContactFields   contact;                  /* NULL if no bodies can touch */
+  PetscInt        written;                  /* frames in the file */
+  PetscReal      *times;                    /* their times [s] */
+  PetscReal      *stress;                   /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
+  PetscReal      *nodal;                    /* of each node of this rank, what ContactFieldsCompute() gives */
+  void           *buffer;                   /* one field of a frame, in the file's precision */
+  hid_t           file;                     /* -1 until it is begun */
+  PetscInt        listed;                   /* frames in the XDMF file */
+  PetscLogDouble  list_ended, list_seconds; /* when the XDMF file was written last, and how long that took [s] */
 };
 
 static PetscInt CountFrames(PetscInt steps, PetscInt interval)
@@ -39,7 +40,7 @@ static PetscInt CountFrames(PetscInt steps, PetscInt interval)
   return 1 + steps / interval + (steps % interval ? 1 : 0);
 }
 
-/* The least interval with at most so many frames */
+/* The least interval that makes at most so many frames */
 static PetscInt LeastInterval(PetscInt steps, PetscInt n_frames)
 {
   return PetscMax(1, steps / (n_frames - 1) + (steps % (n_frames - 1) ? 1 : 0));
@@ -61,7 +62,7 @@ static PetscErrorCode SetInterval(Fields fields, PetscInt steps, PetscInt interv
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses at once what would fill the disk in the end */
+/* Ends with an error if the frames of the whole run would not fit on the disk */
 static PetscErrorCode CheckSpace(Fields fields)
 {
   const double needed = (double)FieldsFileGetSize(&fields->mesh, fields->n_fields, fields->n_frames, fields->precision);
@@ -105,7 +106,7 @@ static PetscErrorCode CreateBuffers(Fields fields)
 - precision  - of the numbers in the frames
 
   Output Parameter:
-. fields - the `Fields`, to be told of every step by `FieldsMonitor()`
+. fields - the `Fields`; FieldsMonitor() must be called with it after every step
 */
 PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, FieldsPrecision precision, Fields *fields)
 {
@@ -142,7 +143,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error of the first rank alone becomes one of all; it has been told */
+/* Makes an error of the first rank, which has printed it, an error of all ranks */
 static PetscErrorCode Share(Fields fields, PetscErrorCode error)
 {
   PetscMPIInt code = (PetscMPIInt)error;
@@ -154,7 +155,7 @@ static PetscErrorCode Share(Fields fields, PetscErrorCode error)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The file with its mesh, under the name that it has until it has a frame */
+/* Makes the file, with its mesh, under the name that it has until it has a frame */
 static PetscErrorCode WriteMesh(Fields fields)
 {
   const FieldsMesh *mesh  = &fields->mesh;
@@ -189,12 +190,14 @@ static PetscErrorCode WriteMesh(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Puts number i of a field into the buffer */
 static inline void Store(Fields fields, size_t i, PetscReal value)
 {
   if (fields->precision == FIELDS_DOUBLE) ((double *)fields->buffer)[i] = value;
   else ((float *)fields->buffer)[i] = (float)value;
 }
 
+/* Writes the field that is in the buffer */
 static PetscErrorCode WriteField(Fields fields, FieldsKind kind)
 {
   const FieldsField *field = &fields_of_a_frame[kind];
@@ -207,7 +210,7 @@ static PetscErrorCode WriteField(Fields fields, FieldsKind kind)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement or velocity, with zeros beyond the dimension */
+/* Writes displacement or velocity, with zeros beyond the dimension of space */
 static PetscErrorCode WriteNodes(Fields fields, FieldsKind kind)
 {
   const FieldsMesh *mesh = &fields->mesh;
@@ -239,7 +242,7 @@ static PetscReal VonMises(const PetscReal s[])
 
 static PetscErrorCode WriteStress(Fields fields)
 {
-  static const int  tensor[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2}; /* row by row */
+  static const int  tensor[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2}; /* place of each entry, row by row, among xx, yy, zz, xy, yz, xz */
   const FieldsMesh *mesh      = &fields->mesh;
   const size_t      n         = (size_t)mesh->cells.local;
   size_t            first     = 0;
@@ -281,7 +284,7 @@ static PetscErrorCode WriteContact(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells that the frame is there */
+/* Writes the time of a frame, which tells readers that the frame is whole */
 static PetscErrorCode WriteTime(Fields fields, PetscReal time)
 {
   hsize_t    begin = (hsize_t)fields->written, count = fields->first_rank ? 1 : 0;
@@ -293,7 +296,7 @@ static PetscErrorCode WriteTime(Fields fields, PetscReal time)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The file becomes what it is called; an XDMF file of an earlier run does not fit it any more */
+/* Gives the file its final name; the XDMF file of an earlier run, which does not fit it, is removed */
 static PetscErrorCode TakePlace(Fields fields)
 {
   PetscFunctionBegin;
@@ -304,7 +307,7 @@ static PetscErrorCode TakePlace(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lists the frames in the XDMF file; `always`, or only if it is time */
+/* Lists the frames in the XDMF file: `always`, or only if the last writing is long enough ago */
 static PetscErrorCode List(Fields fields, PetscBool always)
 {
   PetscLogDouble begin;
@@ -337,7 +340,7 @@ static PetscErrorCode WriteFrame(Fields fields, PetscReal time)
 }
 
 /*
-  FieldsMonitor - writes a frame, when it is time
+  FieldsMonitor - writes a frame at every interval and at the end
 
   Collective
 
@@ -369,7 +372,7 @@ PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame
   Collective
 
   Input Parameter:
-. fields - the `Fields`, to be told of no more steps
+. fields - the `Fields`; FieldsMonitor() must not be called with it any more
 */
 PetscErrorCode FieldsFinish(Fields fields)
 {
@@ -403,8 +406,8 @@ PetscErrorCode FieldsGetPaths(Fields fields, const char *path[], const char *xdm
 . fields - the `Fields`, set to `NULL`
 
   Note:
-  Without FieldsFinish() before, as after an error, which may be one of this rank alone, the file is left as it is; what is in
-  it can be read, and the XDMF file lists it.
+  After an error, which may be one of this rank alone, FieldsFinish() is not called, and the file is left as it is. The frames in it can
+  be read, and the XDMF file lists them.
 */
 PetscErrorCode FieldsDestroy(Fields *fields)
 {

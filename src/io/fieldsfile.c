@@ -1,8 +1,7 @@
 /*
-  An HDF5 file of fields. Its first rank makes all of it before the first frame: groups, attributes, and a dataset for each
-  field of each frame, with its place in the file but nothing in it (a hole, on most file systems). After that numbers are written
-  and nothing else, so that a run that is killed, in the middle of a frame too, leaves a file that can be read; and no frame waits
-  for a flush.
+  An HDF5 file of fields. The first rank makes all of it before the first frame: groups, attributes, and a dataset for each field of each
+  frame, which has its place in the file but no numbers yet (a hole, on most file systems). After that only numbers are written. So a run
+  that is killed, even in the middle of a frame, leaves a file that can be read, and no frame waits for a flush.
 */
 #include "fieldsfile.h"
 #include "hdf5file.h"
@@ -11,7 +10,7 @@
 const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
     {"displacement", "m", 3, "Vector", PETSC_FALSE},
     {"velocity", "m/s", 3, "Vector", PETSC_FALSE},
-    /* all nine: of six, ParaView's readers take the order to be one or the other */
+    /* all nine components: with six, ParaView's readers differ in their order */
     {"stress", "Pa", 9, "Tensor", PETSC_TRUE},
     {"von_mises", "Pa", 1, "Scalar", PETSC_TRUE},
     {"contact_force", "N", 3, "Vector", PETSC_FALSE},
@@ -52,7 +51,8 @@ PetscErrorCode FieldsFileGetDataset(FieldsKind field, PetscInt frame, size_t siz
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An attribute within the dataset's own header: with ten thousands of datasets, strings of variable length take their toll */
+/* Writes the units as an attribute of fixed length, which is in the dataset's own header: with ten thousands of datasets, strings of
+   variable length would be slow */
 static PetscErrorCode WriteUnits(hid_t dataset, const char units[], const char path[])
 {
   hid_t  type, space, attribute;
@@ -74,7 +74,7 @@ static PetscErrorCode WriteUnits(hid_t dataset, const char units[], const char p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A dataset with its place in the file; `dataset` may be NULL */
+/* Makes a dataset, with its place in the file. It is closed again if `dataset` is NULL. */
 static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, const char units[],
                                     const char path[], hid_t *dataset)
 {
@@ -109,7 +109,7 @@ static PetscErrorCode CreateGroup(hid_t file, const char name[], const char path
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Times are no numbers until their frames are in the file */
+/* Makes the dataset of times, which are not-a-number until their frames are in the file */
 static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, const char path[])
 {
   double *times;
@@ -215,7 +215,7 @@ PetscErrorCode FieldsFileOpen(MPI_Comm comm, const char path[], hid_t *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pieces of this rank, as they lie in the file; -1, or what HDF5 returned */
+/* Selects the rows of this rank in the file; returns what HDF5 returned, negative after an error */
 static herr_t SelectRows(hid_t space, const FieldsRows *rows, PetscInt components)
 {
   herr_t result = H5Sselect_none(space);
@@ -249,7 +249,7 @@ static herr_t WriteRows(hid_t file, const char name[], const FieldsRows *rows, P
 /*
   FieldsFileWrite - writes this rank's rows of a dataset
 
-  Collective; an error on any rank is one on all
+  Collective; an error on any rank becomes an error on all
 
   Input Parameters:
 + comm       - communicator
@@ -257,7 +257,7 @@ static herr_t WriteRows(hid_t file, const char name[], const FieldsRows *rows, P
 . name       - the dataset
 . rows       - which rows
 . components - numbers in a row
-. type       - of the numbers in memory; as in the file, or HDF5 would convert them and write rank by rank
+. type       - of the numbers in memory, which must be that in the file: otherwise HDF5 would convert them, and write rank by rank
 - values     - the rows of this rank, one after the other
 */
 PetscErrorCode FieldsFileWrite(MPI_Comm comm, hid_t file, const char name[], const FieldsRows *rows, PetscInt components, hid_t type,

@@ -2,10 +2,11 @@
 #pragma once
 #include "fieldsmesh.h"
 
+/* The names of frames have four digits, and all datasets of a run are made before its first frame */
 #define FIELDS_MAX_FRAMES 10000
 #define FIELDS_PER_FRAME  8
 
-/* Where no bodies can touch, what comes from contact on is left out */
+/* If no bodies can touch, the fields from this one on are left out */
 #define FIELDS_WITHOUT_CONTACT FIELDS_CONTACT_FORCE
 
 /* What is written of each frame */
@@ -23,8 +24,8 @@ typedef enum {
 typedef struct {
   const char *name, *units;
   PetscInt    components;
-  const char *attribute_type; /* XDMF's word for the components */
-  PetscBool   on_cells;       /* or on nodes */
+  const char *attribute_type; /* XDMF's word for what the components are */
+  PetscBool   on_cells;       /* a value for each cell; otherwise for each node */
 } FieldsField;
 
 PETSC_INTERN const FieldsField fields_of_a_frame[FIELDS_PER_FRAME];

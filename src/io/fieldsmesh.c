@@ -1,11 +1,11 @@
 /*
-  All bodies as one mesh: nodes and cells of the first body, then of the second, and so on. It is the form that every reader of
-  XDMF takes; with a grid for each body, some take the first alone.
+  All bodies as one mesh: nodes and cells of the first body, then of the second, and so on. Every reader of XDMF takes this form. If each
+  body had a grid of its own, some readers would show the first body alone.
 */
 #include "fieldsmesh.h"
 
-/* Shapes of cells in XDMF (www.xdmf.org, XDMF Model and Format, Topology): name, number in a list of several shapes, and whether
-   that list has the number of nodes too */
+/* Shapes of cells in XDMF (www.xdmf.org, XDMF Model and Format, Topology): their names; their numbers in a list of cells of several shapes;
+   and whether this list tells the number of nodes of each such cell too */
 typedef struct {
   DMPolytopeType shape;
   const char    *name;
@@ -44,7 +44,7 @@ static PetscErrorCode RowsCreate(PetscInt n, FieldsRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of the next body, of which this rank has `local` */
+/* Adds the rows of the next body, of which this rank has `local` */
 static PetscErrorCode RowsAdd(MPI_Comm comm, PetscInt piece, PetscInt64 local, FieldsRows *rows)
 {
   PetscInt64  end, total;
@@ -62,7 +62,7 @@ static PetscErrorCode RowsAdd(MPI_Comm comm, PetscInt piece, PetscInt64 local, F
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the bodies have cells of one shape, and the rows of nodes and cells */
+/* Counts the rows of nodes and cells, and finds out whether all cells have one shape */
 static PetscErrorCode CountRows(FieldsMesh *mesh)
 {
   const Shape *first = NULL, *shape;
@@ -91,6 +91,7 @@ static PetscErrorCode CountRows(FieldsMesh *mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Counts the rows of the topology */
 static PetscErrorCode CountTopology(FieldsMesh *mesh)
 {
   PetscFunctionBegin;
@@ -146,11 +147,11 @@ PetscErrorCode FieldsMeshCreate(PetscInt n, const Body bodies[], FieldsMesh *mes
 . mesh - the mesh
 
   Output Parameter:
-. entries - nodes of the cells; with several shapes, before those of each cell the number of its shape and what else XDMF wants there
+. entries - nodes of the cells; if there are several shapes, the number of its shape, and maybe of its nodes, precedes those of each cell
 */
 PetscErrorCode FieldsMeshGetTopology(const FieldsMesh *mesh, int entries[])
 {
-  hsize_t first = 0; /* of the body's nodes */
+  hsize_t first = 0; /* number of the body's first node */
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < mesh->n_bodies; b++) {

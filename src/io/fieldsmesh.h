@@ -7,7 +7,7 @@
 typedef struct {
   PetscInt n;             /* pieces of this rank: one for each body */
   hsize_t  total;         /* rows of all ranks */
-  hsize_t *begin, *count; /* of each piece */
+  hsize_t *begin, *count; /* first row of each piece, and how many it has */
   hsize_t  local;         /* rows of this rank */
 } FieldsRows;
 
@@ -15,9 +15,9 @@ typedef struct {
   PetscInt    n_bodies;
   const Body *bodies; /* borrowed */
   FieldsRows  nodes, cells;
-  FieldsRows  topology;      /* the cells, or with several shapes the entries of a list that says each cell's shape too */
-  PetscInt    cell_nodes;    /* components of the topology: nodes of a cell, or 1 with several shapes */
-  PetscBool   mixed;         /* several shapes */
+  FieldsRows  topology;      /* the cells; if they have several shapes, the entries of a list that tells each cell's shape too */
+  PetscInt    cell_nodes;    /* components of the topology: nodes of a cell; 1 if cells have several shapes */
+  PetscBool   mixed;         /* cells have several shapes */
   const char *topology_type; /* XDMF's word for the shape */
 } FieldsMesh;
 

@@ -1,4 +1,4 @@
-/* Room on the disk. */
+/* Free space on the disk. */
 #include "freespace.h"
 #include <petscsys.h>
 #include <stdio.h>
@@ -6,7 +6,8 @@
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 
-/* Room where `path` will be, with that of the file that is replaced; huge where the file system does not tell [bytes] */
+/* Free space where the file `path` will be, the space of the file that it replaces included [bytes]; a huge number if the file system does
+   not tell */
 double OutputFreeSpace(const char path[])
 {
   char           folder[PETSC_MAX_PATH_LEN];

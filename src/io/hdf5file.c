@@ -1,11 +1,11 @@
-/* What HDF5 files of a run have in common. Not collective; the caller is one rank. */
+/* What HDF5 files of a run have in common. Functions are not collective: one rank calls them. */
 #include "hdf5file.h"
 #include <impakt.h>
 #include <ctype.h>
 #include <string.h>
 
 /*
-  HDF5Check - an error where HDF5 could not do something
+  HDF5Check - ends with an error if HDF5 could not do something
 
   Not Collective
 
@@ -58,7 +58,7 @@ static PetscBool BeginsOption(const char text[])
 }
 
 /*
-  HDF5WriteRun - how a run was made: its options and the version, as attributes
+  HDF5WriteRun - writes the options and the version of a run as attributes, so that a file tells how it was made
 
   Not Collective
 
@@ -78,21 +78,22 @@ PetscErrorCode HDF5WriteRun(hid_t file, const char options[], const char path[])
     value = end + 1;
     for (next = value; *next && !(next[-1] == ' ' && BeginsOption(next)); next++);
     *end     = '\0';
-    next[-1] = '\0'; /* the blank after the value, or where there is none, after the name once more */
+    next[-1] = '\0'; /* the blank after the value; if there is no value, the one after the name again */
     PetscCall(HDF5WriteText(file, name, next == value ? "" : value, path));
   }
   PetscCall(PetscFree(copy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* HDF5SilenceBegin - keeps HDF5 from printing its own account of errors, which would hide ours */
+/* HDF5SilenceBegin - keeps HDF5 from printing errors itself, which would hide Impakt's message */
 void HDF5SilenceBegin(HDF5Silence *silence)
 {
   H5Eget_auto2(H5E_DEFAULT, &silence->print, &silence->data);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-/* HDF5SilenceEnd - lets it print again. Not to be called after an error: it would complain at exit of the file that it could not finish */
+/* HDF5SilenceEnd - lets HDF5 print errors again. Not to be called after an error: HDF5 would complain at exit of the file that it could not
+   finish. */
 void HDF5SilenceEnd(const HDF5Silence *silence)
 {
   H5Eset_auto2(H5E_DEFAULT, silence->print, silence->data);

@@ -3,7 +3,7 @@
 #include <petscsys.h>
 #include <hdf5.h>
 
-/* HDF5's own printing of errors, while ours say what happened */
+/* How HDF5 printed errors before HDF5SilenceBegin() */
 typedef struct {
   H5E_auto2_t print;
   void       *data;

@@ -1,4 +1,4 @@
-/* Records every controller step: collected in memory, and added to the file now and then. */
+/* The history of a run: records of all controller steps, collected in memory and added to the file from time to time. */
 #include "history.h"
 #include "hdf5file.h"
 #include "outputfile.h"
@@ -6,29 +6,30 @@
 #include <petsctime.h>
 #include <stdio.h>
 
-#define COPY_BYTES        ((size_t)1 << 20)
-#define BUFFER_BYTES      ((size_t)1 << 16) /* to begin with */
-#define BUFFER_BYTES_MOST ((size_t)1 << 26) /* then it is written out whatever the time */
+#define COPY_BYTES        ((size_t)1 << 20) /* copied at a time when the file is copied */
+#define BUFFER_BYTES      ((size_t)1 << 16) /* of records that wait for writing, at first */
+#define BUFFER_BYTES_MOST ((size_t)1 << 26) /* at most: then they are written at once */
 
-/* At most 2 % of the run goes into writing, and at most this many seconds of it are lost by a kill while writing is quick */
+/* Records are written if the last writing is this many seconds ago, which is what a killed run loses at most; but not before it is
+   FLUSH_SHARE times as long ago as it took, so that writing takes at most 2 % of the run */
 #define FLUSH_INTERVAL 2.0
 #define FLUSH_SHARE    50.0
 
 struct _n_History {
   char           path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
-  PetscBool      writes; /* rank 0; all other fields are its only */
+  PetscBool      writes; /* this is rank 0; the members below are used there alone */
   char          *options;
   PetscInt       n_bodies, *dims; /* space dimension of each body */
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
-  PetscReal     *records; /* not in the file yet, `width` numbers each */
+  PetscReal     *records; /* those that are not in the file yet, `width` numbers each */
   PetscInt64     written; /* records in the file */
   char          *copy;
   PetscLogDouble flushed, flush_seconds; /* when the last flush ended, and how long it took [s] */
 };
 
-/* Adds a series behind the others in the record; its name is "<group><of>/<what>" */
+/* Adds a series, whose numbers come behind those of the others in a record; its name is "<group><of>/<what>" */
 static PetscErrorCode AddSeries(History history, const char group[], const char of[], const char what[], const char units[],
                                 PetscInt components, PetscBool integer)
 {
@@ -97,7 +98,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
 - path       - the file to write; an error if that cannot be done, on every rank
 
   Output Parameter:
-. history - the `History`, to be told of every step by `HistoryMonitor()`
+. history - the `History`; HistoryMonitor() must be called with it after every step
 */
 PetscErrorCode HistoryCreate(Controller controller, const char path[], History *history)
 {
@@ -123,7 +124,7 @@ PetscErrorCode HistoryCreate(Controller controller, const char path[], History *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The next version of the file, beside the present one */
+/* Writes the next version of the file beside the present one, and puts it in its place */
 static PetscErrorCode WritePart(History history)
 {
   PetscFunctionBegin;
@@ -144,7 +145,7 @@ static PetscErrorCode WritePart(History history)
 . history - the `History`
 
   Note:
-  At every moment the file is either as it was or as it will be, never in between.
+  At every moment the file is whole: it is the version before or after this call, never something in between.
 */
 PetscErrorCode HistoryFlush(History history)
 {
@@ -167,7 +168,7 @@ PetscErrorCode HistoryFlush(History history)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for one more record: a larger buffer, or an empty one */
+/* Makes room for one more record: enlarges the buffer, or empties it */
 static PetscErrorCode MakeRoom(History history)
 {
   const size_t record = (size_t)history->width * sizeof(PetscReal);
@@ -180,6 +181,7 @@ static PetscErrorCode MakeRoom(History history)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Fills a record, in the order of AddAllSeries() */
 static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], PetscReal *next)
 {
   *next++ = frame->time;
@@ -206,7 +208,7 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], Pets
 }
 
 /*
-  HistoryMonitor - records a controller step, and writes to the file when it is time
+  HistoryMonitor - records a controller step, and from time to time writes to the file
 
   Logically Collective
 

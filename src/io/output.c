@@ -16,7 +16,7 @@ struct _n_Output {
   Fields     fields;
   Exact      exact;
   Deviation  deviation;
-  char       summary[PETSC_MAX_PATH_LEN]; /* its path; empty: none */
+  char       summary[PETSC_MAX_PATH_LEN]; /* path of the summary; empty if none is written */
 };
 
 /*@
@@ -44,7 +44,7 @@ PetscErrorCode OutputCreate(Controller controller, Output *output)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each file has a path of its own */
+/* Ends with an error if two files have the same path */
 static PetscErrorCode CheckDistinct(MPI_Comm comm, PetscInt n, const char *const options[], const char *const paths[])
 {
   PetscFunctionBegin;
@@ -108,7 +108,7 @@ static PetscErrorCode CreateExact(Output output, const char type[])
   Level: beginner
 
   Note:
-  Missing directories of the paths are made. What is at the paths stays until there is something new to put there.
+  Missing directories of the paths are made. A file that is there already stays until its successor is whole.
 
 .seealso: `Output`, `OutputReport()`, `ExactCreate()`
 @*/

@@ -1,4 +1,4 @@
-/* Output files are written as `<path>.part` and renamed onto `<path>`, so that whatever stands there is whole. */
+/* Output files are written as `<path>.part` and then renamed to `<path>`, so that a file with that name is always whole. */
 #define _POSIX_C_SOURCE 200809L
 #include "outputfile.h"
 #include <errno.h>
@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* mkdir -p of the directory of `path`; errno, or 0 */
+/* Makes the directories that `path` needs; returns errno, or 0 */
 static int MakeParents(const char path[])
 {
   char directory[PETSC_MAX_PATH_LEN];
@@ -23,7 +23,7 @@ static int MakeParents(const char path[])
   return 0;
 }
 
-/* Whether `part` can be made and renamed onto `path`; errno, or 0 */
+/* Tries whether `part` can be made and renamed to `path`; returns errno, or 0 */
 static int TryToWrite(const char path[], const char part[])
 {
   struct stat status;
@@ -98,8 +98,8 @@ PetscErrorCode OutputFileCheck(MPI_Comm comm, const char option[], const char pa
   Not Collective
 
   Input Parameters:
-+ part - the file as written
-- path - where it belongs; what is there is replaced
++ part - the file, whole
+- path - its final name; a file with that name is replaced
 */
 PetscErrorCode OutputFileReplace(const char part[], const char path[])
 {
@@ -108,7 +108,7 @@ PetscErrorCode OutputFileReplace(const char part[], const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bytes from one open file to another; errno, or 0 */
+/* Copies all bytes from one open file to another; returns errno, or 0 */
 static int CopyBytes(int from, int to, size_t size, char buffer[])
 {
   for (;;) {

@@ -1,8 +1,11 @@
-/* The table that a run ends with. */
+/* The table that a run prints at its end. */
 #include "report.h"
 #include <math.h>
 
-/* One line; the exact value stands beside the computed one where there is one */
+/* Times of impact below this part of the duration of contact are printed as 0: round-off of start + gap / speed */
+#define ROUND_OFF 1e-12
+
+/* Prints a line with a value and, if there is one, the exact value beside it */
 static PetscErrorCode PrintValue(PetscViewer viewer, const char name[], PetscReal value, const char unit[], PetscReal exact)
 {
   PetscFunctionBegin;
@@ -39,7 +42,7 @@ static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *resu
     PetscCall(ExactGetTimes(exact, &impact, &release));
     PetscCall(ExactGetForce(exact, &force));
     PetscCall(ExactGetImpulse(exact, &impulse));
-    if (PetscAbsReal(impact) < 1e-12 * (release - impact)) impact = 0; /* round-off of start + gap / speed */
+    if (PetscAbsReal(impact) < ROUND_OFF * (release - impact)) impact = 0;
   }
   PetscCall(ContactGetType(contact, &type));
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact (%s)\n", type));

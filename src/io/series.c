@@ -1,13 +1,13 @@
-/* Time series in HDF5: extensible datasets, appended to record by record. Serial; the caller is one rank. */
+/* Time series in HDF5: extensible datasets, to which records are appended. Functions are not collective: one rank calls them. */
 #include "series.h"
 #include "hdf5file.h"
 
 _Static_assert(sizeof(PetscReal) == sizeof(double), "series are stored in double precision");
 
-/* Values in a chunk: small enough for a short run's file, large enough for a long run's index */
+/* Values in a chunk: few enough for the file of a short run to be small, and enough for the index of a long run to be small */
 #define CHUNK 1024
 
-/* Records written at a time */
+/* Records of a series that are written at a time */
 #define BLOCK 4096
 
 static PetscErrorCode CreateDataset(hid_t file, const Series *series, const char path[])
@@ -59,7 +59,8 @@ PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Seri
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Up to BLOCK records of one series, gathered from the records of all: HDF5 is quick where both sides have the same shape */
+/* Writes at most BLOCK records of one series, which are gathered from the records of all series: HDF5 is quick if memory and file have the
+   same shape */
 static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt64 length, PetscInt n, PetscInt width,
                                    const PetscReal records[], const char path[])
 {

@@ -1,11 +1,19 @@
-/* Gathers the figures of the summary, step by step; only the contact forces are kept as series, from first contact on. */
+/* Gathers the figures of the summary, step by step. Only contact forces are kept as series, from the first contact on. */
 #include "statistics.h"
 #include <math.h>
 
-/* Touching is told apart from not touching for each pair, and for any of them */
+/* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
+   compared with it */
+#define NOTHING_AT_START 1e-9
+/* Mean, scatter and minimum of a force are those of the time from first contact to release without this part at either end, where the force
+   rises and falls. Steps at the ends of what remains belong to it, within round-off of the time. */
+#define FORCE_MARGIN   0.2
+#define TIME_ROUND_OFF 1e-9
+
+/* What is remembered of the last step, for each pair and for all pairs together */
 typedef struct {
   PetscBool touches;
-  PetscReal force; /* at the end of the last step [N] */
+  PetscReal force; /* at its end [N] */
 } ContactMemory;
 
 struct _n_Statistics {
@@ -14,7 +22,7 @@ struct _n_Statistics {
   PetscReal         time; /* of the last frame [s] */
   PetscInt          total_sweeps, contact_sweeps;
   PetscReal        *initial_energy; /* of each body [J] */
-  PetscReal        *body_change;    /* of its energy since: least, largest [J] */
+  PetscReal        *body_change;    /* least and largest change of the energy of each body since the start [J] */
   PetscReal         system_change[2];
   PetscReal         system_energy;             /* at the start [J] */
   PetscReal         largest_energy;            /* energies and work of all bodies, so far [J] */
@@ -61,7 +69,7 @@ static void ContactStatisticsInitialize(ContactStatistics *contact)
 . controller - the `Controller`, set up
 
   Output Parameter:
-. statistics - the `Statistics`, to be told of every step by `StatisticsMonitor()`
+. statistics - the `Statistics`; StatisticsMonitor() must be called with it after every step
 */
 PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
 {
@@ -91,7 +99,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What stays as it is but for errors and exchange with other bodies */
+/* Energy of a body less the work of its loads: constant but for errors and exchange with other bodies [J] */
 static PetscReal BodyEnergy(const BodyMeasures *body)
 {
   return body->kinetic + body->potential - body->external_work;
@@ -102,7 +110,7 @@ static PetscReal Norm(const PetscReal x[3])
   return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* The state that energies and momentum are compared with */
+/* Notes the initial energies and momenta, which later ones are compared with */
 static void NoteInitialState(Statistics s, const ControllerFrame *frame)
 {
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
@@ -123,11 +131,10 @@ static PetscReal Relative(PetscReal value, PetscReal scale)
   return scale != 0 ? value / PetscAbsReal(scale) : value;
 }
 
-/* What an energy or angular momentum that was `start` at first is compared with: that, or, where it began with nothing but round-off,
-   `other` */
+/* What changes of an energy or angular momentum are compared with: its value at the start, or, if that is round-off, `other` */
 static PetscReal Scale(PetscReal start, PetscReal other)
 {
-  return start > 1e-9 * other ? start : other;
+  return start > NOTHING_AT_START * other ? start : other;
 }
 
 static void NoteChange(PetscReal change[2], PetscReal energy)
@@ -169,7 +176,7 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->energy_error_final = Relative(system_energy - s->system_energy, scale);
   r->energy_error_min   = Relative(s->system_change[0], scale);
   r->energy_error_max   = Relative(s->system_change[1], scale);
-  /* loads change momenta, and there is nothing to compare them with */
+  /* with loads momenta change, and there is nothing to compare them with */
   r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(momentum), s->momentum_scale));
   r->angular_momentum_error_max = s->loaded ? NAN
                                             : PetscMax(r->angular_momentum_error_max,
@@ -177,7 +184,7 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
-/* One step of one pair, or of all together */
+/* Adds a step of one pair, or of all pairs together */
 static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
                        PetscReal time_step)
 {
@@ -199,6 +206,7 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   memory->force   = state->force;
 }
 
+/* Appends time, forces and nodes in contact of a step to the series */
 static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
 {
   const PetscInt width = 1 + 2 * frame->n_pairs;
@@ -225,7 +233,7 @@ static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
 
   Input Parameters:
 + controller - the `Controller`
-. frame      - the state of everything; of step 0: what energies and momentum are compared with
+. frame      - the state of everything; that of step 0 is what energies and momenta are compared with
 - context    - the `Statistics`
 */
 PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *frame, void *context)
@@ -258,14 +266,14 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean, standard deviation and minimum of a pair's force over the middle 3/5 from its first contact to its release */
+/* Mean, standard deviation and minimum of a pair's force over the middle three fifths of the time from first contact to release */
 static void ComputeForces(Statistics s, PetscInt pair)
 {
   ContactStatistics *contact  = &s->results.pairs[pair];
   const size_t       width    = 1 + 2 * (size_t)s->results.n_pairs;
   const PetscReal    duration = contact->release_time - contact->first_contact_time;
-  const PetscReal    begin    = contact->first_contact_time + 0.2 * duration - 1e-9 * duration; /* times carry round-off */
-  const PetscReal    end      = contact->first_contact_time + 0.8 * duration + 1e-9 * duration;
+  const PetscReal    begin    = contact->first_contact_time + FORCE_MARGIN * duration - TIME_ROUND_OFF * duration;
+  const PetscReal    end      = contact->first_contact_time + (1 - FORCE_MARGIN) * duration + TIME_ROUND_OFF * duration;
   PetscInt           n        = 0;
   PetscReal          mean = 0, squares = 0, minimum = NAN;
 
@@ -274,7 +282,7 @@ static void ComputeForces(Statistics s, PetscInt pair)
 
     if (!(record[0] >= begin && record[0] <= end)) continue;
     n++;
-    mean += change / (PetscReal)n; /* Welford's recurrence: no cancellation where the scatter is small */
+    mean += change / (PetscReal)n; /* Welford's recurrence, which does not cancel if the scatter is small */
     squares += change * (force - mean);
     if (record[2 + 2 * pair] > 0 && !(force >= minimum)) minimum = force;
   }
@@ -306,7 +314,7 @@ PetscErrorCode StatisticsSetDeviation(Statistics statistics, Deviation deviation
 }
 
 /*
-  StatisticsGetResults - the figures up to the last step told
+  StatisticsGetResults - the figures of all steps so far
 
   Not Collective
 
@@ -334,7 +342,7 @@ PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StatisticsDestroy - frees them */
+/* StatisticsDestroy - frees statistics */
 PetscErrorCode StatisticsDestroy(Statistics *statistics)
 {
   PetscFunctionBegin;

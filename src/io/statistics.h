@@ -2,11 +2,11 @@
 #pragma once
 #include "deviation.h"
 
-/* How one pair, or all pairs together, touched. Not-a-number where there is nothing to tell: no contact */
+/* How one pair, or all pairs together, touched. Times and forces are not-a-number if there was no contact. */
 typedef struct {
   PetscReal first_contact_time;               /* end of the first controller step in contact [s] */
   PetscReal release_time;                     /* end of the last controller step in contact [s] */
-  PetscInt  onsets;                           /* how often contact came out of none */
+  PetscInt  onsets;                           /* how often a step in contact followed one without contact */
   PetscInt  steps_in_contact;                 /* controller steps that end in contact */
   PetscReal force_mean, force_std, force_min; /* over the middle 3/5 from first contact to release; minimum: while in contact [N] */
   PetscReal force_peak, tension_max;          /* over the whole run [N] */

@@ -1,4 +1,4 @@
-/* The summary: one JSON object, the contract with scripts. Numbers that do not exist (no contact, no release) are null. */
+/* The summary: one JSON object, whose members scripts rely on. Numbers that do not exist (no contact, no release) are null. */
 #include "summary.h"
 #include "outputfile.h"
 #include <impakt.h>
@@ -38,7 +38,7 @@ static PetscErrorCode SetVector(json_t *object, const char name[], const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A new object as a member, borrowed */
+/* Adds a new object as a member; it belongs to its parent */
 static PetscErrorCode SetObject(json_t *object, const char name[], json_t **member)
 {
   PetscFunctionBegin;
@@ -184,7 +184,7 @@ static PetscErrorCode AddErrors(json_t *root, Exact exact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Time in the integrators, by kind, and in sweeps, which contain most of it */
+/* Time spent in the integrators, by kind, and in sweeps, which call the integrators */
 static PetscErrorCode AddPhases(json_t *timing, Contact contact, PetscInt n, const Body bodies[])
 {
   const char *const integrators[] = {"alpha2", "centraldifference"};

@@ -1,7 +1,6 @@
 /*
-  XDMF: what lies where in an HDF5 file, for ParaView and its like (www.xdmf.org, XDMF Model and Format, version 3). Only what
-  all of vtk's two readers and meshio understand: a temporal collection of uniform grids, whole datasets, nothing referred to from elsewhere
-  in the XML.
+  XDMF tells ParaView and other programs what lies where in an HDF5 file (www.xdmf.org, XDMF Model and Format, version 3). Only what meshio
+  and both of VTK's readers understand is used: a temporal collection of uniform grids, whole datasets, and no references within the XML.
 */
 #include "xdmf.h"
 #include "outputfile.h"
@@ -125,7 +124,7 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
 . mesh      - the mesh
 . n_fields  - number of fields in each frame, the first ones of `FieldsKind`
 . precision - of the numbers in the frames
-. n_frames  - how many frames to tell of
+. n_frames  - how many frames to list
 - times     - their times [s]
 */
 PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt n_frames,

@@ -1,25 +1,30 @@
-/* Discs and balls from options: an O-grid, graded toward a pole by a conformal map, or a symmetric part of it. PETSc makes
-   balls only where it has a generator of tetrahedra. */
+/* Discs and balls from options: an O-grid, graded toward a pole by a conformal map, or a symmetric part of it. PETSc itself can make balls
+   only with a generator of tetrahedra. */
 #include "meshimpl.h"
 
+/* A face of the sphere belongs to its back if no corner is further than this on the pole's side of the centre [radii]: round-off */
+#define BACK_TOLERANCE 1e-12
+
 typedef struct {
-  PetscInt  dim, divisions, layers, n_cuts; /* cut planes: x = centre, then y = centre */
+  PetscInt  dim, divisions, layers;
+  PetscInt  n_cuts; /* planes that cut it: x = centre, then y = centre */
   PetscReal radius, centre[3], pole[3], grading;
   PetscBool simplex;
 } Ball;
 
-/* The nodes of the central block, numbered along its axes, then those of each layer around it; a node on the rim of the
-   central block has one in each layer */
+/* Numbers of the nodes: those of the central block come first, along its axes; then those of each layer around it, in which there is a node
+   for each node on the rim of the central block */
 typedef struct {
   MeshFile   *file;
   const Ball *ball;
   PetscInt    n[3], stride[3]; /* elements along the axes of the central block */
-  PetscInt    n_core, n_rim, *rim;
+  PetscInt    n_core, n_rim;   /* nodes of the central block, and of its rim */
+  PetscInt   *rim;             /* per node of the central block: its number on the rim, -1 inside */
 } Grid;
 
-/* The central block, or that around it on one side; its place along that axis counts layers */
+/* The central block, or the block of layers on one side of it: along the axis of that side places count layers */
 typedef struct {
-  PetscInt axis; /* < 0: the central block */
+  PetscInt axis; /* -1: the central block */
   PetscInt side; /* 0: lower, 1: upper */
 } Block;
 
@@ -68,7 +73,7 @@ static PetscErrorCode ReadPole(MPI_Comm comm, const char prefix[], Ball *ball)
     for (PetscInt d = 0; d < dim; d++) pole[d] = d == dim - 1 ? -1 : 0;
   for (PetscInt d = 0; d < dim; d++) length = PetscMax(length, PetscAbsReal(pole[d]));
   PetscCheck(length > 0, comm, PETSC_ERR_USER_INPUT, "-%sball_pole: all its components are zero, which is no direction", prefix);
-  for (PetscInt d = 0; d < dim; d++) ball->pole[d] = pole[d] / length; /* squares of these neither overflow nor vanish */
+  for (PetscInt d = 0; d < dim; d++) ball->pole[d] = pole[d] / length; /* so that squares neither overflow nor vanish */
   length = 0;
   for (PetscInt d = 0; d < dim; d++) length += PetscSqr(ball->pole[d]);
   for (PetscInt d = 0; d < dim; d++) ball->pole[d] /= PetscSqrtReal(length);
@@ -107,7 +112,7 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-ball_divisions", &ball->divisions, NULL));
   PetscCheck(ball->divisions >= 1, comm, PETSC_ERR_USER_INPUT,
              "-%sball_divisions %" PetscInt_FMT ": the central block has at least 1 element along an edge", prefix, ball->divisions);
-  ball->layers = (ball->divisions + 1) / 2; /* the central block is as wide as the radius, the layers fill half of it */
+  ball->layers = (ball->divisions + 1) / 2; /* the central block is as wide as the radius, and the layers beside it as half the radius */
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-ball_layers", &ball->layers, NULL));
   PetscCheck(ball->layers >= 1, comm, PETSC_ERR_USER_INPUT,
              "-%sball_layers %" PetscInt_FMT ": there is at least 1 around the central block", prefix, ball->layers);
@@ -122,11 +127,12 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A point of the unit ball: of the central block (share 0; xi from -1 to 1), or on the line from the block's rim to the sphere */
+/* A point of the unit ball. xi is a point of the central block, with components from -1 to 1; the result is its place (share 0), or one on
+   the straight line from there to the sphere (share 1 on the sphere). */
 static void LayPoint(PetscInt dim, const PetscReal xi[3], PetscReal share, PetscReal x[3])
 {
-  /* Between a cube of this half width and a ball, which the elements at its corners like best: they have the largest scaled
-     Jacobian, 0.85 in 2-D and 0.73 in 3-D */
+  /* The shape of the central block lies between a cube of this half width [radii] and a ball. With these values the worst elements, at its
+     corners, have the largest scaled Jacobian: 0.85 in 2-D, 0.73 in 3-D. */
   const PetscReal half_width = 0.5, bulge = dim == 2 ? 0.375 : 0.5;
   PetscReal       outer[3], length        = 0;
 
@@ -141,10 +147,10 @@ static void LayPoint(PetscInt dim, const PetscReal xi[3], PetscReal share, Petsc
   }
 }
 
-/* Moebius transformation of the unit ball onto itself that takes a to the centre (Ahlfors, Moebius transformations in several
-   dimensions, 1981, eq. 2.7):  T x = ((1 - |a|^2) (x - a) - |x - a|^2 a) / (1 + |x|^2 |a|^2 - 2 x.a).
-   Being conformal, it keeps the shapes of small elements; it scales by (1 - |a|^2) / (1 + |x|^2 |a|^2 - 2 x.a), with a = -s pole
-   by (1 - s) / (1 + s) at the pole and by the inverse opposite to it. */
+/* Applies the Moebius transformation of the unit ball onto itself that takes the point a to the centre (Ahlfors, Moebius transformations in
+   several dimensions, 1981, eq. 2.7):  T x = ((1 - |a|^2) (x - a) - |x - a|^2 a) / (1 + |x|^2 |a|^2 - 2 x.a).
+   T is conformal, so that small elements keep their shapes. It scales by (1 - |a|^2) / (1 + |x|^2 |a|^2 - 2 x.a): with a = -s pole, by
+   (1 - s) / (1 + s) at the pole and by the inverse of that opposite to the pole. */
 static void GradePoint(const Ball *ball, PetscReal x[3])
 {
   const PetscReal root = PetscSqrtReal(ball->grading), s = (root - 1) / (root + 1);
@@ -159,6 +165,7 @@ static void GradePoint(const Ball *ball, PetscReal x[3])
   for (PetscInt d = 0; d < 3; d++) x[d] = ((1 - s * s) * (x[d] - a[d]) - distance * a[d]) / (1 + squared * s * s - 2 * product);
 }
 
+/* Sets the coordinates of a node: of the central block (layer 0), or of the one outside it in a layer */
 static void SetNode(const Grid *grid, PetscInt core, PetscInt layer)
 {
   const Ball *ball  = grid->ball;
@@ -173,10 +180,11 @@ static void SetNode(const Grid *grid, PetscInt core, PetscInt layer)
   LayPoint(ball->dim, xi, (PetscReal)layer / ball->layers, x);
   if (ball->grading > 1) GradePoint(ball, x);
   for (PetscInt d = 0; d < 3; d++) length += PetscSqr(x[d]);
-  if (layer < ball->layers) length = 1; /* only those of the sphere are put back onto it, from where round-off left them */
+  if (layer < ball->layers) length = 1; /* only nodes of the last layer are put onto the sphere, from which they differ by round-off */
   for (PetscInt d = 0; d < 3; d++) x[d] = ball->centre[d] + ball->radius * x[d] / PetscSqrtReal(length);
 }
 
+/* Whether a node of the central block has layers outside: not if it lies inside, or on a cut plane alone */
 static PetscBool OnRim(const Grid *grid, PetscInt core)
 {
   for (PetscInt d = 0; d < grid->ball->dim; d++) {
@@ -198,7 +206,7 @@ static PetscErrorCode SetNodes(Grid *grid)
     grid->n[d]      = d < ball->n_cuts ? ball->divisions / 2 : ball->divisions;
     grid->stride[d] = grid->n_core;
     size *= ball->divisions + 1.0;
-    /* corners of all cells of all blocks, simplices being most, in PetscInt */
+    /* the corners of all cells of all blocks must be counted in PetscInt; there are most with 6 tetrahedra in each cell */
     PetscCheck(size * (1 + 2.0 * ball->dim * ball->layers / ball->divisions) * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%" PetscInt_FMT " divisions and %" PetscInt_FMT " layers are too many: take fewer", ball->divisions, ball->layers);
     grid->n_core *= grid->n[d] + 1;
@@ -212,6 +220,7 @@ static PetscErrorCode SetNodes(Grid *grid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The number of the node at a place of a block */
 static PetscInt GetNode(const Grid *grid, const Block *block, const PetscInt place[3])
 {
   PetscInt core = 0, layer = 0;
@@ -223,9 +232,9 @@ static PetscInt GetNode(const Grid *grid, const Block *block, const PetscInt pla
   return layer ? grid->n_core + (layer - 1) * grid->n_rim + grid->rim[core] : core;
 }
 
-/* A segment, quadrilateral or hexahedron, or the simplices that fill it: one for each way to walk from its first corner to its
-   last along the axes (Kuhn 1960). Bit d of a corner's place is 1 where it is the farther one along axis d. All blocks have the
-   same axes where they touch, so that common faces are cut along the same diagonal. */
+/* Adds a segment, quadrilateral or hexahedron, or the simplices that fill it: one for each way to walk from its first corner to its last
+   along the axes (Kuhn 1960). Bit d of a corner's number is 1 if it is the farther one along axis d. Blocks have the same axes where they
+   touch, so that common faces are cut along the same diagonal. */
 static PetscErrorCode AddCell(MeshFile *file, PetscInt dim, const PetscInt corner[8], PetscBool mirrored, PetscBool simplex)
 {
   static const PetscInt whole[2][8]     = {{0, 1, 3, 2, 4, 5, 7, 6}, {0, 2, 3, 1, 4, 6, 7, 5}};
@@ -244,14 +253,14 @@ static PetscErrorCode AddCell(MeshFile *file, PetscInt dim, const PetscInt corne
 
     PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
     for (PetscInt k = 0, place = 0; k <= dim; k++) {
-      nodes[odd == mirrored || k < dim - 1 ? k : 2 * dim - 1 - k] = corner[place]; /* else the last two change places */
+      nodes[odd == mirrored || k < dim - 1 ? k : 2 * dim - 1 - k] = corner[place]; /* otherwise the last two change places */
       if (k < dim) place |= 1 << orders[dim - 1][o][k];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Convex: positive Jacobians at all corners of a quadrilateral or hexahedron */
+/* Ends with an error unless the Jacobian is positive at all corners of a quadrilateral or hexahedron, which is convex then */
 static PetscErrorCode CheckCell(const Grid *grid, const PetscInt corner[8], PetscBool mirrored)
 {
   const Ball *ball = grid->ball;
@@ -275,7 +284,7 @@ static PetscErrorCode CheckCell(const Grid *grid, const PetscInt corner[8], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells of a block from begin to end (without) along each axis, or faces of them that lie along the axes named */
+/* Adds the cells begin[d] to end[d] - 1 of a block along each axis d, or those faces of these cells that lie along some axes */
 static PetscErrorCode AddRange(const Grid *grid, const Block *block, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3],
                                const PetscInt end[3])
 {
@@ -301,6 +310,7 @@ static PetscErrorCode AddRange(const Grid *grid, const Block *block, PetscInt n_
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Begins a surface with a number and a name */
 static PetscErrorCode AddSurface(MeshFile *file, const Ball *ball, PetscInt number, const char name[])
 {
   PetscInt group;
@@ -316,7 +326,7 @@ static PetscErrorCode AddSurface(MeshFile *file, const Ball *ball, PetscInt numb
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Faces of a block across an axis, behind `place` cells along it */
+/* Adds the faces of a block across an axis that lie behind `place` cells along it */
 static PetscErrorCode AddFaces(const Grid *grid, const Block *block, PetscInt axis, PetscInt place)
 {
   PetscInt axes[3], n_axes = 0, begin[3] = {0}, end[3] = {1, 1, 1};
@@ -351,7 +361,7 @@ static PetscErrorCode AddBack(MeshFile *file, const Ball *ball, PetscInt sphere)
       for (PetscInt d = 0; d < ball->dim; d++) along += (x[d] - ball->centre[d]) * ball->pole[d];
       nearest = PetscMax(nearest, along);
     }
-    if (nearest > 1e-12 * ball->radius) continue;
+    if (nearest > BACK_TOLERANCE * ball->radius) continue;
     PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
     PetscCall(PetscArraycpy(nodes, file->element_nodes + run.first_node + e * run.corners, run.corners));
   }

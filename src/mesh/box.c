@@ -12,7 +12,7 @@ typedef struct {
   const Box *box;
 } Division;
 
-/* DMPLEX's options, checked; with DMPLEX's defaults, but that boxes are of quadrilaterals and hexahedra */
+/* Reads and checks DMPLEX's options for boxes. Defaults are DMPLEX's, but that cells are quadrilaterals and hexahedra. */
 static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], Box *box)
 {
   char      shape[64];
@@ -61,8 +61,8 @@ static PetscErrorCode AddSimplex(MeshFile *file, PetscInt n, const PetscInt corn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The simplices that fill one cell of a grid, or a face of it: one for each way to walk from its lowest corner to its highest
-   along the axes (Kuhn 1960). Cells that touch cut their common face along the same diagonal. */
+/* Adds the simplices that fill one cell of a grid, or a face of a cell: one for each way to walk from its lowest corner to its highest
+   along the axes (Kuhn 1960). Two cells that touch cut their common face along the same diagonal. */
 static PetscErrorCode DivideCell(MeshFile *file, PetscInt n_axes, const PetscInt axes[], PetscInt lowest, const PetscInt stride[])
 {
   static const PetscInt orders[3][6][3] = {{{0}}, {{0, 1}, {1, 0}}, {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -73,7 +73,7 @@ static PetscErrorCode DivideCell(MeshFile *file, PetscInt n_axes, const PetscInt
     PetscInt corners[4] = {lowest};
 
     for (PetscInt k = 0; k < n_axes; k++) corners[k + 1] = corners[k] + stride[axes[orders[n_axes - 1][o][k]]];
-    if (o >= n_orders / 2 && n_axes > 1) { /* odd permutations */
+    if (o >= n_orders / 2 && n_axes > 1) { /* odd permutations of the axes: their simplices would be inverted */
       const PetscInt corner = corners[n_axes];
 
       corners[n_axes]     = corners[n_axes - 1];
@@ -84,7 +84,7 @@ static PetscErrorCode DivideCell(MeshFile *file, PetscInt n_axes, const PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells of a grid from begin to end (without) along each axis, cut along the axes named */
+/* Adds the simplices of the cells begin[d] to end[d] - 1 along each axis d, or of those faces of these cells that lie along some axes */
 static PetscErrorCode DivideRange(MeshFile *file, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3], const PetscInt end[3],
                                   const PetscInt stride[3])
 {
@@ -96,7 +96,7 @@ static PetscErrorCode DivideRange(MeshFile *file, PetscInt n_axes, const PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A box of triangles or tetrahedra, with its sides numbered as DMPLEX numbers those of its boxes */
+/* Fills a file with a box of triangles or tetrahedra, whose sides have the numbers that DMPLEX gives to those of its boxes */
 static PetscErrorCode DivideBox(void *ctx)
 {
   static const PetscInt       numbers[2][6] = {{4, 2, 1, 3}, {6, 5, 3, 4, 1, 2}}; /* xmin, xmax, ymin, ... */
@@ -111,6 +111,7 @@ static PetscErrorCode DivideBox(void *ctx)
     end[d]   = box->faces[d];
     nodes[d] = end[d] + 1;
   }
+  /* the corners of 6 tetrahedra in each cell must be counted in PetscInt */
   PetscCheck((double)nodes[0] * nodes[1] * nodes[2] * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "a box of simplices of this size is too large");
   stride[0]     = 1;
@@ -171,7 +172,7 @@ PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name
 
   PetscFunctionBegin;
   PetscCall(ReadBox(comm, prefix, &box));
-  /* DMPLEX has no setter for its own default */
+  /* DMPLEX has no setter for this default: it is put among the options */
   PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
   if (!set && box.is_box && box.dim > 1) {
     PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));

@@ -6,6 +6,7 @@ typedef struct {
   DM        dm;
 } Labelling;
 
+/* An error handler that keeps the message of the first error in `ctx` */
 static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
                                   const char *message, void *ctx)
 {
@@ -17,8 +18,7 @@ static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function,
   return code;
 }
 
-/* Does something on the first rank; an error there becomes one of all ranks, with `where` before its message. Leaves
-   nothing to wait for. */
+/* Calls a function on the first rank alone. An error there becomes an error on all ranks, with `where` before its message. */
 PetscErrorCode MeshOnFirstRank(MPI_Comm comm, PetscErrorCode (*work)(void *), void *ctx, const char where[])
 {
   char        message[1024] = "unknown error";
@@ -68,7 +68,7 @@ PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *
   sizes[1] = file->corners;
   PetscCallMPI(MPI_Bcast(sizes, 2, MPIU_INT, 0, comm));
   for (PetscInt c = 0; c < file->n_cells; c++)
-    PetscCall(DMPlexInvertCell(file->shape, file->cells + c * file->corners)); /* DMPLEX looks at bases from outside */
+    PetscCall(DMPlexInvertCell(file->shape, file->cells + c * file->corners)); /* DMPLEX numbers the base of a cell as seen from outside */
   PetscCall(DMPlexCreateFromCellListPetsc(comm, sizes[0], file->n_cells, file->n_vertices, sizes[1], PETSC_TRUE, file->cells, sizes[0],
                                           file->vertices, dm));
   PetscCall(PetscFree(file->cells));
@@ -80,7 +80,7 @@ PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The label of a group's name; NULL: it has none */
+/* The label with the name of a group; NULL if the group has no name */
 static PetscErrorCode NameLabel(DM dm, const MeshGroup *group, DMLabel *label)
 {
   const char *const reserved[] = {"depth", "celltype", "Cell Sets", "Face Sets", "Vertex Sets"};
@@ -99,7 +99,7 @@ static PetscErrorCode NameLabel(DM dm, const MeshGroup *group, DMLabel *label)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The face with these nodes; < 0: not a face of the body */
+/* The face of the body that has these nodes; -1 if there is none */
 static PetscErrorCode FindFace(const MeshFile *file, DM dm, PetscInt vstart, PetscInt n, const PetscInt nodes[], PetscInt *face)
 {
   PetscInt        vertices[4], n_joins;
@@ -126,7 +126,7 @@ static PetscErrorCode FindFace(const MeshFile *file, DM dm, PetscInt vstart, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the elements of a run that is in a group; `first_cell` is the run's first cell, where it has cells */
+/* Marks the elements of a run in the labels of one of its groups. `first_cell` is the first cell of the run, if its elements are cells. */
 static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, const MeshGroup *group, PetscInt first_cell,
                                DMLabel numbers, DMLabel name)
 {
@@ -166,8 +166,8 @@ static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Labels of all groups: their numbers in "Cell Sets", "Face Sets" and "Vertex Sets", and a label with the value 1 for each
-   name, which may have points of several dimensions where groups of different kinds share it */
+/* Makes the labels of all groups: their numbers in "Cell Sets", "Face Sets" and "Vertex Sets", and for each name a label with the value 1.
+   If groups of different kinds have the same name, its label has points of several dimensions. */
 PetscErrorCode MeshFileLabel(const MeshFile *file, DM dm)
 {
   const char *const sets[] = {"Cell Sets", "Face Sets", "Vertex Sets"};

@@ -13,24 +13,24 @@
     }                                                                                                                                      \
   } while (0)
 
-/* A block with the place of its elements in the file */
+/* A block, and where its elements are in the file */
 typedef struct {
-  PetscInt       number, n, first; /* elements; the first one's number, from 0, in the order of the file */
-  PetscInt       first_node;       /* of its elements among those read; < 0: not of this body */
+  PetscInt       number, n, first; /* number of elements, and of the first of them, from 0, in the order of the file */
+  PetscInt       first_node;       /* where their nodes begin in `element_nodes`; -1: they are not of this body */
   DMPolytopeType shape;
   PetscBool      shell; /* sides 1 and 2 are the faces of the element */
 } Block;
 
 typedef struct {
   MeshFile *file;
-  int       id; /* NetCDF's */
+  int       id; /* the file's, to the NetCDF library */
   PetscInt  dim, n_elements, n_blocks;
   Block    *blocks;
   int      *values[2];
   double   *reals;
 } Exodus;
 
-/* 0 where the file does not have that dimension */
+/* A dimension of the NetCDF file; 0 if the file does not have it */
 static PetscErrorCode GetDimension(const Exodus *exodus, const char name[], PetscInt *length)
 {
   int    dimension, status = nc_inq_dimid(exodus->id, name, &dimension);
@@ -46,7 +46,7 @@ static PetscErrorCode GetDimension(const Exodus *exodus, const char name[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of a set or block: name followed by its number */
+/* A dimension whose name ends with the number of a set or block */
 static PetscErrorCode GetDimensionOf(const Exodus *exodus, const char name[], PetscInt number, PetscInt *length)
 {
   char full[64];
@@ -57,7 +57,7 @@ static PetscErrorCode GetDimensionOf(const Exodus *exodus, const char name[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A variable that must be there, with n values */
+/* Finds a variable that the file must have, with n values */
 static PetscErrorCode FindVariable(const Exodus *exodus, const char name[], PetscInt n, int *variable)
 {
   int    rank, dimensions[NC_MAX_VAR_DIMS], status = nc_inq_varid(exodus->id, name, variable);
@@ -79,7 +79,7 @@ static PetscErrorCode FindVariable(const Exodus *exodus, const char name[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Values of name followed by a number; kept in one of two places */
+/* Reads the n values of a variable whose name ends with a number, into exodus->values[place] */
 static PetscErrorCode ReadInts(Exodus *exodus, const char name[], PetscInt number, PetscInt n, PetscInt place)
 {
   char full[64];
@@ -94,7 +94,7 @@ static PetscErrorCode ReadInts(Exodus *exodus, const char name[], PetscInt numbe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number of the i-th block or set: those of a variable such as eb_prop1, or 1, 2, 3 ... where there is none */
+/* The number of the i-th block or set, from a variable such as eb_prop1; i + 1 if the file has no such variable */
 static PetscErrorCode ReadNumber(const Exodus *exodus, const char kind[], PetscInt i, PetscInt *number)
 {
   char   full[64];
@@ -111,7 +111,7 @@ static PetscErrorCode ReadNumber(const Exodus *exodus, const char kind[], PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Name of the i-th block or set; empty: it has none */
+/* The name of the i-th block or set; empty if it has none */
 static PetscErrorCode ReadName(const Exodus *exodus, const char kind[], PetscInt i, char name[MESH_NAME_LENGTH])
 {
   char   full[64];
@@ -134,7 +134,7 @@ static PetscErrorCode ReadName(const Exodus *exodus, const char kind[], PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* coord, or coordx, coordy and coordz */
+/* Reads coordinates, from the variable coord, or from coordx, coordy and coordz */
 static PetscErrorCode ReadNodes(Exodus *exodus)
 {
   const char *const names[] = {"coordx", "coordy", "coordz"};
@@ -162,7 +162,7 @@ static PetscErrorCode ReadNodes(Exodus *exodus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What an element type such as HEX8 or HEX means; a number at its end must be that of its nodes */
+/* The shape of an element type such as HEX8 or HEX. A number at the end of its name must be that of its nodes. */
 static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscInt nodes, Block *block)
 {
   const struct {
@@ -263,7 +263,7 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corners of the sides of each shape, from 1; shells: after their two faces */
+/* Corners, from 1, of a side of a shape, and their number. Of a shell the sides that follow its two faces are meant. */
 static PetscInt SideCorners(DMPolytopeType shape, PetscInt side, const int **corners)
 {
   static const int bar[2][1] = {{1}, {2}}, tri[3][2] = {{1, 2}, {2, 3}, {3, 1}}, quad[4][2] = {{1, 2}, {2, 3}, {3, 4}, {4, 1}};
@@ -318,7 +318,7 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
                exodus->n_elements);
     if (element - 1 < exodus->blocks[b].first || element - 1 >= exodus->blocks[b].first + exodus->blocks[b].n)
       for (b = 0; element - 1 >= exodus->blocks[b].first + exodus->blocks[b].n;) b++;
-    if (exodus->blocks[b].first_node < 0) continue; /* another body's */
+    if (exodus->blocks[b].first_node < 0) continue; /* the element belongs to another body */
     n_corners = SideCorners(exodus->blocks[b].shape, side - (exodus->blocks[b].shell ? 3 : 1), &corners);
     PetscCheck(corners, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "side set %" PetscInt_FMT " names side %d of element %d (%s), which has no such %s", number, side, element,
@@ -383,7 +383,7 @@ static PetscErrorCode ReadAll(Exodus *exodus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On the first rank */
+/* Reads an Exodus II file, on the first rank alone */
 PetscErrorCode MeshReadExodus(MeshFile *file)
 {
   Exodus         exodus = {.file = file};

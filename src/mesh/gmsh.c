@@ -1,5 +1,5 @@
-/* Gmsh's .msh files, versions 2.2 and 4.1, ASCII and binary. The whole file is in memory, and nothing is read beyond its end.
-   PETSc's own reader trusts node numbers, counts and tags as they are in the file, and a damaged one can make it crash. */
+/* Reader of Gmsh's .msh files, versions 2.2 and 4.1, ASCII and binary. The whole file is in memory, and nothing is read beyond its end.
+   PETSc's own reader trusts the node numbers, counts and tags of a file, and a damaged file can make it crash. */
 #include "gmshimpl.h"
 #include <sys/stat.h>
 
@@ -35,7 +35,7 @@ static PetscErrorCode ReadFormat(Gmsh *gmsh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Text in binary files as well */
+/* Reads the names of physical groups, which are text in binary files too */
 static PetscErrorCode ReadNames(Gmsh *gmsh)
 {
   PetscInt n;
@@ -97,7 +97,7 @@ static PetscErrorCode ReadEntities(Gmsh *gmsh)
         PetscInt group;
 
         PetscCall(GmshReadInts(gmsh, 1, &value));
-        PetscCall(GmshCheckNumber(gmsh, value < 0 ? -value : value, &group)); /* negative: turned round */
+        PetscCall(GmshCheckNumber(gmsh, value < 0 ? -value : value, &group)); /* a negative number means a reversed orientation */
         PetscCall(MeshFileAddGroup(gmsh->file, MESH_UNDECIDED, dim, group, &gmsh->groups[n_groups++]));
       }
       if (!dim) continue;
@@ -108,7 +108,7 @@ static PetscErrorCode ReadEntities(Gmsh *gmsh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The name of the section that begins here; empty: the file ends */
+/* The name of the section that begins here; empty at the end of the file */
 static PetscErrorCode BeginSection(Gmsh *gmsh, char name[64])
 {
   PetscInt n = 0;
@@ -125,7 +125,7 @@ static PetscErrorCode BeginSection(Gmsh *gmsh, char name[64])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Its end; what is before it is of no interest where the section is not known */
+/* Finds the end of a section. If the section is not a known one, what it contains is skipped. */
 static PetscErrorCode EndSection(Gmsh *gmsh, const char name[], PetscBool known)
 {
   char   mark[72];
@@ -203,7 +203,7 @@ static PetscErrorCode ReadSections(Gmsh *gmsh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On the first rank */
+/* Reads a Gmsh file, on the first rank alone */
 PetscErrorCode MeshReadGmsh(MeshFile *file)
 {
   Gmsh           gmsh = {.file = file};

@@ -9,13 +9,13 @@ typedef struct {
   PetscBool   binary, swapped;
   int         version; /* 22 or 41 */
   int         word;    /* bytes of counts and of numbers of nodes and elements in binary files of version 4.1 */
-  /* 4.1: geometrical entities, whose physical groups are those of their elements */
+  /* in version 4.1, geometrical entities: their physical groups are those of the elements on them */
   PetscInt n_entities;
-  PetscInt (*entities)[4]; /* dimension, number, first of their physical groups, how many; those are in `groups` */
+  PetscInt (*entities)[4]; /* dimension, number, and the place and number of their physical groups in `groups` */
   PetscInt *groups;
 } Gmsh;
 
-/* An error with the place in the file */
+/* Ends with an error that tells the place in the file, unless a condition holds */
 #define GmshCheck(gmsh, condition, ...)                                                                                                    \
   do {                                                                                                                                     \
     if (PetscUnlikely(!(condition))) {                                                                                                     \

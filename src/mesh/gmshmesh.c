@@ -28,7 +28,7 @@ PetscErrorCode GmshReadNodes22(Gmsh *gmsh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In blocks: first their numbers, then their coordinates, with those on the entity where there are such */
+/* Reads nodes in blocks: first their numbers, then their coordinates, which coordinates on the entity may follow */
 PetscErrorCode GmshReadNodes41(Gmsh *gmsh)
 {
   PetscInt64 header[4], entity[3], count;
@@ -107,7 +107,7 @@ static PetscErrorCode FindShape(Gmsh *gmsh, PetscInt64 type, PetscInt64 element,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes an element with the numbers of its nodes in the file */
+/* Adds an element, whose nodes are given by their numbers in the file */
 static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt corners, const PetscInt64 numbers[])
 {
   PetscInt element, *nodes;
@@ -124,8 +124,8 @@ static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt corners
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One after the other in ASCII files, in blocks with a common type and number of tags in binary ones. The first tag is the
-   physical group; 0: none */
+/* Reads elements: one after the other in ASCII files; in blocks of the same type and number of tags in binary files. The first tag is the
+   physical group, 0 if there is none. */
 PetscErrorCode GmshReadElements22(Gmsh *gmsh)
 {
   PetscInt n, done = 0;
@@ -173,7 +173,7 @@ PetscErrorCode GmshReadElements22(Gmsh *gmsh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In blocks of the elements of one entity */
+/* Reads elements in blocks, each of one entity */
 PetscErrorCode GmshReadElements41(Gmsh *gmsh)
 {
   PetscInt64 header[4], entity[3], count, values[9];

@@ -1,7 +1,7 @@
-/* Numbers in Gmsh's files, as text or binary; never beyond the end of the file. */
+/* Numbers of Gmsh's files, text or binary. Nothing is read beyond the end of the file. */
 #include "gmshimpl.h"
 
-/* What can be told of a place in the file: its line, or its byte where it has no lines */
+/* The present place in the file, for messages: a line, or in binary files a byte */
 const char *GmshWhere(const Gmsh *gmsh, char text[64])
 {
   PetscInt line = 1;
@@ -17,14 +17,14 @@ void GmshSkipSpace(Gmsh *gmsh)
   while (gmsh->at < gmsh->end && (*gmsh->at == ' ' || (*gmsh->at >= '\t' && *gmsh->at <= '\r'))) gmsh->at++;
 }
 
-/* Numbers in text; the text ends with a 0, so that none runs beyond its end */
+/* Reads numbers that are text. The file's text ends with a 0 byte, so that no number runs beyond its end. */
 PetscErrorCode GmshReadText(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++) {
     char *after;
 
-    GmshSkipSpace(gmsh); /* to the place that messages tell */
+    GmshSkipSpace(gmsh); /* so that messages tell the place of the number itself */
     values[i] = strtoll(gmsh->at, &after, 10);
     GmshCheck(gmsh, after != gmsh->at,
               gmsh->at == gmsh->end ? "the file ends within its data: it is cut short" : "a whole number is expected");
@@ -51,7 +51,7 @@ PetscErrorCode GmshReadBytes(Gmsh *gmsh, size_t size, PetscInt n, void *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the format calls int */
+/* Reads numbers that the format calls int */
 PetscErrorCode GmshReadInts(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
 {
   PetscFunctionBegin;
@@ -66,7 +66,7 @@ PetscErrorCode GmshReadInts(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the format of version 4.1 calls size_t */
+/* Reads numbers that version 4.1 of the format calls size_t */
 PetscErrorCode GmshReadWords(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
 {
   PetscFunctionBegin;
@@ -91,7 +91,7 @@ PetscErrorCode GmshReadReals(Gmsh *gmsh, PetscInt n, double values[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A count of things of some bytes at least, which the rest of the file must have room for */
+/* Checks a count of items of at least so many bytes: the rest of the file must have room for them */
 PetscErrorCode GmshCheckCount(Gmsh *gmsh, const char what[], PetscInt64 count, PetscInt64 bytes, PetscInt *n)
 {
   PetscFunctionBegin;
@@ -103,7 +103,7 @@ PetscErrorCode GmshCheckCount(Gmsh *gmsh, const char what[], PetscInt64 count, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts are text in version 2.2, binary or not; the data begin after the end of their line */
+/* Reads a count of version 2.2: it is text even in binary files, and the data begin after the end of its line */
 PetscErrorCode GmshReadCount(Gmsh *gmsh, const char what[], PetscInt64 bytes, PetscInt *n)
 {
   PetscInt64 count;
@@ -116,7 +116,7 @@ PetscErrorCode GmshReadCount(Gmsh *gmsh, const char what[], PetscInt64 bytes, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The number of a node, an element or a group */
+/* Checks the number of a node, an element or a group */
 PetscErrorCode GmshCheckNumber(Gmsh *gmsh, PetscInt64 value, PetscInt *number)
 {
   PetscFunctionBegin;

@@ -13,7 +13,7 @@ PetscErrorCode MeshLabelIsInternal(const char name[], PetscBool *internal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether any rank has points of a stratum (0: vertices ...) in a label */
+/* Whether any rank has points from `start` to `end` - 1 in a label */
 PetscErrorCode MeshLabelHasPoints(DM dm, DMLabel label, PetscInt start, PetscInt end, PetscBool *has)
 {
   IS              values;
@@ -44,7 +44,10 @@ PetscErrorCode MeshLabelHasPoints(DM dm, DMLabel label, PetscInt start, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers that a label has on any rank, up to 32 of them */
+/* At most as many numbers of groups are listed in a message */
+#define MOST_NUMBERS 32
+
+/* Appends the numbers that a label has on any rank */
 static PetscErrorCode ListNumbers(DM dm, const char name[], char list[], size_t size)
 {
   PetscInt last = -1;
@@ -58,7 +61,7 @@ static PetscErrorCode ListNumbers(DM dm, const char name[], char list[], size_t 
     PetscCall(DMLabelGetValueIS(label, &values));
     PetscCall(ISGetLocalSize(values, &n));
   }
-  for (PetscInt k = 0; k < 32; k++) {
+  for (PetscInt k = 0; k < MOST_NUMBERS; k++) {
     PetscInt        next = PETSC_INT_MAX;
     const PetscInt *value;
     char            text[32];
@@ -79,7 +82,7 @@ static PetscErrorCode ListNumbers(DM dm, const char name[], char list[], size_t 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Names of labels with points of a stratum, then numbers in `sets` */
+/* Lists the names of labels with points from `start` to `end` - 1, then the numbers in the label `sets` */
 PetscErrorCode MeshListLabels(DM dm, PetscInt start, PetscInt end, const char sets[], char list[], size_t size)
 {
   const char *const generic[] = {"Cell Sets", "Face Sets", "Vertex Sets", "marker"};

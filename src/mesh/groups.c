@@ -2,16 +2,20 @@
 #include "meshimpl.h"
 #include <petscsf.h>
 
+/* A face is on a side of the bounding box if none of its vertices is further from it, in parts of the box's edge across that side:
+   round-off */
+#define ON_SIDE 1e-8
+
 static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
 
-/* What a name means: points of a label (those of one value, or any), or faces on a side of the bounding box */
+/* What a name stands for: points of a label (with one value, or with any), or faces on a side of the bounding box */
 typedef struct {
   DMLabel   label;
   PetscBool by_value;
   PetscInt  value;
-  PetscInt  side;      /* < 0: none; index into sides */
-  PetscReal place;     /* of that side */
-  PetscReal tolerance; /* of the place */
+  PetscInt  side;      /* index into `sides`; -1: none */
+  PetscReal place;     /* where that side is on its axis [m] */
+  PetscReal tolerance; /* how far from there a vertex may be [m] */
 } Selection;
 
 static PetscBool InLabel(const Selection *selection, PetscInt point)
@@ -35,11 +39,11 @@ static PetscErrorCode FindSide(DM dm, PetscInt side, Selection *selection)
   PetscCall(DMGetBoundingBox(dm, lower, upper));
   selection->side      = side;
   selection->place     = side % 2 ? upper[side / 2] : lower[side / 2];
-  selection->tolerance = 1e-8 * (upper[side / 2] - lower[side / 2]);
+  selection->tolerance = ON_SIDE * (upper[side / 2] - lower[side / 2]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A label by name; a number in the label `sets`, where any rank has it */
+/* Finds a label by its name; or, if the name is a number which any rank has in the label `sets`, that value of this label */
 static PetscErrorCode FindLabel(DM dm, const char name[], const char sets[], Selection *selection, PetscBool *found)
 {
   PetscBool internal, exists = PETSC_FALSE;
@@ -88,7 +92,7 @@ static PetscErrorCode RefuseSurface(DM dm, const char name[], const char what[])
           name ? name : "", what, list[0] ? list : "none", box);
 }
 
-/* Where a face is a point, its closure is itself */
+/* Whether all vertices of a face are on a side of the bounding box. In one dimension a face is its own vertex. */
 static PetscErrorCode OnSide(DM dm, const Selection *selection, PetscInt face, PetscInt vstart, PetscInt vend, PetscSection section,
                              const PetscScalar x[], PetscBool *on)
 {
@@ -108,7 +112,7 @@ static PetscErrorCode OnSide(DM dm, const Selection *selection, PetscInt face, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's faces of the boundary that are selected; faces between ranks are none of the boundary */
+/* The selected ones of this rank's boundary faces. Faces between two ranks do not belong to the boundary. */
 static PetscErrorCode CollectFaces(DM dm, const Selection *selection, PetscInt *n_faces, PetscInt *faces[])
 {
   DMLabel            boundary;
@@ -136,7 +140,7 @@ static PetscErrorCode CollectFaces(DM dm, const Selection *selection, PetscInt *
       PetscBool on = PETSC_TRUE;
 
       if (selection->label) on = InLabel(selection, point[i]);
-      else if (selection->by_value) on = PETSC_FALSE; /* the label is on other ranks alone */
+      else if (selection->by_value) on = PETSC_FALSE; /* only other ranks have the label */
       if (selection->side >= 0) PetscCall(OnSide(dm, selection, point[i], vstart, vend, section, x, &on));
       if (on) (*faces)[(*n_faces)++] = point[i];
     }
@@ -148,7 +152,7 @@ static PetscErrorCode CollectFaces(DM dm, const Selection *selection, PetscInt *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Labels xmin, xmax, ... of the faces that are on the sides of the bounding box now; a side without a face gets none */
+/* Labels the faces on the sides of the bounding box as xmin, xmax, ... A side without faces gets no label. */
 PetscErrorCode MeshMarkSides(DM dm)
 {
   PetscInt dim;
@@ -220,7 +224,7 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sets the mark of a vertex on all ranks that have it where one of them has set it */
+/* Marks vertices on all ranks that have them, if one of these ranks has marked them */
 static PetscErrorCode ShareMarks(DM dm, PetscInt marks[])
 {
   PetscSF     sf;

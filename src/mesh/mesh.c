@@ -10,7 +10,7 @@ typedef struct {
   Reader    read;
 } Reading;
 
-/* By the end of the file's name; NULL: not known */
+/* The reader of a file, by the end of the file's name; NULL if that is not known */
 static PetscErrorCode FindReader(const char path[], Reader *reader)
 {
   const char *const extensions[] = {".msh", ".g", ".e", ".exo", ".ex2"};
@@ -18,7 +18,7 @@ static PetscErrorCode FindReader(const char path[], Reader *reader)
 
   PetscFunctionBegin;
   *reader = NULL;
-  PetscCall(PetscStrrchr((char *)path, '.', &dot)); /* behind the dot, or the beginning where there is none */
+  PetscCall(PetscStrrchr((char *)path, '.', &dot)); /* what follows the dot; the whole path if it has none */
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(extensions); i++) {
     PetscBool same;
 
@@ -43,7 +43,7 @@ static PetscErrorCode ReadFile(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -mesh_blocks a,b */
+/* Names or numbers of the blocks that make the body */
 static PetscErrorCode ReadWanted(const char prefix[], MeshFile *file)
 {
   PetscFunctionBegin;
@@ -51,7 +51,7 @@ static PetscErrorCode ReadWanted(const char prefix[], MeshFile *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A mesh that a file has, all of it on the first rank */
+/* The mesh of a file, all of it on the first rank */
 PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char name[], const char path[], DM *dm)
 {
   MeshFile       file;
@@ -77,7 +77,7 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A rank without an element has nothing to do, and partitioners need not leave others with any */
+/* Ends with an error if there are fewer elements than ranks: partitioners may then leave more ranks without elements than they must */
 static PetscErrorCode CheckSize(DM dm, const char name[])
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)dm);
@@ -107,23 +107,28 @@ static PetscErrorCode CheckSize(DM dm, const char name[])
 - name   - of the body, for messages; becomes that of the mesh
 
   Output Parameter:
-. dm - a `DMPLEX` with faces and edges, on each rank its own part; also where an error comes up, `NULL` or to be destroyed
+. dm - a `DMPLEX` with faces and edges, on each rank its own part; after an error it is `NULL`, or to be destroyed
 
   Options Database Keys:
-+ -<body>_dm_plex_filename f                                    - Gmsh (.msh, version 2.2 or 4.1) or Exodus II (.g, .e, .exo, .ex2)
-. -<body>_mesh_blocks a,b                                       - blocks of the file that make this body, by name or number; default all
-. -<body>_dm_plex_dim d                                         - dimension of a box or ball; of a file: checked
-. -<body>_dm_plex_box_faces n,n,n, _box_lower, _box_upper       - a box [m]
-. -<body>_dm_plex_simplex (true|false)                          - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
-. -<body>_dm_plex_shape ball                                    - a disc or a ball instead, in blocks around a central one
-. -<body>_ball_radius r, _ball_centre x,y,z                     - where it is [m], default 1 and the origin
-. -<body>_ball_divisions n, _ball_layers m                      - elements along an edge of the central block, default 4, and around it,
-default n/2 . -<body>_ball_grading g, _ball_pole x,y,z                      - largest by smallest size of elements, default 1, and the
-direction where they are small, default down the last axis . -<body>_ball_part (full|half|quarter)                         - all, x >=
-centre, or also y >= centre (in 3-D) . -<body>_scale s                                               - factor for all coordinates, 0.001 for
-a file in millimetres . -<body>_rotate ax,ay,az,degrees, in two dimensions degrees    - turns it about an axis through the origin .
--<body>_rotate_centre x,y,z                                   - through another point [m], after scaling
-- -<body>_translate x,y,z                                       - shifts it [m], last
++ -<body>_dm_plex_filename f                          - Gmsh (.msh, version 2.2 or 4.1) or Exodus II (.g, .e, .exo, .ex2)
+. -<body>_mesh_blocks a,b                             - blocks of the file that make this body, by name or number; default all
+. -<body>_dm_plex_dim d                               - dimension of a box or ball; of a file it is checked
+. -<body>_dm_plex_box_faces n,n,n                     - elements of a box along each axis
+. -<body>_dm_plex_box_lower x,y,z                     - its lower corner [m]
+. -<body>_dm_plex_box_upper x,y,z                     - its upper corner [m]
+. -<body>_dm_plex_simplex (true|false)                - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
+. -<body>_dm_plex_shape ball                          - a disc or a ball instead, in blocks around a central one
+. -<body>_ball_radius r                               - its radius [m], default 1
+. -<body>_ball_centre x,y,z                           - its centre [m], default the origin
+. -<body>_ball_divisions n                            - elements along an edge of the central block, default 4
+. -<body>_ball_layers m                               - elements around it, from its faces to the sphere, default n/2
+. -<body>_ball_grading g                              - largest by smallest size of elements, default 1
+. -<body>_ball_pole x,y,z                             - direction from the centre to where they are small, default down the last axis
+. -<body>_ball_part (full|half|quarter)               - all of it, x >= centre, or in 3-D also y >= centre
+. -<body>_scale s                                     - factor for all coordinates, 0.001 for a file in millimetres
+. -<body>_rotate (degrees|ax,ay,az,degrees)           - turns it: in 2-D, or in 3-D about an axis through the origin
+. -<body>_rotate_centre x,y,z                         - about another point [m], after scaling
+- -<body>_translate x,y,z                             - shifts it [m], last
 
   Level: developer
 
@@ -133,11 +138,11 @@ a file in millimetres . -<body>_rotate ax,ay,az,degrees, in two dimensions degre
   which a rotation takes along. Those of a ball are surface (the sphere), back (faces of it that
   are not on the pole's side of the centre), and cut_x and cut_y of its parts.
 
-  A graded ball has elements of size sqrt(g) h opposite to the pole, where h = pi R / (2 n) is their size without grading, and
-  h / sqrt(g) at the pole; where the former are not small beside the radius, the ball is a coarse polyhedron there.
+  Without grading the elements at the surface of a ball have the size h = pi R / (2 n). With grading they have the size h / sqrt(g) at the
+  pole, and sqrt(g) h opposite to it. If that is not small beside the radius, the ball is a coarse polyhedron there.
 
-  The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that no element of the
-  body has are left out. The file is read by the first rank.
+  The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that belong to no element of the
+  body are left out. The file is read by the first rank.
 
 .seealso: `MeshGetSurface()`, `MeshGetNodeSet()`, `BodySetFromOptions()`
 @*/

@@ -32,7 +32,7 @@ PetscErrorCode MeshFileDestroy(MeshFile *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for n items of some size: in steps that grow, so that adding them one by one costs little */
+/* Makes room for n items of some size, and for half as many more, so that adding items one by one costs little */
 static PetscErrorCode Reserve(void *array, size_t size, PetscInt n, PetscInt *max)
 {
   PetscFunctionBegin;
@@ -44,7 +44,7 @@ static PetscErrorCode Reserve(void *array, size_t size, PetscInt n, PetscInt *ma
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The group of that kind, dimension and number, new or known */
+/* Finds the group of that kind, dimension and number, or adds it */
 PetscErrorCode MeshFileAddGroup(MeshFile *file, MeshGroupKind kind, PetscInt dim, PetscInt number, PetscInt *group)
 {
   PetscFunctionBegin;
@@ -62,7 +62,7 @@ PetscErrorCode MeshFileAddGroup(MeshFile *file, MeshGroupKind kind, PetscInt dim
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The elements added from now on have this shape and are in these groups */
+/* Begins a run: elements that are added from now on have this shape and are in these groups */
 PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_groups, const PetscInt groups[])
 {
   MeshRun *run = file->n_runs ? &file->runs[file->n_runs - 1] : NULL;
@@ -90,7 +90,7 @@ PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_g
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One more element of the last run; its nodes are for the reader to fill in */
+/* Adds an element to the last run. The caller fills in its nodes. */
 PetscErrorCode MeshFileAddElement(MeshFile *file, PetscInt number, PetscInt *nodes[])
 {
   MeshRun *run = &file->runs[file->n_runs - 1];
@@ -124,7 +124,7 @@ PetscErrorCode MeshFileNumberNodes(MeshFile *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* < 0: no such node */
+/* The node with this number in the file; -1 if there is none */
 PetscErrorCode MeshFileFindNode(MeshFile *file, PetscInt number, PetscInt *node)
 {
   PetscFunctionBegin;
@@ -139,7 +139,7 @@ PetscErrorCode MeshFileFindNode(MeshFile *file, PetscInt number, PetscInt *node)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a block belongs to the body: named in -mesh_blocks by name or number, or none is named there */
+/* Whether a block belongs to the body: -mesh_blocks lists its name or number, or is not given */
 PetscErrorCode MeshFileWants(const MeshFile *file, PetscInt number, const char name[], PetscBool *wants)
 {
   char text[32];

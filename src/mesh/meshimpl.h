@@ -4,17 +4,17 @@
 
 #define MESH_NAME_LENGTH 256
 
-/* What the elements of a group are to the body */
+/* What a group of a mesh file means to the body */
 typedef enum {
   MESH_BLOCK,     /* its cells */
   MESH_SIDE_SET,  /* faces of its cells */
   MESH_NODE_SET,  /* vertices */
-  MESH_UNDECIDED, /* told by the dimension of its elements, once that of the body is known */
+  MESH_UNDECIDED, /* the file does not say: it follows from the dimension of the elements, once that of the body is known */
 } MeshGroupKind;
 
 typedef struct {
   MeshGroupKind kind;
-  PetscInt      dim; /* of its elements */
+  PetscInt      dim; /* dimension of its elements */
   PetscInt      number;
   char          name[MESH_NAME_LENGTH]; /* empty: it has none */
 } MeshGroup;
@@ -23,9 +23,9 @@ typedef struct {
 typedef struct {
   DMPolytopeType shape;
   PetscInt       dim, corners;
-  PetscInt       n, first, first_node; /* elements; the first one's place in numbers, and in nodes */
+  PetscInt       n, first, first_node; /* number of elements; where those of the first begin in `numbers` and in `element_nodes` */
   PetscInt       n_groups, first_group;
-  PetscBool      chosen; /* cells of this body */
+  PetscBool      chosen; /* they are cells of this body */
 } MeshRun;
 
 /* A mesh file as it is read, on the first rank alone, whatever its format */
@@ -57,7 +57,7 @@ typedef struct {
   PetscInt      *cells, *cell_numbers; /* vertices of each cell; its number in the file */
   PetscInt      *vertex_of_node;       /* < 0: not the body's */
   PetscReal     *vertices;
-  /* what a reader holds while it reads, so that it is freed also where reading ends with an error */
+  /* memory of a reader, which is freed with the file if reading ends with an error */
   char *text;
 } MeshFile;
 

@@ -2,12 +2,12 @@
 #include "meshimpl.h"
 #include <sys/stat.h>
 
-/* Header as it is read: numbers are big-endian */
+/* A header as it is read. Its numbers are big-endian. */
 typedef struct {
   FILE     *stream;
   long      size;
   int       count_bytes, offset_bytes; /* 4 or 8, by the version of the format */
-  PetscBool cut;
+  PetscBool cut;                       /* the file ends too early, or a number is impossible */
 } Header;
 
 static PetscInt64 ReadNumber(Header *header, int bytes)
@@ -23,7 +23,7 @@ static PetscInt64 ReadNumber(Header *header, int bytes)
   return header->cut ? 0 : (PetscInt64)value;
 }
 
-/* A length that the file must have room for */
+/* Reads a length, which cannot exceed that of the file */
 static PetscInt64 ReadLength(Header *header)
 {
   const PetscInt64 length = ReadNumber(header, header->count_bytes);
@@ -32,7 +32,7 @@ static PetscInt64 ReadLength(Header *header)
   return header->cut ? 0 : length;
 }
 
-/* Everything in a header is padded to four bytes */
+/* Skips an entry of the header: entries are padded to a multiple of four bytes */
 static void Skip(Header *header, PetscInt64 bytes)
 {
   bytes = (bytes + 3) / 4 * 4;
@@ -50,7 +50,7 @@ static void SkipAttributes(Header *header)
 {
   PetscInt64 n;
 
-  (void)ReadNumber(header, 4); /* the mark of the list */
+  (void)ReadNumber(header, 4); /* tells that a list follows */
   n = ReadLength(header);
   for (PetscInt64 i = 0; i < n && !header->cut; i++) {
     PetscInt64 type;
@@ -61,8 +61,8 @@ static void SkipAttributes(Header *header)
   }
 }
 
-/* Where the data of the file end: a variable's place and its size, from its dimensions; a dimension of length 0 is that of
-   records, of which the first one's place is told */
+/* Finds where the data of the file end, from the place and the dimensions of each variable. A dimension of length 0 is that of records: the
+   header tells the place of the first record. */
 static PetscErrorCode FindEnd(Header *header, PetscInt64 records, double *end)
 {
   PetscInt64 n, *lengths;
@@ -107,8 +107,8 @@ static PetscErrorCode FindEnd(Header *header, PetscInt64 records, double *end)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On the first rank. Ends with an error where a classic file is shorter than its header tells; other files are not its
-   business. The format: NetCDF User's Guide, "The NetCDF Classic Format Specification" */
+/* Ends with an error if a classic NetCDF file is shorter than its header tells; other files are not checked. Call on the first rank alone.
+   The format is that of the NetCDF User's Guide, "The NetCDF Classic Format Specification". */
 PetscErrorCode MeshCheckNetCDFSize(const char path[])
 {
   Header         header = {0};
@@ -131,7 +131,7 @@ PetscErrorCode MeshCheckNetCDFSize(const char path[])
     header.count_bytes  = magic[3] == 5 ? 8 : 4;
     header.offset_bytes = magic[3] == 1 ? 4 : 8;
     records             = ReadNumber(&header, header.count_bytes);
-    if (records == (header.count_bytes == 4 ? (PetscInt64)UINT32_MAX : -1)) records = 0; /* not told: written as a stream */
+    if (records == (header.count_bytes == 4 ? (PetscInt64)UINT32_MAX : -1)) records = 0; /* unknown: the file was written as a stream */
     error = FindEnd(&header, records, &end);
   }
   (void)fclose(header.stream);

@@ -2,10 +2,11 @@
 #include "meshimpl.h"
 
 typedef struct {
-  PetscReal scale, rotation[3][3], centre[3], shift[3];
+  PetscReal scale, rotation[3][3];
+  PetscReal centre[3], shift[3]; /* [m] */
 } Motion;
 
-/* As many numbers as expected, up to four; `values` has room for four */
+/* Reads an option that must have as many numbers as expected, at most four; `values` must have room for four */
 PetscErrorCode MeshReadNumbers(MPI_Comm comm, const char prefix[], const char option[], PetscInt expected, const char meaning[],
                                PetscReal values[], PetscBool *set)
 {
@@ -95,7 +96,7 @@ PetscErrorCode MeshPlace(DM dm, const char prefix[], const char name[])
   if (!moves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   PetscCall(Move(&motion, dim, coordinates));
-  PetscCall(DMSetCoordinatesLocal(dm, coordinates)); /* drops the global ones, which have not moved */
+  PetscCall(DMSetCoordinatesLocal(dm, coordinates)); /* this drops the global coordinates, which have not been moved */
   PetscCall(DMGetCellCoordinatesLocal(dm, &coordinates));
   if (coordinates) {
     PetscCall(Move(&motion, dim, coordinates));

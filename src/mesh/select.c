@@ -1,7 +1,12 @@
-/* Which elements of a mesh file make the body, and whether they are fit to. */
+/* Which elements of a mesh file make the body, and whether these can be computed with. */
 #include "meshimpl.h"
 
-/* Groups of a file that gives them no kind: by their dimension beside that of the body */
+/* A body in one or two dimensions may be off its axis or plane by this, in parts of its largest coordinate: files carry the round-off of
+   the program that drew it */
+#define OFF_PLANE 1e-12
+
+/* Finds the dimension of the body, which is that of its elements, and decides what groups are whose kind the file does not tell: a group of
+   the body's dimension is a block, one of a dimension less a side set, any other a node set */
 static PetscErrorCode DecideGroups(MeshFile *file)
 {
   PetscFunctionBegin;
@@ -17,7 +22,7 @@ static PetscErrorCode DecideGroups(MeshFile *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error where -mesh_blocks names one that the file does not have */
+/* Ends with an error if -mesh_blocks names a block that the file does not have */
 static PetscErrorCode CheckWanted(const MeshFile *file)
 {
   char list[1024] = "";
@@ -49,7 +54,7 @@ static PetscErrorCode CheckWanted(const MeshFile *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells of one shape, with vertices numbered in the order of the file's nodes; nodes of other elements are left out */
+/* Collects the cells, which must have one shape. Vertices are numbered in the order of the file's nodes; nodes of no cell are left out. */
 static PetscErrorCode CollectCells(MeshFile *file)
 {
   const MeshRun *first = NULL;
@@ -93,7 +98,7 @@ static PetscErrorCode CollectCells(MeshFile *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As many coordinates as the elements have dimensions: the others must vanish */
+/* Collects as many coordinates of each vertex as the elements have dimensions. The others must be zero. */
 static PetscErrorCode CollectVertices(MeshFile *file)
 {
   const PetscInt dim  = file->dim;
@@ -116,8 +121,7 @@ static PetscErrorCode CollectVertices(MeshFile *file)
   for (PetscInt node = 0; node < file->n_nodes; node++)
     for (PetscInt d = dim; d < 3; d++) {
       if (file->vertex_of_node[node] < 0) continue;
-      /* files may carry the round-off of the program that drew the plane */
-      PetscCheck(PetscAbsReal(file->coordinates[3 * node + d]) <= 1e-12 * size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      PetscCheck(PetscAbsReal(file->coordinates[3 * node + d]) <= OFF_PLANE * size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                  "its elements have dimension %" PetscInt_FMT " (%s), but node %" PetscInt_FMT
                  " has %c = %g: a body of dimension %" PetscInt_FMT " must lie in %s",
                  dim, DMPolytopeTypes[file->shape], file->node_numbers ? file->node_numbers[node] : node + 1, (char)('x' + d),
@@ -144,8 +148,8 @@ static PetscReal SimplexJacobian(PetscInt dim, const PetscReal *x[])
   return Determinant(dim, J);
 }
 
-/* Smallest Jacobian of a quadrilateral or hexahedron at the points of the 2-point Gauss rule, where the element is
-   integrated; their sum is the volume */
+/* Smallest Jacobian of a quadrilateral or hexahedron at the points of the 2-point Gauss rule, at which it is integrated; their sum is its
+   volume */
 static PetscReal TensorJacobian(PetscInt dim, const PetscReal *x[], PetscReal *sum)
 {
   static const int signs[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
@@ -175,7 +179,7 @@ static PetscReal TensorJacobian(PetscInt dim, const PetscReal *x[], PetscReal *s
   return smallest;
 }
 
-/* Ends with an error where elements name a node twice, are inverted or have no volume */
+/* Ends with an error if an element has the same node at two corners, is inverted, or has no volume */
 static PetscErrorCode CheckCells(const MeshFile *file)
 {
   const char *const measures[]     = {"length", "area", "volume"};
@@ -229,7 +233,7 @@ static PetscErrorCode CheckCells(const MeshFile *file)
           (double)volume_of_first);
 }
 
-/* From what the reader put into a file to the body's cells and vertices */
+/* Chooses and checks the body's cells and vertices among what a reader has put into a file */
 PetscErrorCode MeshFileSelect(MeshFile *file)
 {
   PetscFunctionBegin;
@@ -238,7 +242,7 @@ PetscErrorCode MeshFileSelect(MeshFile *file)
   PetscCheck(file->dim > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it has no elements");
   PetscCall(CollectCells(file));
   PetscCall(CollectVertices(file));
-  /* a bar is the same from either end */
+  /* elements of a bar may run either way in a file */
   if (file->dim == 1)
     for (PetscInt c = 0; c < file->n_cells; c++) {
       PetscInt *cell = file->cells + 2 * c;

@@ -1,8 +1,9 @@
+/* Waveforms: values of rows at equally spaced times of a controller step. */
 #include <impakt/trace.h>
 
 struct _n_Trace {
   PetscInt     size, levels;
-  PetscScalar *values; /* (levels + 1) x size */
+  PetscScalar *values; /* (levels + 1) x size, level by level */
 };
 
 /*@
@@ -147,7 +148,7 @@ PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, Pet
   const PetscScalar *lower = trace->values + level * trace->size, *upper = lower + trace->size;
 
   PetscFunctionBegin;
-  /* written so that both ends of an interval come out bit for bit */
+  /* at both ends of an interval the result is the value there, bit for bit */
   for (PetscInt i = begin; i < end; i++) values[i] = weight == 1 ? upper[i] : lower[i] + weight * (upper[i] - lower[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,8 +189,7 @@ PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScal
 }
 
 /*@
-  TraceResampleHeld - as `TraceResample()`, for a waveform that is not linear between its levels but constant, with the value of the
-  level that ends the interval
+  TraceResampleConstant - as `TraceResample()`, of a waveform that is constant between its levels, with the value at the end of the interval
 
   Not Collective
 
@@ -204,13 +204,13 @@ PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScal
 
 .seealso: `Trace`, `TraceResample()`
 @*/
-PetscErrorCode TraceResampleHeld(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
+PetscErrorCode TraceResampleConstant(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
 {
   PetscFunctionBegin;
   PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows",
              from->size, to->size);
   for (PetscInt level = 0; level <= to->levels; level++) {
-    /* the end of the interval of `from` in which this level lies; a level of both is its own */
+    /* the level of `from` that is at this time, or the next one after it */
     const PetscScalar *source = from->values + ((level * from->levels + to->levels - 1) / to->levels) * from->size;
     PetscScalar       *values = to->values + level * to->size;
 

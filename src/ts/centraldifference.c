@@ -9,10 +9,10 @@
 typedef struct {
   TSCentralDifferenceFn *acceleration;
   void                  *ctx;
-  Vec                    A; /* acceleration at ts->ptime, owned by the caller of TSCentralDifferenceSetAccelerationVec() */
+  Vec                    A; /* acceleration at ts->ptime; it belongs to the caller of TSCentralDifferenceSetAccelerationVec() */
 } TS_CentralDifference;
 
-/* v += half a, and u += dt v where dt is not 0: one pass over memory, which is what large bodies wait for */
+/* v += half a, and, if dt is not 0, u += dt v: in one pass over memory, which is what takes the time with large bodies */
 static PetscErrorCode Kick(Vec U, Vec V, Vec A, PetscReal half, PetscReal dt)
 {
   const PetscScalar *a;
@@ -233,8 +233,8 @@ PetscErrorCode TSSecondOrderRegisterAll(void)
   Level: developer
 
   Note:
-  Also switches off the restart of `TSALPHA2`, which would put two half steps with another matrix before the next step to
-  guess an acceleration: Impakt always has one.
+  Also switches off the restart of `TSALPHA2`, which would make two half steps with another matrix before the next step to estimate an
+  acceleration. Impakt always knows the acceleration.
 
 .seealso: `TSALPHA2`, `TSCENTRALDIFFERENCE`
 @*/

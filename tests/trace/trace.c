@@ -174,13 +174,13 @@ static void holds_values(void **state)
   (void)state;
   ok(TraceCreate(2, 5, &fine));
   ok(TraceCreate(2, 2, &back));
-  ok(TraceResampleHeld(coarse, 0, 1, -2, fine));
+  ok(TraceResampleConstant(coarse, 0, 1, -2, fine));
   for (PetscInt k = 0; k <= 5; k++) {
     ok(TraceGetLevel(fine, k, &level));
     assert_true(level[0] == -2 * expected[k]);
     assert_true(level[1] == 0); /* the first row only */
   }
-  ok(TraceResampleHeld(coarse, 0, 2, 1, back));
+  ok(TraceResampleConstant(coarse, 0, 2, 1, back));
   for (PetscInt k = 0; k <= 2; k++) {
     ok(TraceGetLevel(back, k, &level));
     assert_true(level[0] == values[k]);
@@ -201,7 +201,7 @@ static void refuses_what_makes_no_sense(void **state)
   trace = make_trace(1, values);
   ok(TraceCreate(3, 1, &other));
   refused(PETSC_ERR_ARG_SIZ, "2 and 3 rows", TraceResample(trace, 0, 2, 1, other));
-  refused(PETSC_ERR_ARG_SIZ, "2 and 3 rows", TraceResampleHeld(trace, 0, 2, 1, other));
+  refused(PETSC_ERR_ARG_SIZ, "2 and 3 rows", TraceResampleConstant(trace, 0, 2, 1, other));
   ok(TraceDestroy(&trace));
   ok(TraceDestroy(&other));
 }

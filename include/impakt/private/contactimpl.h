@@ -8,52 +8,54 @@ struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
   PetscErrorCode (*setup)(Contact);
   PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
-  PetscErrorCode (*rowschanged)(Contact); /* some rows of the bodies' interfaces, contact->changed, have new entries */
-  PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of the step, before they become the next one's start */
+  PetscErrorCode (*rowschanged)(Contact); /* called after rows have been built again: those marked as changed have new entries */
+  PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of a step, before the next step starts from them */
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
 
+/* Two bodies, or a body and an obstacle, that may touch */
 typedef struct {
-  char     *name;       /* as given: left:right */
-  PetscInt  body[2];    /* numbers in the contact's bodies: the one that has a node for each row, and its partner */
-  PetscInt  dirichlet;  /* 0 or 1: which of them takes displacements in this controller step */
-  char     *surface[2]; /* names of the surfaces, NULL for all that face each other */
-  Obstacle  obstacle;   /* in place of the second body, whose number is that of the bodies then; borrowed */
-  PetscBool chosen;     /* by the program, not by the user */
-  Surface   surfaces[2];
-  Transfer  transfer;
-  PetscInt  components; /* rows of each node: its normal, or all directions */
-  PetscInt  begin, end; /* its rows of this rank */
-  PetscReal normal[3];  /* mean outward normal of the first */
-  PetscBool by_force;   /* forces are the unknowns of all its rows, see SchwarzSetUpSides() */
+  char     *name;        /* as given: left:right */
+  PetscInt  body[2];     /* numbers of the first body, which has a node for each row, and of the second; n_bodies if that is an obstacle */
+  PetscInt  dirichlet;   /* which of them takes displacements in this controller step: 0 or 1 */
+  char     *surface[2];  /* names of the surfaces; NULL for all faces that see the other body */
+  Obstacle  obstacle;    /* in place of the second body, or NULL; borrowed */
+  PetscBool chosen;      /* the program has chosen the sides, not the user */
+  Surface   surfaces[2]; /* those of the bodies */
+  Transfer  transfer;    /* between the surfaces */
+  PetscInt  components;  /* rows of each node: 1, along its normal, or one along each axis */
+  PetscInt  begin, end;  /* rows of this rank: begin to end - 1 */
+  PetscReal normal[3];   /* mean outward normal of the first body */
+  PetscBool by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
 } ContactPair;
 
-/* Default tolerances on lengths, in parts of the smallest body: see ContactGetLengthScale(). Those of the outer iterations are 1e-12 m for
-   bars of 0.25 m (Hoy, Tezaur, Mota, section 4). */
+/* Default tolerances on lengths, in parts of the size of the smallest body: see ContactGetLengthScale(). That of the outer iterations is
+   1e-12 m for bars of 0.25 m, as in Hoy, Tezaur, Mota, section 4. */
 #define CONTACT_POSITION_TOLERANCE     4e-12
-#define CONTACT_AUGMENTATION_TOLERANCE 4e-10 /* gap that the augmented Lagrangian leaves, whose rounds converge linearly */
-/* Default tolerance on contact forces, in parts of ContactGetForceScale(): the strain of 1e-17 is below all round-off, so that forces are
-   found to their relative tolerance unless they vanish */
+#define CONTACT_AUGMENTATION_TOLERANCE 4e-10 /* gap that the augmented Lagrangian leaves: its rounds converge linearly only */
+/* Default tolerance on contact forces, in parts of ContactGetForceScale(). A strain of 1e-17 is below all round-off: forces are found to
+   their relative tolerance unless they vanish. */
 #define CONTACT_FORCE_TOLERANCE 1e-17
 
-/* The gap of a row without anything opposite [m] */
+/* The gap of a row that has no partner opposite: larger than any gap, in whatever unit, and still a number that displacements can be added
+   to */
 #define CONTACT_NO_GAP 1e30
 
-/* Nodes of this rank with rows of several pairs */
+/* Nodes of this rank that have rows of several pairs, see src/contact/rows/sharednodes.c */
 typedef struct {
-  PetscInt   n, *offsets, *rows;
-  PetscBool *free_dofs; /* per node: 3, whether the user leaves its displacement along an axis free */
-  PetscBool *left_out;  /* per entry of `rows`: it is of an obstacle that lies behind another */
-  PetscReal *unit;      /* per pair: stiffness for each unit of area that makes forces of unknowns in metres [N/m^3] */
-  PetscBool *answers;   /* per pair: displacements of the partner answer to forces in the same controller step */
-  PetscBool  arranges;  /* rows that depend on each other are told apart */
-  PetscInt  *sorted;    /* work space */
+  PetscInt   n, *offsets, *rows; /* node k has the rows rows[offsets[k]] to rows[offsets[k + 1] - 1] */
+  PetscBool *free_dofs;          /* per node, 3 each: its displacement along this axis is not held */
+  PetscBool *left_out;           /* per entry of `rows`: the row is that of an obstacle behind another one */
+  PetscReal *unit;     /* per pair: stiffness per unit of area by which unknowns in metres are multiplied to give forces [N/m^3] */
+  PetscBool *answers;  /* per pair: the partner moves under forces in the same controller step */
+  PetscBool  arranges; /* rows that depend on others of their node may have forces as unknowns, or be let go */
+  PetscInt  *sorted;   /* work space */
 } SharedNodes;
 
-/* What the rows mean to the bodies */
+/* What the rows mean to the bodies in a controller step */
 typedef enum {
-  CONDITIONS_FREE,         /* no row means anything */
+  CONDITIONS_FREE,         /* all rows free */
   CONDITIONS_SCHWARZ,      /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
   CONDITIONS_ROBIN,        /* active rows: Robin rows on both sides */
   CONDITIONS_FORCES,       /* all rows forced on both sides */
@@ -132,7 +134,8 @@ PETSC_INTERN PetscErrorCode ContactReadObstacles(Contact);
 PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
-PETSC_INTERN PetscErrorCode ContactSetUpPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpRows(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactFindSharedNodes(Contact);

@@ -31,14 +31,6 @@ PetscErrorCode ContactSetConditions(Contact contact, ContactConditions condition
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a flag (0 or 1) is up on any rank */
-PetscErrorCode ContactOr(Contact contact, int *flag)
-{
-  PetscFunctionBegin;
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether any row on any rank is active (penetrating = false), or penetrates without being active (true) */
 PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any)
 {

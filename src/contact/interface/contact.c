@@ -2,6 +2,12 @@
 #include <impakt/private/contactimpl.h>
 #include <sys/names.h>
 
+/* Slip [parts of the face] and turn [rad] after which rows are built again by default. Smaller bounds follow curved surfaces better, larger
+   ones lose less energy: a half disc that is led round another one has ripples of 1.5 % in its normal force with these, and 0.2 % with
+   0.05. */
+#define SLIP_BOUND  0.2
+#define ANGLE_BOUND 0.1
+
 PetscClassId  CONTACT_CLASSID = 0;
 PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 
@@ -91,8 +97,8 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
   (*contact)->facing      = PETSC_TRUE;
-  (*contact)->slip_bound  = 0.2;
-  (*contact)->angle_bound = 0.1;
+  (*contact)->slip_bound  = SLIP_BOUND;
+  (*contact)->angle_bound = ANGLE_BOUND;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -375,6 +381,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     if (c->node_dofs) PetscCall(PetscFree(c->node_dofs[b]));
   }
   PetscCall(ContactDestroyRows(c));
+  PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->speeds, c->traces, c->interfaces, c->order, c->node_dofs, c->n_node_dofs, c->n_all_nodes));
   PetscCall(PetscFree(c->stabilized));

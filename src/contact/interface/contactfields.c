@@ -2,13 +2,17 @@
 #include <impakt/private/contactimpl.h>
 #include <math.h>
 
-/* What the transposes of the interface rows carry to the nodes; areas weigh the rows, so that both sides of a pair have the same pressures
- */
+/* Areas that rows bring to a node count as round-off if they are smaller, in parts of the largest area of a row */
+#define NO_AREA 1e-9
+/* A node touches if a larger part of the area that rows bring to it belongs to active rows; the least possible part is a mortar weight */
+#define NOT_ACTIVE 1e-9
+
+/* What the transposes of the rows carry to the nodes. Rows are weighed by areas, so that both sides of a pair have the same pressures. */
 typedef enum {
   CARRY_FORCE,
   CARRY_AREA,
   CARRY_ACTIVE_AREA,
-  CARRY_GAP_AREA, /* of rows that have anything opposite, and so a gap */
+  CARRY_GAP_AREA, /* area of rows that have a partner opposite, and so a gap */
   CARRY_GAP,
   N_CARRIED
 } Carried;
@@ -17,7 +21,7 @@ struct _n_ContactFields {
   Contact   contact;  /* borrowed */
   Vec       rows;     /* one number for each row */
   Vec      *nodes;    /* per body: N_CARRIED vectors of its displacements' layout */
-  PetscReal smallest; /* areas below are round-off [m^2] */
+  PetscReal smallest; /* smaller areas are round-off [m^2] */
 };
 
 /*@
@@ -58,12 +62,12 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
   for (PetscInt i = 0; i < contact->n_rows; i++)
     largest = PetscMax(largest, contact->area[i] * contact->cross_section[contact->row_pair[i]]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
-  f->smallest = 1e-9 * largest;
+  f->smallest = NO_AREA * largest;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `along`: component of the normal of its node along the row. Tied nodes have a row for each axis, and what they carry of areas is to point
-   along the normal as that of others does. */
+/* What row i carries of one kind. `along` is the component of the node's normal along the row: 1 but for tied nodes, which have a row for
+   each axis, so that the areas they carry point along the normal as those of other nodes do. */
 static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried kind)
 {
   const PetscReal area = contact->area[i] * contact->cross_section[contact->row_pair[i]];
@@ -82,7 +86,7 @@ static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried 
   }
 }
 
-/* To the nodes of a body, along the rows on Neumann sides and against them on Dirichlet sides */
+/* Carries values of one kind to the nodes of a body: along the rows on Neumann sides, against them on Dirichlet sides */
 static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
 {
   Contact      contact = fields->contact;
@@ -108,7 +112,7 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* a.b / b.b, or `none` where b is round-off */
+/* a.b / b.b; `none` if b is shorter than `smallest`, which means round-off */
 static PetscReal Ratio(PetscInt dim, const PetscScalar a[], const PetscScalar b[], PetscReal smallest, PetscReal none)
 {
   PetscReal product = 0, square = 0;
@@ -165,7 +169,8 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
     for (PetscInt d = 0; d < 3; d++) values[CONTACT_FIELDS_FORCE + d] = d < dim ? PetscRealPart(carried[CARRY_FORCE][dof + d]) : 0;
     values[CONTACT_FIELDS_PRESSURE] = Ratio(dim, carried[CARRY_FORCE] + dof, area, fields->smallest, 0);
     values[CONTACT_FIELDS_GAP]      = Ratio(dim, carried[CARRY_GAP] + dof, carried[CARRY_GAP_AREA] + dof, fields->smallest, NAN);
-    values[CONTACT_FIELDS_ACTIVE]   = PetscAbsReal(Ratio(dim, carried[CARRY_ACTIVE_AREA] + dof, area, fields->smallest, 0)) > 1e-9 ? 1 : 0;
+    values[CONTACT_FIELDS_ACTIVE] = PetscAbsReal(Ratio(dim, carried[CARRY_ACTIVE_AREA] + dof, area, fields->smallest, 0)) > NOT_ACTIVE ? 1
+                                                                                                                                       : 0;
   }
   for (Carried k = 0; k < N_CARRIED; k++) PetscCall(VecRestoreArrayRead(nodes[k], &carried[k]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,17 @@
 /* Set-up, and what contact tells of itself. */
 #include <impakt/private/contactimpl.h>
 
+/* Arrays with an entry for each body; traces have one more, for all obstacles */
+static PetscErrorCode AllocateBodies(Contact contact)
+{
+  const PetscInt n = contact->n_bodies;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc7(n, &contact->speeds, n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n, &contact->node_dofs,
+                         n, &contact->n_node_dofs, n, &contact->n_all_nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSetUp - finds the contact rows, sets up the bodies and the method
 
@@ -18,7 +29,10 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactSetUpPairs(contact));
+  PetscCall(AllocateBodies(contact));
+  PetscCall(ContactOrderBodies(contact));
+  PetscCall(ContactFindDimension(contact));
+  PetscCall(ContactSetUpRows(contact));
   PetscCall(ContactSetUpScales(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodySetUp(contact->bodies[b]));

@@ -2,7 +2,10 @@
 #include <impakt/private/contactimpl.h>
 #include <sys/names.h>
 
-/* One side of a pair; the second may be an obstacle, for which the body is one past the last */
+/* Mean elements of two bodies are alike if the ratio of their edges is above this, so that round-off does not choose the sides */
+#define ALIKE 0.999
+
+/* Finds body and surface of one side of a pair by its name. The second side may be an obstacle: its body is one past the last. */
 static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)
 {
   char     *dot;
@@ -104,6 +107,26 @@ static PetscErrorCode AddObstacle(Contact contact, const char name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees pairs and obstacles */
+PetscErrorCode ContactDestroyPairs(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(TransferDestroy(&pair->transfer));
+    for (PetscInt side = 0; side < 2; side++) {
+      PetscCall(SurfaceDestroy(&pair->surfaces[side]));
+      PetscCall(PetscFree(pair->surface[side]));
+    }
+    PetscCall(PetscFree(pair->name));
+  }
+  for (PetscInt o = 0; o < contact->n_obstacles; o++) PetscCall(ObstacleDestroy(&contact->obstacles[o]));
+  PetscCall(PetscFree(contact->obstacles));
+  PetscCall(PetscFree(contact->pairs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rigid obstacles, by the options */
 PetscErrorCode ContactReadObstacles(Contact contact)
 {
@@ -123,11 +146,11 @@ PetscErrorCode ContactReadObstacles(Contact contact)
 /* What decides which of two bodies takes displacements */
 typedef struct {
   PetscBool is_explicit;
-  PetscReal size; /* mean edge length of its elements, of all that are alike the largest [m] */
+  PetscReal size; /* edge of its mean element, or of the largest that is alike [m] */
 } Preference;
 
-/* Of all bodies. Elements of sizes that differ by less than a thousandth, from the largest of them, are alike: for two bodies on their own
-   that could go round in circles. */
+/* The preferences of all bodies. Sizes are compared with the largest that is alike, not two by two: of three bodies each could be alike to
+   the next, and the first not to the last, so that the order could go round in a circle. */
 static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
 {
   PetscReal *size, level = PETSC_MAX_REAL;
@@ -144,15 +167,15 @@ static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
 
     for (PetscInt c = 0; c < contact->n_bodies; c++)
       if (preferences[c].size < 0 && (largest < 0 || size[c] > size[largest])) largest = c;
-    if (size[largest] < 0.999 * level) level = size[largest];
+    if (size[largest] < ALIKE * level) level = size[largest];
     preferences[largest].size = level;
   }
   PetscCall(PetscFree(size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A pair of whole bodies whose order is not stated: an implicit one before an explicit one, then the one with the finer mesh, then the one
-   that is named first, takes displacements */
+/* Adds a pair of whole bodies whose sides the user has not chosen. An implicit body takes displacements rather than an explicit one; if
+   both are alike in that, the one with the finer mesh; if both are alike in that too, the one that is named first. */
 static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const Preference preferences[])
 {
   const Preference *a = &preferences[first], *b = &preferences[second];
@@ -181,7 +204,7 @@ static PetscErrorCode GetMiddle(Body body, PetscReal middle[3])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether another body keeps body `a` from ever touching body `b`, or an obstacle: on a line, where it lies between them */
+/* Whether another body keeps body `a` from ever touching body `b`, or an obstacle: in one dimension a body that lies between them does */
 static PetscErrorCode IsHidden(Contact contact, PetscInt a, PetscInt b, Obstacle obstacle, PetscBool *hidden)
 {
   PetscReal first[3], second[3], normal[3], distance = 0;
@@ -205,7 +228,7 @@ static PetscErrorCode IsHidden(Contact contact, PetscInt a, PetscInt b, Obstacle
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest dimension of a body: set-up refuses pairs of others */
+/* The largest dimension of all bodies. Set-up refuses bodies of another one. */
 PetscErrorCode ContactFindDimension(Contact contact)
 {
   PetscFunctionBegin;

@@ -4,10 +4,10 @@
 /* What is summed over the rows of a pair */
 enum { SUM_FORCE, SUM_ACTIVE, SUM_AREA, SUM_VECTOR, SUM_MOMENT = SUM_VECTOR + 3, SUM_IMPULSE = SUM_MOMENT + 3, N_SUMS = SUM_IMPULSE + 3 };
 
-/* ... and what is the largest of them */
+/* Of what the largest value of a pair's rows is found */
 enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
 
-/* Memory, and what stays as it is; after the bodies have been set up */
+/* Makes room for the resultants, and notes cross-sections and controller step. The bodies must have been set up. */
 PetscErrorCode ContactSetUpResultants(Contact contact)
 {
   PetscInt substeps;
@@ -26,6 +26,7 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees the room for the resultants */
 PetscErrorCode ContactDestroyResultants(Contact contact)
 {
   PetscFunctionBegin;
@@ -33,7 +34,7 @@ PetscErrorCode ContactDestroyResultants(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the resultant of a pair, on its second body */
+/* This rank's share of the resultant of a pair on its second body [N] */
 static void SumForces(Contact contact, const ContactPair *pair, PetscReal force[])
 {
   for (PetscInt d = 0; d < 3; d++) force[d] = 0;
@@ -41,7 +42,7 @@ static void SumForces(Contact contact, const ContactPair *pair, PetscReal force[
     for (PetscInt d = 0; d < 3; d++) force[d] += contact->force[i] * contact->row_normal[3 * i + d];
 }
 
-/* The controller step that has been accepted adds to the impulses */
+/* Adds the controller step that has been accepted to the impulses */
 PetscErrorCode ContactAddImpulses(Contact contact)
 {
   PetscFunctionBegin;
@@ -57,7 +58,7 @@ PetscErrorCode ContactAddImpulses(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the moment about the origin */
+/* This rank's share of the moment of a pair about the origin on its second body [N m] */
 static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, PetscReal moment[])
 {
   const Body         body = contact->bodies[pair->body[0]];
@@ -86,10 +87,11 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* This rank's sums and largest values over the rows of pair p */
 static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
 {
   const ContactPair *pair    = &contact->pairs[p];
-  PetscInt           counted = -1; /* node that has been counted last: a tied one has several rows, side by side */
+  PetscInt           counted = -1; /* the node that was counted last: the rows of a tied node follow each other */
   TransferRows       rows;
 
   PetscFunctionBegin;
@@ -105,7 +107,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->gap[i]);
     if (!contact->tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
     if (!contact->active[i]) continue;
-    /* the rows of a node may have different areas then */
+    /* merged rows of one node may have different areas */
     if (contact->merger) sums[SUM_AREA] += PetscSqr(along) * contact->area[i] * contact->cross_section[p];
     if (contact->row_dof[i] == counted) continue;
     sums[SUM_ACTIVE] += 1;
@@ -118,7 +120,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pairs begin <= p < end */
+/* States of the pairs `begin` to `end` - 1 */
 static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt end, ContactPairState states[])
 {
   PetscReal *sums = contact->sums, *maxima = contact->maxima;

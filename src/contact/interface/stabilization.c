@@ -3,7 +3,7 @@
 
 const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilized", "ContactStabilization", "CONTACT_STABILIZATION_", NULL};
 
-/* Refuses what would have no effect */
+/* Ends with an error if the chosen stabilisation would have no effect, and makes room for it */
 PetscErrorCode ContactSetUpStabilization(Contact contact)
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)contact);
@@ -32,7 +32,8 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The naive stabilisation (Hoy, Tezaur, Mota, section 5): after a step in contact the nodes in contact have no acceleration */
+/* The naive stabilisation (Hoy, Tezaur, Mota, section 5): after a step in contact the acceleration of the nodes in contact is set to zero
+ */
 PetscErrorCode ContactStabilize(Contact contact)
 {
   PetscBool in_contact;

@@ -1,25 +1,26 @@
 /*
-   Rows whose Dirichlet node is held already are no conditions on it, and have no force of their own. To leave them out would leave out
-   the pressure between the rim of the interface and the nodes beside it. So their share goes to the rows of neighbouring nodes, as
-   multipliers at crosspoints do (Wohlmuth 2000; Puso, Laursen 2003): with the weights w_kh of the heirs k, that sum to one for each held
-   node h, their multiplier functions psi_k + sum_h w_kh psi_h sum to one over the whole interface. Their rows become
+   A held row, whose Dirichlet node the user holds in place, is no condition on that node and has no force of its own. But to leave the row
+   out would leave out the pressure between the rim of the interface and the nodes beside it. So a held row is dropped, and its share goes
+   to the rows of neighbouring nodes, its heirs, as with multipliers at crosspoints (Wohlmuth 2000; Puso, Laursen 2003). With weights w_kh
+   of the heirs k, which sum to one for each held node h, the multiplier functions psi_k + sum_h w_kh psi_h sum to one over the whole
+   interface. The rows of the heirs become
 
      (A_k row_k + sum_h w_kh A_h row_h) / A'_k,   A'_k = A_k + sum_h w_kh A_h,
 
-   with the areas A. Forces on them have the same resultant and moment on both sides, since those on each of the rows do.
+   with the areas A. A force on such a row has the same resultant and moment on both sides, since a force on each of its parts has.
 
-   The gap of such a row is a mean. Where rows may open it must not hide that one of them is closed: only rows of surfaces that are parallel
-   there are merged, and held nodes without such neighbours are left out.
+   The gap of such a row is a mean. If rows may open, the mean must not hide that one of its parts is closed: only rows between parallel
+   surfaces are merged, and held nodes without neighbours of that kind are left out.
 */
 #include <impakt/private/contactimpl.h>
 
-/* Gaps of parallel surfaces differ by less than this part of the distance */
+/* Surfaces are parallel between two nodes if their gaps differ by less than this part of the distance of the nodes: by half a degree */
 #define PARALLEL 0.01
 
-/* What the transfers say of a row */
+/* A number that the transfers have for each row */
 typedef enum { ROW_AREA, ROW_GAP, ROW_NORMAL } RowNumber;
 
-/* One component of it, for all rows of this rank, before any are merged */
+/* Such a number of all rows of this rank, before any are merged; of normals the component d */
 static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec vec)
 {
   const PetscBool tied = (PetscBool)(contact->law == CONTACT_LAW_TIED);
@@ -45,7 +46,7 @@ static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which rows belong to nodes with an edge in common, on surfaces that are parallel there as far as rows may open */
+/* A matrix of rows by rows, with ones where the nodes of two rows have an edge in common and, if rows may open, parallel surfaces there */
 static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
 {
   const PetscReal slope = contact->law == CONTACT_LAW_TIED ? PETSC_MAX_REAL : PARALLEL;
@@ -66,8 +67,8 @@ static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Dropped rows that no heir is known of, but of neighbours: `now` becomes one on them, and `part` one over the number of these neighbours
- */
+/* Finds dropped rows without heirs whose neighbours have heirs or are heirs: those that `known` marks. `now` becomes one on them, and
+   `part` one over the number of these neighbours. */
 static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec now, Vec part, int *any)
 {
   const PetscScalar *has;
@@ -93,8 +94,9 @@ static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Row h: the weights w_kh. A held node with neighbours that are not shares equally among them; one without, at a corner, among the heirs of
-   its neighbours. The other rows are those of the identity, as are those of held nodes that nobody inherits from. */
+/* A matrix with the weights w_kh in row h. The share of a held node goes in equal parts to the neighbours that are not held; if there are
+   none, as at a corner, to the heirs of its neighbours. The other rows of the matrix are those of the identity, as are the rows of held
+   nodes without heirs. */
 static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
 {
   Mat neighbours, given, inherited;
@@ -143,7 +145,7 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix of all new rows by all old ones, and whether rows of this rank are heirs; areas are those of the new rows afterwards */
+/* Makes the matrix of new rows by old rows, finds out which rows of this rank are heirs, and sets the areas to those of the new rows */
 static PetscErrorCode CreateMerger(Contact contact)
 {
   PetscScalar *areas, *sums;
@@ -174,7 +176,8 @@ static PetscErrorCode CreateMerger(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gaps and directions of the heirs are means. A gap has that of the last merger in it, unless its row has been described since. */
+/* Sets gaps and normals of the heirs, which are means. What an earlier merger added to a gap is in merged_gap, and is taken out first; it
+   is zero if the row has been described since. */
 static PetscErrorCode MergeNumbers(Contact contact)
 {
   const PetscScalar *own, *means;
@@ -203,7 +206,7 @@ static PetscErrorCode MergeNumbers(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where any row has changed, heirs before and after may have, without a shift of their own */
+/* If any row has changed, the rows of heirs may have changed with it: marks them, and takes the shifts of their gaps out */
 static PetscErrorCode MarkHeirs(Contact contact)
 {
   int any = 0;
@@ -219,8 +222,8 @@ static PetscErrorCode MarkHeirs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows that have been dropped because their node is held give their share to their neighbours: areas, gaps and directions at once, and
-   contact->merger makes matrices of the new rows of those of the old; NULL where none has been dropped */
+/* Drops the held rows and gives their shares to their heirs: areas, gaps and normals at once, and matrices by contact->merger, which is
+   NULL if no row has been dropped */
 PetscErrorCode ContactMergeDroppedRows(Contact contact)
 {
   int any = contact->merger ? 1 : 0;
@@ -237,7 +240,7 @@ PetscErrorCode ContactMergeDroppedRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the rows that have been merged in place of those of the transfers */
+/* Replaces the rows of the transfers in a matrix by the merged ones */
 PetscErrorCode ContactMergeMatrix(Contact contact, Mat *rows)
 {
   Mat merged;
@@ -250,8 +253,8 @@ PetscErrorCode ContactMergeMatrix(Contact contact, Mat *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the moment of a pair about the origin: a force on a merged row acts where its nodes are, along their directions.
-   `reference` and `displacement` are those of the first body. */
+/* Adds this rank's share of the moment of a pair about the origin [N m]: a force on a merged row acts at each of its nodes, along that
+   node's normal. `reference` and `displacement` are those of the first body [m]. */
 PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair, const PetscScalar reference[],
                                        const PetscScalar displacement[], PetscReal moment[])
 {
@@ -265,7 +268,7 @@ PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair,
       const PetscInt  third = 3 - a - b;
       const PetscReal sign  = (b - a + 3) % 3 == 1 ? 1 : -1;
 
-      if (a == b) continue; /* x_a n_b is a part of the third component */
+      if (a == b) continue; /* x_a n_b is part of the component along the third axis */
       PetscCall(GetRows(contact, ROW_NORMAL, b, contact->places));
       PetscCall(VecGetArray(contact->places, &levers));
       for (PetscInt i = 0; i < contact->n_rows; i++)
@@ -282,6 +285,7 @@ PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees the matrix of the merger and its work space */
 PetscErrorCode ContactDestroyMerger(Contact contact)
 {
   PetscFunctionBegin;

@@ -1,12 +1,17 @@
 /* The rows of all pairs: from surfaces and transfers to matrices. */
 #include <impakt/private/contactimpl.h>
 
-/* Rows whose bodies lie closer than this part of a face are tied */
+/* Nodes at most this far from the partner are tied to it [edges of the face; in one dimension, where a face is a point, of an element]: a
+   node that is further away lies nearer to the node behind it than to the partner */
 #define TIE_DISTANCE 0.5
-/* Directions along which a row moves less than this part of the displacement do not count */
-#define DIRECTION 1e-9
+/* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
+#define NO_COMPONENT 1e-9
+/* -contact_tolerance by default, in parts of the largest coordinate of any mesh, whose round-off is 10^4 times smaller: what a converged
+   outer iteration leaves of the gap must not count as penetration in the next free trial */
+#define PENETRATION_TOLERANCE 3e-12
 
-/* All nodes of both surfaces: they may slide, and any of them may come to lie opposite to the partner */
+/* Tells both bodies of a pair which of their nodes may touch: all nodes of both surfaces, since any of them may come to lie opposite to the
+   partner as bodies slide */
 static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
@@ -19,7 +24,7 @@ static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
     PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
     if (contact->n_all_nodes[body]) continue;
-    /* the first pair of a body says where its contact point is */
+    /* the contact position and velocity of a body in the history are those of its first pair */
     PetscCall(SurfaceGetData(pair->surfaces[side], &data));
     PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->n_all_nodes[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
     PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
@@ -31,7 +36,7 @@ static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows live on the rank that owns their Dirichlet node */
+/* Numbers the rows of this rank, pair by pair: a row is on the rank that owns its Dirichlet node */
 static PetscErrorCode CountRows(Contact contact)
 {
   PetscFunctionBegin;
@@ -76,7 +81,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether row i asks for a displacement of its Dirichlet node that the user prescribes already */
+/* Whether row i is held: the method would prescribe displacements of its Dirichlet node, and the user prescribes all of these already */
 static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
 {
   const PetscInt *dofs;
@@ -88,24 +93,35 @@ static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt 
   for (PetscInt d = 0; d < contact->dim && *held; d++) {
     PetscInt place;
 
-    if (PetscAbsReal(contact->row_normal[3 * i + d]) < DIRECTION) continue;
+    if (PetscAbsReal(contact->row_normal[3 * i + d]) < NO_COMPONENT) continue;
     PetscCall(PetscFindInt(contact->row_dof[i] + d, n, dofs, &place));
     if (place < 0) *held = PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the rows of a pair are, as its transfer has them now. Tied rows keep the bodies together as they are; what is held already is not.
- */
+/* Edge of the elements at the contact point of a body in one dimension [m]; of others the transfer knows the faces */
+static PetscErrorCode GetPointSize(Contact contact, const ContactPair *pair, PetscReal *size)
+{
+  PetscFunctionBegin;
+  *size = 0;
+  if (contact->dim == 1) PetscCall(BodyGetElementSize(contact->bodies[pair->body[0]], size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Describes the rows of a pair as its transfer has them now. The gap of a tied row is zero at the start, wherever the bodies are. A held
+   row neither opens nor closes. */
 PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 {
   const PetscInt dim = contact->dim;
   TransferRows   rows;
   Vec            positions;
   PetscInt       first;
+  PetscReal      point_size;
 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
+  PetscCall(GetPointSize(contact, pair, &point_size));
   PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
   PetscCall(VecGetOwnershipRange(positions, &first, NULL));
   for (PetscInt node = 0; node < rows.n; node++)
@@ -119,8 +135,9 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       contact->area[i]        = rows.area[node];
       contact->changed[i]     = rows.changed[node];
       if (contact->law == CONTACT_LAW_TIED) {
-        contact->tied[i]               = (PetscBool)(rows.opposite[node] && PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * rows.size[node]);
-        contact->initial_gap[i]        = contact->tied[i] ? 0 : CONTACT_NO_GAP;
+        contact->tied[i]        = (PetscBool)(rows.opposite[node] &&
+                                              PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * (dim == 1 ? point_size : rows.size[node]));
+        contact->initial_gap[i] = contact->tied[i] ? 0 : CONTACT_NO_GAP;
         contact->row_normal[3 * i + k] = 1;
       } else
         for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
@@ -135,7 +152,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error where nothing of the Dirichlet side can follow its partner, which might follow it */
+/* Ends with an error if all rows of a pair that have a partner opposite are held: then the pair would have no contact at all */
 static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
 {
   TransferRows rows;
@@ -154,7 +171,7 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* New matrices with the rows as they are */
+/* Makes the matrices of the rows, one for each body, anew */
 PetscErrorCode ContactFillMatrices(Contact contact)
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)contact);
@@ -186,7 +203,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean normal of the rows, and whether there are any */
+/* Mean normal of the rows that have a partner opposite */
 static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
 {
   MPI_Comm     comm    = PetscObjectComm((PetscObject)contact);
@@ -205,7 +222,8 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces of a pair that the user wants must have faces that see each other, though they may lie beside each other at the start */
+/* Ends with an error if the surfaces of a pair that the user has named have no faces that see each other. They may see each other and yet
+   not lie opposite at the start. */
 static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 {
   Surface surfaces[2] = {NULL, NULL};
@@ -233,6 +251,7 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Surfaces and transfer of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. */
 static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscReal *extent)
 {
   PetscBool rebuilt;
@@ -265,16 +284,11 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
 }
 
 /* Surfaces, transfers and rows of all pairs */
-PetscErrorCode ContactSetUpPairs(Contact contact)
+PetscErrorCode ContactSetUpRows(Contact contact)
 {
   PetscReal extent = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc7(contact->n_bodies, &contact->speeds, contact->n_bodies + 1, &contact->traces, contact->n_bodies,
-                         &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs,
-                         contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
-  PetscCall(ContactOrderBodies(contact));
-  PetscCall(ContactFindDimension(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CreateTransfer(contact, &contact->pairs[p], &extent));
     PetscCall(MarkContactNodes(contact, &contact->pairs[p]));
@@ -290,14 +304,13 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
-  /* what a converged outer iteration leaves of the gap must not count as penetration in the next trial */
-  if (contact->tolerance == (PetscReal)PETSC_DEFAULT) contact->tolerance = 3e-12 * extent;
+  if (contact->tolerance == (PetscReal)PETSC_DEFAULT) contact->tolerance = PENETRATION_TOLERANCE * extent;
   PetscCheck(contact->tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_tolerance %g m must not be negative", (double)contact->tolerance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An obstacle answers as a body would that stays where it is: its traces are zeros, at as many times as any body has */
+/* An obstacle has traces as a body has that does not move: zeros, at as many times as the body with the most substeps */
 PetscErrorCode ContactSetUpObstacleTraces(Contact contact)
 {
   BodyTraces *traces = &contact->traces[contact->n_bodies];
@@ -318,20 +331,10 @@ PetscErrorCode ContactSetUpObstacleTraces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees the rows, and the traces of obstacles */
 PetscErrorCode ContactDestroyRows(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    PetscCall(TransferDestroy(&pair->transfer));
-    for (PetscInt side = 0; side < 2; side++) {
-      PetscCall(SurfaceDestroy(&pair->surfaces[side]));
-      PetscCall(PetscFree(pair->surface[side]));
-    }
-    PetscCall(PetscFree(pair->name));
-  }
-  for (PetscInt o = 0; o < contact->n_obstacles; o++) PetscCall(ObstacleDestroy(&contact->obstacles[o]));
   if (contact->traces) {
     BodyTraces *traces = &contact->traces[contact->n_bodies];
 
@@ -342,8 +345,6 @@ PetscErrorCode ContactDestroyRows(Contact contact)
     PetscCall(TraceDestroy(&traces->force_in));
   }
   PetscCall(ContactDestroyMerger(contact));
-  PetscCall(PetscFree(contact->obstacles));
-  PetscCall(PetscFree(contact->pairs));
   PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite,
                        contact->tied));
   PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active,

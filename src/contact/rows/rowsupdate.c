@@ -1,12 +1,18 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include <impakt/private/contactimpl.h>
 
-/* Parts of a face by which gaps may hold surfaces apart for good. To give everything back loses energy at each rebuild, as polygons roll on
-   each other: ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost little. */
-#define APART    0.1
-#define RETURN   3   /* what is beyond goes back within a slip of one face: that many times */
-#define PARALLEL 0.9 /* cosine of the angle between normals beyond which two rows of a node say much the same */
+/* Shifts of gaps may hold surfaces apart for good by this much [edges of the face]. To take all of a shift back loses energy at each
+   rebuild, as polygons roll on each other: ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost
+   little. */
+#define APART 0.1
+/* What is beyond that is taken back in proportion to the slip: all of it within a slip of one over this [edges of the face] */
+#define TAKEN_BACK 3
+/* Two rows of a node are nearly the same condition if the cosine of the angle between their normals is above this: 26 degrees */
+#define PARALLEL 0.9
+/* Surfaces are looked for in the next controller step within this many times the way that bodies can make in it at their present speeds */
+#define AHEAD 2
 
+/* Cosine of the angle between the normals of two rows */
 static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
 {
   PetscReal cosine = 0;
@@ -15,7 +21,7 @@ static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
   return cosine;
 }
 
-/* Gaps at the start of the controller step, from what the bodies tell of it */
+/* Gaps at the start of the controller step, from the bodies' traces */
 PetscErrorCode ContactComputeStartGaps(Contact contact)
 {
   PetscFunctionBegin;
@@ -30,8 +36,8 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest component on this rank. VecNorm() costs as much as all else here: it looks for what is not a number, which bodies do
-   themselves when they have been integrated. */
+/* The largest component on this rank, without sign. VecNorm() would cost as much as all else here: it also looks for components that are
+   not a number, which bodies do themselves after they have been integrated. */
 static PetscErrorCode GetLargest(Vec vec, PetscReal *largest)
 {
   const PetscScalar *values;
@@ -52,8 +58,8 @@ static PetscErrorCode GetLargest(Vec vec, PetscReal *largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a node that guards the end of a pair's partner touches, or nearly, with another row that says much the same; of two that guard,
-   the first pair's counts */
+/* Whether a node that guards the end of its partner in pair p has nearly the same row in another pair q, in which it touches or nearly
+   does. If it guards an end in both pairs, the row of the first of them counts. */
 static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const TransferRows *rows, PetscBool *shared)
 {
   const PetscInt i = contact->pairs[p].begin + node;
@@ -76,8 +82,8 @@ static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A node that another partner touches cannot guard the end of this one too: prescribed twice, it would have two displacements. Needs the
-   gaps. */
+/* Drops the rows of nodes that guard the end of one partner while another one touches them: prescribed by both, such a node would have two
+   displacements. Gaps must be known. */
 PetscErrorCode ContactDropShared(Contact contact)
 {
   PetscFunctionBegin;
@@ -100,8 +106,8 @@ PetscErrorCode ContactDropShared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces further apart than this do not touch in the next controller step: twice the way that the fastest nodes of all bodies make
-   towards each other */
+/* How far apart surfaces may be that touch in the next controller step [m], from the way that the fastest nodes of the two fastest bodies
+   make towards each other */
 static PetscErrorCode GetReach(Contact contact, PetscReal *near)
 {
   PetscReal first = 0, second = 0;
@@ -120,23 +126,23 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
     second = PetscMax(second, PetscMin(first, contact->speeds[b]));
     first  = PetscMax(first, contact->speeds[b]);
   }
-  *near = 2 * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
+  *near = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What remains of a shift that lets a gap go on from where it was. Where surfaces slide far without losing contact, shifts add up: between
-   two builds a row goes along the plane across its normal, from which the partner bends away, and surfaces would come to be held apart by
-   more and more. Of what is more than a small part of a face, some is given back in proportion to the slip [parts of a face], which loses
-   energy. The opposite would gain it: surfaces that overlap. */
-static PetscReal GiveBack(PetscReal shift, PetscReal size, PetscReal slip)
+/* What remains of a shift, by which the gap of a row in contact goes on from where it was [m]. If surfaces slide far without losing
+   contact, shifts add up: between two builds a row moves along the plane across its normal, from which a curved partner bends away, so that
+   surfaces would be held apart by more and more. What a shift is beyond APART is taken back in proportion to the slip [edges of the face],
+   which loses energy. Shifts of the other sign, by which surfaces overlap, stay: to take them back would gain energy. */
+static PetscReal RemainingShift(PetscReal shift, PetscReal size, PetscReal slip)
 {
-  return shift - PetscMin(shift + APART * size, 0) * PetscMin(1, RETURN * slip);
+  return shift - PetscMin(shift + APART * size, 0) * PetscMin(1, TAKEN_BACK * slip);
 }
 
-/* A row that is built again sees the faceted surfaces another way, and its gap jumps. To close that within a step would be a blow out of
-   nothing.
-   So the gap of a row in contact goes on from where it is, and that of one that would begin inside is counted from there, until the row is
-   open again. Between bodies without inertia nothing is a blow. */
+/* A row that is built again compares the faceted surfaces at other points, and its gap jumps. To close this jump within one step would be a
+   blow out of nothing. So its gap is shifted: that of a row in contact such that it goes on from where it was, that of any other row that
+   would begin inside the partner such that it begins at zero. The shift stays until the row is open. Between bodies without inertia there
+   are no blows, and gaps are not shifted. */
 static PetscErrorCode ShiftGaps(Contact contact)
 {
   PetscFunctionBegin;
@@ -150,14 +156,14 @@ static PetscErrorCode ShiftGaps(Contact contact)
     if (without_inertia[0] && without_inertia[1]) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscBool held = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
-      const PetscInt  node = (i - pair->begin) / pair->components;
+      const PetscBool pushes = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+      const PetscInt  node   = (i - pair->begin) / pair->components;
 
       if (!contact->changed[i]) continue;
       if (!contact->opposite[i]) contact->gap_shift[i] = 0;
       else
-        contact->gap_shift[i] = held ? GiveBack(contact->last_gap[i] - contact->gap[i], rows.size[node], rows.slip[node])
-                                     : PetscMax(-contact->gap[i], 0);
+        contact->gap_shift[i] = pushes ? RemainingShift(contact->last_gap[i] - contact->gap[i], rows.size[node], rows.slip[node])
+                                       : PetscMax(-contact->gap[i], 0);
       contact->initial_gap[i] += contact->gap_shift[i];
       contact->gap[i] += contact->gap_shift[i];
       contact->saved_gap[i] = contact->gap[i];
@@ -166,8 +172,7 @@ static PetscErrorCode ShiftGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What gaps are counted from goes back to the surfaces as soon as a row is open, which costs no work: in contact it would, out of nothing
- */
+/* Takes shifts of gaps back as far as rows are open, where this does no work. In contact it would do work, out of nothing. */
 static void DropShifts(Contact contact)
 {
   for (PetscInt i = 0; i < contact->n_rows; i++) {
@@ -181,8 +186,8 @@ static void DropShifts(Contact contact)
   }
 }
 
-/* Looks at the start of a controller step whether surfaces have slid or turned so far that their rows are to be built again, and does so.
-   Rows in contact that have nothing opposite any more are let go. */
+/* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough. Rows in contact
+   that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
   PetscReal near = 0;

@@ -1,34 +1,35 @@
 /*
-   Nodes with rows of several pairs, whose directions may depend on each other: a block that stands astride two others, or on two plane
-   obstacles side by side. What must hold is that of each pair on its own, whatever the method: no gap is negative, no force pulls, and a
-   force is there where the gap is closed. This defines the gaps, and the forces too if of the partners of a node all but one give way. But
-   a body can be prescribed only where its rows are independent. So, where Schwarz's method runs on the bodies' compliance, of the active
-   rows of a node
+   Shared nodes have rows of several pairs, whose normals may depend on each other: nodes of a block that stands astride two others, or on two
+   plane obstacles side by side. Whatever the method, the conditions of each pair must hold: no gap is negative, no force pulls, and there
+   is a force only where a gap is closed. These conditions define the gaps; they define the forces too, if all partners of the node but one
+   give way. But the displacement of a node can be prescribed only along independent normals. So, if Schwarz's method runs on the bodies'
+   compliance, of the active rows of a node
 
-   - the first that are independent are prescribed;
-   - the others with a partner that answers to forces have their force for an unknown, on both sides, and the condition that their gap is
-   closed: what both partners take is then what they would take under Lagrange multipliers;
-   - the others with a partner that does not (an obstacle, or an explicit body whose contact nodes have mass) are let go: their gap is
-   closed by the rows before them, unless their partner is deeper inside, and then it comes first.
+   - the first independent rows are prescribed;
+   - of the others, rows whose partner moves under forces have their force as an unknown, on both sides, with the condition that their gap
+   is closed: both partners then get the forces that Lagrange multipliers would give them;
+   - the others, whose partner does not move under forces (an obstacle, or an explicit body whose contact nodes have mass), are let go: the
+   rows before them close their gap too, unless their partner is deeper inside the body, in which case their row comes first.
 
-   Elsewhere rows that depend on each other are prescribed by least squares, weighted by the areas that the partners cover:
-   see BodySetRowWeights().
-   Of obstacles with one normal at a node only the nearest counts.
+   Otherwise rows that depend on each other are prescribed by least squares, weighted by the areas that the partners cover: see
+   BodySetRowWeights(). Of several obstacles with the same normal at a node only the nearest counts.
 */
 #include <impakt/private/contactimpl.h>
 
-/* Of a direction, what is not along others, squared. Obstacles are dropped only if they are parallel; bodies are better prescribed where
-   directions differ clearly. */
+/* Squared sine of the angle between a normal and the span of others below which the normal depends on them. For obstacles 0.006 degrees,
+   since their rows are let go, and must be closed by the others; for bodies 6 degrees, since two prescribed displacements along normals
+   that are nearly parallel make a large one across them. */
 #define PARALLEL 1e-8
 #define NEAR     1e-2
 
-/* The direction of a row at a shared node, without the displacements that the user prescribes */
+/* The normal of a row at a shared node, without its components along held displacements */
 static void GetDirection(Contact contact, PetscInt node, PetscInt i, PetscReal direction[3])
 {
   for (PetscInt d = 0; d < 3; d++)
     direction[d] = d < contact->dim && contact->shared.free_dofs[3 * node + d] ? contact->row_normal[3 * i + d] : 0;
 }
 
+/* Finds out which displacements of a shared node are not held */
 static PetscErrorCode MarkFreeDofs(Contact contact, PetscInt node)
 {
   const PetscInt  i = contact->shared.rows[contact->shared.offsets[node]];
@@ -46,7 +47,7 @@ static PetscErrorCode MarkFreeDofs(Contact contact, PetscInt node)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds them. They stay the same: all rows of a node are on the rank that owns it. */
+/* Finds the shared nodes of this rank, which are the same for the whole run. All rows of a node are on the rank that owns it. */
 PetscErrorCode ContactFindSharedNodes(Contact contact)
 {
   SharedNodes   *shared = &contact->shared;
@@ -88,7 +89,7 @@ PetscErrorCode ContactDestroySharedNodes(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether row i says the same as row j, of another obstacle which is nearer */
+/* Whether row i has the same normal as row j, and row j is that of another obstacle, which is nearer */
 static PetscBool IsBehind(Contact contact, PetscInt i, PetscInt j)
 {
   const PetscReal *a = contact->row_normal + 3 * i, *b = contact->row_normal + 3 * j;
@@ -100,7 +101,7 @@ static PetscBool IsBehind(Contact contact, PetscInt i, PetscInt j)
   return (PetscBool)(contact->initial_gap[j] < contact->initial_gap[i] || (contact->initial_gap[j] == contact->initial_gap[i] && j < i));
 }
 
-/* Rows that have been left out come back, unless their pair has been described anew */
+/* Takes a row back that has been left out, unless its pair has been described since */
 static PetscErrorCode Reconsider(Contact contact, PetscInt i)
 {
   const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
@@ -116,7 +117,7 @@ static PetscErrorCode Reconsider(Contact contact, PetscInt i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Leaves rows of obstacles out that lie behind others; call with the rows of all pairs described */
+/* Leaves out the rows of obstacles that lie behind other obstacles. The rows of all pairs must have been described. */
 PetscErrorCode ContactLeaveOutObstacles(Contact contact)
 {
   SharedNodes *shared = &contact->shared;
@@ -146,7 +147,7 @@ PetscErrorCode ContactLeaveOutObstacles(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Force for a metre of the unknown that stands for it: of an element of the bodies on both sides, one behind the other */
+/* The stiffness that makes unknowns in metres of forces, for each unit of area [N/m^3]: an element of each body, one behind the other */
 static PetscErrorCode GetUnit(Contact contact, const ContactPair *pair, PetscReal *unit)
 {
   PetscReal flexibility = 0;
@@ -162,7 +163,8 @@ static PetscErrorCode GetUnit(Contact contact, const ContactPair *pair, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For a method that prescribes displacements; `arranges`: it may have forces for unknowns. After the bodies have been set up. */
+/* Sets shared nodes up for a method that prescribes displacements; `arranges`: whether forces may be unknowns of the method. The bodies
+   must have been set up. */
 PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool arranges)
 {
   SharedNodes *shared = &contact->shared;
@@ -190,8 +192,8 @@ PetscReal ContactForceUnit(Contact contact, PetscInt i)
   return contact->shared.unit[contact->row_pair[i]] * contact->area[i] * contact->cross_section[contact->row_pair[i]];
 }
 
-/* The active rows of a node in the order in which they are prescribed: of those whose partner does not answer to forces, first the ones
-   that penetrate; then the others */
+/* Puts the active rows of a node into shared->sorted, in the order in which they are prescribed: first those whose partner does not move
+   under forces, of these the ones that penetrate first; then the others. Returns their number. */
 static PetscInt SortActive(Contact contact, PetscInt node)
 {
   SharedNodes *shared = &contact->shared;
@@ -207,8 +209,8 @@ static PetscInt SortActive(Contact contact, PetscInt node)
   return count;
 }
 
-/* What is left of a direction without its parts along the unit vectors of a basis, which it becomes one of if that is more than `least` of
-   it, squared */
+/* Whether a direction is independent of a basis of n unit vectors: whether what remains of it without its components along them is longer
+   than `least` of its length, squared. If so, it becomes one of the basis. */
 static PetscBool Extends(PetscReal direction[3], PetscReal least, PetscInt *n, PetscReal basis[3][3])
 {
   PetscReal before = 0, after = 0;
@@ -226,7 +228,7 @@ static PetscBool Extends(PetscReal direction[3], PetscReal least, PetscInt *n, P
   return PETSC_TRUE;
 }
 
-/* What each active row of shared nodes is to be, as told above: prescribed, by its force, or not active */
+/* Decides for each active row of shared nodes whether it is prescribed, has its force as an unknown, or is let go, as told at the top */
 void ContactArrangeShared(Contact contact)
 {
   SharedNodes *shared = &contact->shared;

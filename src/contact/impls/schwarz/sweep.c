@@ -125,7 +125,7 @@ static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
 PetscErrorCode SchwarzResampleForce(const Schwarz *schwarz, Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
 {
   PetscFunctionBegin;
-  if (schwarz->waveform == WAVEFORM_CONSTANT) PetscCall(TraceResampleHeld(from, begin, end, scale, to));
+  if (schwarz->waveform == WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, end, scale, to));
   else PetscCall(TraceResample(from, begin, end, scale, to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
