@@ -80,7 +80,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg
 
-.PHONY: all run paper test bench format lint force
+.PHONY: all run paper test bench docs format lint force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units))
 
@@ -105,6 +105,10 @@ bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time, memor
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD)
 	$(PYTHON) tests/scaling/solids.py --build $(BUILD)
 	$(PYTHON) tests/scaling/contact.py --build $(BUILD)
+
+docs: $(BUILD)/impakt ## the table of options in options/README.md, as the program prints it
+	@$(BUILD)/impakt -help markdown >$(BUILD)/options.md
+	@sed -i -e '/^<!-- what lies between/,/^<!-- end of what/{/^<!--/!d}' -e '/^<!-- what lies between/r $(BUILD)/options.md' options/README.md
 
 format: ## clang-format over all C
 	$(bin)clang-format -i $(c_files)

@@ -34,7 +34,7 @@ def test_agrees_with_schwarz(pairing, frame, shared_run):
 
 @pytest.mark.parametrize("pairing", list(EQUAL_STEPS))
 def test_defaults(pairing, shared_run):
-    """As good as Schwarz in all that README's table tells of it; two sweeps, since the first guess of the force, the last one, is
+    """As good as Schwarz in all that the table of tests/README.md tells of it; two sweeps, since the first guess of the force, the last one, is
     not known to 1e-12 m."""
     run = shared_run(joined(LAGRANGE, EQUAL_STEPS[pairing]))
     assert run.summary["schwarz"]["max"] == 2
