@@ -45,8 +45,12 @@ def test_impact(shape, method, shared_run):
     assert run.summary["contact"]["onsets"] == bars.summary["contact"]["onsets"]
     assert run.summary["contact"]["force_mean"] == pytest.approx(1e4, rel=0.01)
     assert run.summary["contact"]["impulse"] == pytest.approx(5, rel=0.03)  # 25 elements with lumped mass lose 2.1 %
-    if method not in ("EI", "paper"):  # EI: the partner of a body with substeps does not know the force in them; paper: nodes with mass lose theirs
-        assert run.summary["system"]["momentum_error_max"] <= 1e-10
+    momentum = run.summary["system"]["momentum_error_max"]
+    if method == "paper":  # the inertia of the contact nodes, which internal forces leave out: as much as in one dimension
+        assert momentum == pytest.approx(bars.summary["system"]["momentum_error_max"], rel=1e-6)
+        assert momentum == pytest.approx(1.94e-2, rel=1e-2)
+    else:
+        assert momentum <= 1e-12  # round-off of 500 steps; measured: 1.3e-13 at most
 
 
 @pytest.mark.parametrize("shape", ["quad4-turned", "hex8-turned"])

@@ -21,6 +21,8 @@ PAIRINGS = {
 # before is the solution already, and impact is at the end of a step.
 INSIDE = "-left_dm_plex_box_lower -0.2700037 -left_dm_plex_box_upper -0.0200037"  # after 0.185 of a step of 1e-7 s
 MOVING = "-left_initial_velocity 150 -right_initial_velocity -50"
+# The right bar has another impedance, which is 2.4 times that of the left one, and waves of 816 m/s, 1000 m/s in the left one
+UNLIKE = "-exact characteristics -right_density 3000 -right_youngs_modulus 2e9"
 FRAMES = {"as-is": "", "inside": INSIDE, "moving": MOVING, "moving-inside": f"{MOVING} {INSIDE}"}
 
 

@@ -29,8 +29,8 @@ def test_flat(name, shared_run):
     assert normal.min() > 0
     assert (contact["active"][()][moving] == nodes).all()
     assert tangential.max() <= 1e-6 * normal.mean()
-    # the edges of the block, where the pressure is singular, pass over elements of finite width: measured 0.1 % and 0.4 %
-    assert np.abs(normal / normal.mean() - 1).max() <= 0.01
+    # the edges of the block, where the pressure is singular, pass over elements of finite width: measured 0.1 % and 0.38 %
+    assert np.abs(normal / normal.mean() - 1).max() <= (0.0015 if name == "sliding-flat" else 0.005)
     # the gap of each row is closed to the tolerance of the outer iteration, against elements of 0.05 m and more
     assert contact["gap"][()][moving].min() >= -1e-12
 
@@ -63,7 +63,7 @@ def test_curved(shared_run):
     force along the path is twice that. Half the step halves it."""
     normal, tangential = radial(shared_run(CURVED))
     assert normal.min() > 0
-    assert np.abs(normal / normal.mean() - 1).max() <= 0.01  # 0.2 % measured
+    assert np.abs(normal / normal.mean() - 1).max() <= 0.004  # measured: 0.3 %
     assert np.abs(tangential).max() <= 0.01 * normal.mean()  # 0.85 % measured
 
 
@@ -88,7 +88,7 @@ def test_gaps_do_not_drift(shared_run):
     10 mm by then, and growing. The force is larger by what that is of the indentation of 20 mm, at most."""
     fields = "-output_fields fields.h5 -output_fields_precision double -output_fields_interval 5"
     static, dynamic = (shared_run(f"{CURVED} {more} {fields}") for more in ("-time_end 0.6", DYNAMIC))
-    assert np.abs(true_gaps(static)).max() <= 0.2e-3
+    assert np.abs(true_gaps(static)).max() <= 0.12e-3  # measured: 0.09 mm
     gaps = true_gaps(dynamic)
     assert np.abs(gaps).max() <= 0.1 * 0.029
     halves = np.array_split(gaps, 2)
@@ -98,6 +98,6 @@ def test_gaps_do_not_drift(shared_run):
 
 
 def test_ranks(shared_run):
-    """The demand is 1e-7; forces are differences of positions that the outer iteration has to 1e-12 m of an indentation of 2e-2 m."""
+    """Round-off: measured 1e-14."""
     one, two = (radial(shared_run(f"{CURVED} -time_end 0.3", ranks))[0] for ranks in (1, 2))
-    np.testing.assert_allclose(two, one, rtol=1e-7)
+    np.testing.assert_allclose(two, one, rtol=1e-10)

@@ -15,10 +15,10 @@ def test_paper(pairing, ranks, shared_run):
     (least, most), (lower, upper) = SWEEPS[pairing]
     assert least <= summary["schwarz"]["max"] <= most
     assert lower <= summary["schwarz"]["mean_all_steps"] <= upper
-    # "at most 0.25 % in the total energy" for all three variants (paper, section 4.4.1)
+    # "at most 0.25 % in the total energy" for all three variants (paper, section 4.4.1); measured: 1.3e-3 at most
     assert worst_energy_error(summary) <= 2.5e-3
-    # the bound; release comes up to 4 steps of 0.02 % late for each element that the wave front is smeared over
-    assert abs(summary["errors"]["release_time"]) <= 0.01
+    # late by the elements that the wave front is smeared over, each of which it passes in 2.5e-3 of the time in contact; measured: 5.4e-3 at most
+    assert 0 <= summary["errors"]["release_time"] <= 6.5e-3
     assert summary["schwarz"]["unconverged_steps"] == 0
 
 
