@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases import never_tensile, worst_energy_error
+from cases import long, never_tensile, worst_energy_error
 
 BARS = "-options_file options/bars-3d.opts"
 # as the options file has it; explicit with four substeps; other pairings
@@ -10,7 +10,7 @@ CASES = {"step of its own": "", "substeps": "-right_ts_time_step 2.5e-7", "both 
 STEADY = (1e-4, 3.5e-4)  # from the passage of the first waves to before the release [s]
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", ["step of its own", "both explicit", *long("substeps", "both implicit")])
 def test_impact(case, shared_run):
     """No chatter: one onset, no tension, and a force that changes from step to step as waves of the mesh make it, by less than 1 %."""
     run = shared_run(f"{BARS} {CASES[case]}")
@@ -27,7 +27,7 @@ def test_impact(case, shared_run):
     assert force.mean() == pytest.approx(1000 * (1e9 / 1000) ** 0.5 * 100 * 0.025**2, rel=0.006)  # measured: 0.5 %
 
 
-@pytest.mark.parametrize("ranks", [2, 3])
+@pytest.mark.parametrize("ranks", [2, *long(3)])
 def test_ranks(ranks, shared_run):
     one, more = (shared_run(f"{BARS} {CASES['substeps']} -time_end 1e-4", n) for n in (1, ranks))
     np.testing.assert_array_equal(one.history["contact/left:right/active"], more.history["contact/left:right/active"])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases import ANDERSON, joined, never_tensile, worst_energy_error
+from cases import ANDERSON, joined, long, never_tensile, worst_energy_error
 
 BLOCKS = "-options_file options/blocks.opts"
 LEFT, RIGHT = (f"-{body}_ts_type centraldifference" for body in ("left", "right"))
@@ -69,7 +69,7 @@ def test_condensed(pairing, shared_run):
     same(*(shared_run(f"{options} -schwarz_condense {way}") for way in (0, 1)), 1e-10)  # the issue's; measured: 1e-13
 
 
-@pytest.mark.parametrize("ranks", [2, 3, 4])
+@pytest.mark.parametrize("ranks", [2, 3, *long(4)])
 @pytest.mark.parametrize("pairing", ["II", "FINE"])
 def test_ranks(pairing, ranks, shared_run):
     options = joined(BLOCKS, {**PAIRINGS, "FINE": FINE}[pairing], "-time_end 1e-4")

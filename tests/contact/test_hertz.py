@@ -7,6 +7,7 @@ import h5py
 import hertz
 import numpy as np
 import pytest
+from cases import long
 from conftest import ROOT
 
 CYLINDER = "-options_file options/hertz-cylinder.opts"
@@ -168,7 +169,7 @@ def impact_errors(ball, series):
     return np.array((contact_time(series) / duration - 1, series["force"].max() / force - 1))
 
 
-@pytest.mark.parametrize("options", [IMPACT, f"{IMPACT} {EXPLICIT}"], ids=["implicit", "explicit"])
+@pytest.mark.parametrize("options", [IMPACT, *long(f"{IMPACT} {EXPLICIT}")], ids=["implicit", "explicit"])
 def test_impact(options, shared_run):
     """Contact time and largest force within 1.6 %: measured 1.2 % (a step is 0.7 %) and -1.2 %; with twice the elements -0.9 % and 1.6 %. The
     ball is no half-space, which makes it stiffer: on meshes that resolve it, the force is 0.5 a/R above theory, a/R being 0.031 here (2.3 %
@@ -191,7 +192,7 @@ def test_impact_converges(shared_run):
     assert np.all(coarse < 0.1)
 
 
-@pytest.mark.parametrize("options", [COARSE_IMPACT, f"{CYLINDER} -time_step 0.5", f"{COARSE_SPHERE}"], ids=["impact", "cylinder", "sphere"])
+@pytest.mark.parametrize("options", [*long(COARSE_IMPACT), f"{CYLINDER} -time_step 0.5", *long(COARSE_SPHERE)], ids=["impact", "cylinder", "sphere"])
 def test_ranks(options, shared_run):
     """The same history on 2 and 3 ranks to 1e-7 of the largest number; gaps that are closed, to the round-off of positions of 1 m."""
     histories = [shared_run(options, ranks=ranks).history for ranks in (1, 2, 3)]

@@ -53,6 +53,7 @@ def test_stack_on_ranks(shared_run):
         np.testing.assert_allclose(two["body"][name][figure][()], one["body"][name][figure][()], rtol=0, atol=1e-9 * scale, err_msg=f"{name} {figure}")
 
 
+@pytest.mark.long
 def test_ten_balls(shared_run):
     run = shared_run(BALLS)
     system = run.summary["system"]
@@ -65,6 +66,7 @@ def test_ten_balls(shared_run):
     assert max(depths(run)) <= DEPTH  # of rows; discs of 16 edges overlap by up to 6 mm at their corners
 
 
+@pytest.mark.long
 def test_ten_balls_explicit(shared_run):
     """Bodies with substeps. The longer step loses much where contacts begin, but must not gain where they end: 1.4e-3 if forces fade over the whole
     step while rows open. Nor may a row that is pulled when held and penetrates when not end the rounds for all others, which left discs 6.6e-4 m deep."""
@@ -105,6 +107,7 @@ def test_faces_that_see_each_other(shared_run):
     assert contact_nodes(shared_run(f"{two} -contact_facing true")) <= 8
 
 
+@pytest.mark.long
 def test_ten_balls_in_three_dimensions(shared_run):
     """In three dimensions: measured, energy grows by 7.2e-5 of itself at most, at a step of 2e-4 s (1e-14 at half of it); rows close to 1e-15 m."""
     summary = shared_run("-options_file options/ten-balls-3d.opts").summary

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import overlap
 import pytest
+from cases import long
 
 FLAT = {"sliding-flat": ("block.ymin:base.ymax", 1, 22), "sliding-flat-3d": ("block.zmin:base.zmax", 2, 64)}
 PRESSED = 0.1  # s: from then on the block slides
@@ -18,7 +19,7 @@ def sliding(run, pair):
     return contact, run.history["time"][()] > PRESSED + 1e-9
 
 
-@pytest.mark.parametrize("name", FLAT)
+@pytest.mark.parametrize("name", ["sliding-flat", *long("sliding-flat-3d")])
 def test_flat(name, shared_run):
     pair, up, nodes = FLAT[name]
     contact, moving = sliding(shared_run(f"-options_file options/{name}.opts"), pair)
@@ -58,10 +59,11 @@ def radial(run):
     return force[:, 0] * np.sin(angle) + force[:, 1] * np.cos(angle), force[:, 0] * np.cos(angle) - force[:, 1] * np.sin(angle)
 
 
-def test_curved(shared_run):
+@pytest.mark.parametrize("end", [0.4, *long(1.1)])
+def test_curved(end, shared_run):
     """Rows are built where a controller step begins, and are half a step old on the way: the step turns the normal by 3.9e-3, and the share of the
     force along the path is twice that. Half the step halves it."""
-    normal, tangential = radial(shared_run(CURVED))
+    normal, tangential = radial(shared_run(f"{CURVED} -time_end {end}"))
     assert normal.min() > 0
     assert np.abs(normal / normal.mean() - 1).max() <= 0.004  # measured: 0.3 %
     assert np.abs(tangential).max() <= 0.01 * normal.mean()  # 0.85 % measured
@@ -82,6 +84,7 @@ def true_gaps(run):
     return np.array(gaps)
 
 
+@pytest.mark.long
 def test_gaps_do_not_drift(shared_run):
     """With inertia, gaps of rows in contact go on when the rows are built again; what that adds up to is given back. Over 10 widths of the base's elements, of
     39 mm, the surfaces come to be 2.8 mm apart, 0.1 of the slider's faces of 29 mm, and stay so (0.1 mm without inertia, where rows start anew). Else it was
@@ -97,6 +100,7 @@ def test_gaps_do_not_drift(shared_run):
     assert forces[0] <= forces[1] <= (1 + 2.9e-3 / 20e-3) * forces[0]  # measured: 1.107
 
 
+@pytest.mark.long
 def test_ranks(shared_run):
     """Round-off: measured 1e-14."""
     one, two = (radial(shared_run(f"{CURVED} -time_end 0.3", ranks))[0] for ranks in (1, 2))

@@ -79,7 +79,7 @@ def test_trapezoidal_rule_chatters(shared_run):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_three_bars(ranks, shared_run):
     """Two pairs with one body in common: the impulses of Schwarz."""
-    bars = "-options_file options/three-bars.opts"
+    bars = "-options_file options/three-bars.opts -time_step 1e-6"
     schwarz, lagrange = shared_run(bars).summary, shared_run(f"{bars} -contact_type lagrange", ranks=ranks).summary
     for pair in ("a:b", "b:c"):
         assert lagrange["pairs"][pair]["onsets"] == 1
