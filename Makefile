@@ -22,7 +22,7 @@ made: $(filter clean,$(MAKECMDGOALS))
 	$(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(cores)) PETSC_ROOT="$$petsc" PYTHON="$$python" $(goals)
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 18
 	@sed -n 's/^#   /  /p' Makefile
 
 clean: ## remove build/; what runs wrote to out/ stays
@@ -80,7 +80,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg
 
-.PHONY: all run paper test bench docs format lint force
+.PHONY: all run paper test test-all bench docs format lint force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units))
 
@@ -97,9 +97,12 @@ paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in 
 	$(PYTHON) -m paper --program $(BUILD)/impakt --out out/paper || status=$$?; \
 	$(PYTHON) -m pytest -q -p no:cacheprovider --rootdir=. tests/paper/golden.py || status=$$?; exit $$status
 
-test: $(BUILD)/impakt $(units) ## unit tests on 1 to 3 ranks and regression tests
+# Where TESTS does not say what is wanted, `make test` leaves out what is marked as long.
+test: ## unit tests on 1 to 3 ranks and regression tests, without the long ones; or what TESTS names
+test-all: ## all tests
+test test-all: $(BUILD)/impakt $(units)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS)
+	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long")
 
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time, memory and scaling, beside plain C yardsticks
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD)

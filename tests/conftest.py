@@ -1,4 +1,4 @@
-"""What the tests share: starting programs under MPI, running Impakt, and the tally that ends `make test`."""
+"""What the tests share: starting programs under MPI, running Impakt, long tests, and the tally that ends `make test`."""
 
 import fcntl
 import json
@@ -179,6 +179,14 @@ def impakt(tmp_path):
     for done in runs:
         if "history" in done.__dict__:
             done.history.close()
+
+
+def pytest_configure(config):
+    config.addinivalue_line(
+        "markers",
+        "long: what `make test` leaves to `make test-all`. A test is long if it takes more than 2 s of a core, with the runs that it alone needs, or if it "
+        "repeats at some cost, for one more mesh, pairing or number of ranks, what a quicker case shows of the same feature.",
+    )
 
 
 def tally(config):
