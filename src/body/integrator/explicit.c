@@ -231,7 +231,8 @@ static PetscErrorCode SetUp(Body body)
   if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
   integrator->repeats_prescribed = body->model.linear;
-  if (body->time.substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn; /* with more, only making them tells */
+  if (body->time.substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn;
+  else integrator->ops.compliancecolumns = BodyProbeBySubsteps; /* only making the substeps tells */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,3 +13,4 @@ PETSC_INTERN PetscErrorCode LayerBalanceRestore(LayerBalance, Body, BodySlot);
 PETSC_INTERN PetscErrorCode LayerBalanceApplyUnit(LayerBalance, Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscBool      BodyHasOutsideForce(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyComputeOutsideForce(Body, PetscReal, PetscReal, PetscBool, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyProbeBySubsteps(Body, PetscInt, const PetscInt[], Compliance);

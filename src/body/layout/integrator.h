@@ -5,6 +5,7 @@
 */
 #pragma once
 #include <impakt/body.h>
+#include <solver/compliance.h>
 
 typedef struct _n_BodyIntegrator *BodyIntegrator;
 
@@ -29,6 +30,8 @@ typedef struct {
                                                 then, so that the same integration gives the same bits */
   PetscErrorCode (*freerows)(Body, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of the controller step if no
                                                       contact acts on any, without integrating [m]; may be set in setup() */
+  /* (NULL) the columns of some rows of any rank, into a compliance, where there is no simpler way to one of them; may be set in setup() */
+  PetscErrorCode (*compliancecolumns)(Body, PetscInt, const PetscInt[], Compliance);
   PetscErrorCode (*compliancecolumn)(Body, PetscInt, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of each substep,
                                                                         substeps x rows, after a hat of force on one row of any rank: 1 N at
                                                                         the end of the first substep, 0 at its start and at the end of the

@@ -48,6 +48,27 @@ Compliance BodyGetSharedCompliance(Body body)
   return body->model.linear ? body->compliance->matrices : NULL;
 }
 
+/* Columns of the rows that are not known yet. With one substep the body's solver has them, where its compliance is this one. */
+static PetscErrorCode ProbeCompliance(Body body, PetscInt n, const PetscInt rows[])
+{
+  const PetscBool shares = (PetscBool)(body->time.substeps == 1 && body->solver && BodyGetSharedCompliance(body));
+
+  PetscFunctionBegin;
+  if (body->integrator->ops.compliancecolumns) {
+    PetscCall((*body->integrator->ops.compliancecolumns)(body, n, rows, body->compliance->matrices));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    if (ComplianceKnows(body->compliance->matrices, rows[i])) continue;
+    if (shares) PetscCall(ConstrainedSolverExtend(body->solver, rows[i]));
+    else {
+      PetscCall((*body->integrator->ops.compliancecolumn)(body, rows[i], body->compliance->mine));
+      PetscCall(ComplianceSetColumn(body->compliance->matrices, rows[i], body->time.substeps, body->compliance->mine));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyExtendCompliance - makes rows known to the interface compliance
 
@@ -77,7 +98,7 @@ PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[]
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
   PetscCall(ComplianceReserve(body->compliance->matrices, count));
-  PetscCall(BodyProbeCompliance(body, n, rows));
+  PetscCall(ProbeCompliance(body, n, rows));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

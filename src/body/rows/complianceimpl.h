@@ -1,8 +1,8 @@
-/* The interface compliance of a body: displacements of its rows under forces on them. Private to compliance.c and complianceprobe.c, which
-   find it, and respond.c, which applies it. */
+/* The interface compliance of a body: displacements of its rows under forces on them. Private to compliance.c, which finds
+   it, and respond.c, which applies it. */
 #pragma once
 #include <solver/densefactor.h>
-#include "probe.h"
+#include <body/layout/bodyimpl.h>
 
 struct _BodyCompliance {
   Compliance
@@ -24,5 +24,3 @@ struct _BodyCompliance {
   PetscScalar *known_displacement, *known_force, *input, *force, *displacement;
   PetscScalar *rhs;
 };
-
-PETSC_INTERN PetscErrorCode BodyProbeCompliance(Body, PetscInt, const PetscInt[]);

@@ -1,5 +1,5 @@
 /* A body is put to rest, without loads, to see what a unit force on a row brings about; afterwards it is as it was. */
-#include "probe.h"
+#include "explicitimpl.h"
 
 #define N_BACKUP 7
 
@@ -8,6 +8,7 @@
 struct _BodyProbe {
   Vec          vecs[N_BACKUP], applied;
   PetscScalar *traces;
+  PetscScalar *column; /* displacement of this rank's rows, for each substep */
   PetscReal    time, saved_time, work;
   PetscInt     step, saved_step;
 };
@@ -18,7 +19,7 @@ PetscErrorCode BodyDestroyProbe(Body body)
   if (!body->probe) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDestroy(&body->probe->vecs[k]));
   PetscCall(VecDestroy(&body->probe->applied));
-  PetscCall(PetscFree(body->probe->traces));
+  PetscCall(PetscFree2(body->probe->traces, body->probe->column));
   PetscCall(PetscFree(body->probe));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,7 +41,7 @@ static PetscErrorCode CopyTraces(Body body, PetscBool store)
 }
 
 /* Puts the body to rest */
-PetscErrorCode BodyBeginProbe(Body body)
+static PetscErrorCode BeginProbe(Body body)
 {
   const Vec vecs[N_BACKUP] = {
       body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->state.internal_force};
@@ -48,7 +49,8 @@ PetscErrorCode BodyBeginProbe(Body body)
   PetscFunctionBegin;
   if (!body->probe) {
     PetscCall(PetscNew(&body->probe));
-    PetscCall(PetscMalloc1(8 * (body->time.substeps + 1) * body->rows.local, &body->probe->traces));
+    PetscCall(PetscMalloc2(8 * (body->time.substeps + 1) * body->rows.local, &body->probe->traces, body->time.substeps * body->rows.local,
+                           &body->probe->column));
     for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDuplicate(body->state.u, &body->probe->vecs[k]));
     if (body->state.applied) PetscCall(VecDuplicate(body->state.applied, &body->probe->applied));
   }
@@ -68,7 +70,7 @@ PetscErrorCode BodyBeginProbe(Body body)
 }
 
 /* A force of 1 N at the end of the first substep, on one row alone; zero at the start and from the second substep on */
-PetscErrorCode BodySetUnitForce(Body body, PetscInt row)
+static PetscErrorCode SetUnitForce(Body body, PetscInt row)
 {
   const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
   const PetscInt local    = row - body->rows.begin;
@@ -82,7 +84,7 @@ PetscErrorCode BodySetUnitForce(Body body, PetscInt row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BodyEndProbe(Body body)
+static PetscErrorCode EndProbe(Body body)
 {
   const Vec vecs[N_BACKUP] = {
       body->state.u, body->state.v, body->state.a, body->saved.u, body->saved.v, body->saved.a, body->state.internal_force};
@@ -98,5 +100,57 @@ PetscErrorCode BodyEndProbe(Body body)
   body->state.external_work = body->probe->work;
   body->unloaded            = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Column of a row at all levels, into the work space `column`, by making the substeps of a controller step */
+static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
+{
+  const PetscInt local = row - body->rows.begin;
+  PetscScalar   *values;
+
+  PetscFunctionBegin;
+  PetscCall(SetUnitForce(body, row));
+  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FORCED;
+  PetscCall(BodyRestore(body));
+  PetscCall(BodyMakeSubsteps(body));
+  body->statistics.substeps -= body->time.substeps;
+  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FREE;
+  for (PetscInt k = 0; k < body->time.substeps; k++) {
+    PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &values));
+    PetscCall(PetscArraycpy(body->probe->column + k * body->rows.local, values, body->rows.local));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Columns of the interface compliance by making substeps: of a body at rest, with all rows free but the one in hand */
+PetscErrorCode BodyProbeBySubsteps(Body body, PetscInt n, const PetscInt rows[], Compliance matrices)
+{
+  const PetscInt counts[3] = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};
+  BodyCondition *kept;
+
+  PetscFunctionBegin;
+  PetscCall(BeginProbe(body));
+  PetscCall(PetscMalloc1(body->rows.local, &kept));
+  PetscCall(PetscArraycpy(kept, body->rows.conditions, body->rows.local));
+  PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));
+  body->rows.n_prescribed = body->rows.n_robin = 0;
+  body->rows.n_forced                          = 1;
+  PetscCall(BodySetConstraints(body));
+  PetscCall(BodyPrepareLinearized(body));
+  body->model.linearized = (PetscBool)!body->model.linear;
+  for (PetscInt i = 0; i < n; i++) {
+    if (ComplianceKnows(matrices, rows[i])) continue;
+    PetscCall(IntegrateUnderUnitForce(body, rows[i]));
+    PetscCall(ComplianceSetColumn(matrices, rows[i], body->time.substeps, body->probe->column));
+  }
+  body->model.linearized = PETSC_FALSE;
+  PetscCall(EndProbe(body));
+  PetscCall(PetscArraycpy(body->rows.conditions, kept, body->rows.local));
+  body->rows.n_prescribed = counts[0];
+  body->rows.n_forced     = counts[1];
+  body->rows.n_robin      = counts[2];
+  PetscCall(BodySetConstraints(body));
+  PetscCall(PetscFree(kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

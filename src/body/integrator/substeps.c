@@ -1,0 +1,43 @@
+/* The substeps of a controller step. */
+#include <body/layout/bodyimpl.h>
+
+/* An error that names body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from
+   wherever they arise. Its 2-norm is checked, since a sum over ranks keeps the NaN of one, which a maximum may lose. */
+static PetscErrorCode CheckSubstep(Body body)
+{
+  TSConvergedReason reason;
+  PetscReal         norm;
+
+  PetscFunctionBegin;
+  PetscCall(TSGetConvergedReason(body->time.ts, &reason));
+  PetscCall(VecNorm(body->state.v, NORM_2, &norm));
+  if (body->integrator->ops.checksubstep) PetscCall((*body->integrator->ops.checksubstep)(body));
+  if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
+  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)body), PETSC_ERR_FP,
+             "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
+             "); is a time step too large, or a penalty too stiff for it?",
+             body->hdr.name, (double)body->state.time, body->state.step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All substeps, by the TS */
+PetscErrorCode BodyMakeSubsteps(Body body)
+{
+  PetscFunctionBegin;
+  if (body->state.step != body->saved.step) PetscCall(BodyRestore(body));
+  for (body->time.substep = 0; body->time.substep < body->time.substeps; body->time.substep++) {
+    if (body->substep_start.u) {
+      PetscCall(VecCopy(body->state.u, body->substep_start.u));
+      PetscCall(VecCopy(body->state.v, body->substep_start.v));
+    }
+    PetscCall(TSStep(body->time.ts));
+    body->state.step++;
+    body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
+    PetscCall(CheckSubstep(body));
+    PetscCall((*body->integrator->ops.finishsubstep)(body));
+    PetscCall(BodyWriteTraces(body, body->time.substep + 1));
+    if (body->time.substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
+  }
+  body->statistics.substeps += body->time.substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
