@@ -39,11 +39,11 @@ static void FindWeights(PetscReal x, PetscReal weights[3][RATE_POINTS])
   Input Parameters:
 + expression - the `Expression`
 . point      - place, normal and time
-. start      - the earliest time at which it may be evaluated [s]
-- step       - a step in time that resolves it, the substep of a body [s]
+. start      - the earliest time at which the expression may be evaluated [s]
+- step       - a time that resolves how the expression varies, such as the substep of a body [s]
 
   Output Parameter:
-. values - value, first and second derivative
+. values - 3 numbers: the value, its first [1/s times its unit] and its second derivative [1/s^2 times its unit]
 
   Level: intermediate
 

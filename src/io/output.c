@@ -184,7 +184,7 @@ PetscErrorCode OutputReport(Output output)
 }
 
 /*@
-  OutputDestroy - frees the output, after writing what history and fields still hold
+  OutputDestroy - frees the output, after writing what history and fields have not written yet
 
   Collective
 

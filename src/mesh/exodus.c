@@ -26,7 +26,7 @@ typedef struct {
   int       id; /* the file's, to the NetCDF library */
   PetscInt  dim, n_elements, n_blocks;
   Block    *blocks;
-  int      *values[2];
+  int      *values[2]; /* of variables that have been read, so that they are freed after an error too */
   double   *reals;
 } Exodus;
 
@@ -79,8 +79,8 @@ static PetscErrorCode FindVariable(const Exodus *exodus, const char name[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads the n values of a variable whose name ends with a number, into exodus->values[place] */
-static PetscErrorCode ReadInts(Exodus *exodus, const char name[], PetscInt number, PetscInt n, PetscInt place)
+/* Reads the n values of a variable whose name ends with a number, into one of the two arrays that the reader keeps */
+static PetscErrorCode ReadInts(Exodus *exodus, const char name[], PetscInt number, PetscInt n, PetscInt place, const int *values[])
 {
   char full[64];
   int  variable;
@@ -91,6 +91,7 @@ static PetscErrorCode ReadInts(Exodus *exodus, const char name[], PetscInt numbe
   PetscCall(PetscFree(exodus->values[place]));
   PetscCall(PetscMalloc1(n, &exodus->values[place]));
   NetCDFCall(nc_get_var_int(exodus->id, variable, exodus->values[place]), "variable '%s'", full);
+  *values = exodus->values[place];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,11 +225,12 @@ static PetscErrorCode ReadType(const Exodus *exodus, PetscInt i, char type[64])
 
 static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
 {
-  MeshFile *file  = exodus->file;
-  Block    *block = &exodus->blocks[i];
-  char      name[MESH_NAME_LENGTH], type[64];
-  PetscInt  corners, group;
-  PetscBool wanted;
+  MeshFile  *file  = exodus->file;
+  Block     *block = &exodus->blocks[i];
+  char       name[MESH_NAME_LENGTH], type[64];
+  PetscInt   corners, group;
+  PetscBool  wanted;
+  const int *connected;
 
   PetscFunctionBegin;
   block->first      = exodus->n_elements;
@@ -244,7 +246,7 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
   PetscCall(GetDimensionOf(exodus, "num_nod_per_el", i + 1, &corners));
   PetscCall(ReadType(exodus, i, type));
   PetscCall(FindShape(exodus, type, corners, block));
-  PetscCall(ReadInts(exodus, "connect", i + 1, block->n * corners, 0));
+  PetscCall(ReadInts(exodus, "connect", i + 1, block->n * corners, 0, &connected));
   PetscCall(MeshFileAddRun(file, block->shape, 1, &group));
   block->first_node = file->n_element_nodes;
   for (PetscInt e = 0; e < block->n; e++) {
@@ -252,7 +254,7 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
 
     PetscCall(MeshFileAddElement(file, block->first + e + 1, &nodes));
     for (PetscInt k = 0; k < corners; k++) {
-      const int node = exodus->values[0][e * corners + k];
+      const int node = connected[e * corners + k];
 
       PetscCheck(node >= 1 && node <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                  "element %" PetscInt_FMT " (block %" PetscInt_FMT ") names node %d; the file has nodes 1 to %" PetscInt_FMT,
@@ -297,6 +299,7 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
   MeshFile                   *file     = exodus->file;
   PetscInt                    n, number, group, b = 0;
   char                        name[MESH_NAME_LENGTH];
+  const int                  *elements, *sides;
 
   PetscFunctionBegin;
   PetscCall(ReadNumber(exodus, "ss", i, &number));
@@ -305,10 +308,10 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
   PetscCall(PetscStrncpy(file->groups[group].name, name, MESH_NAME_LENGTH));
   PetscCall(GetDimensionOf(exodus, "num_side_ss", i + 1, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ReadInts(exodus, "elem_ss", i + 1, n, 0));
-  PetscCall(ReadInts(exodus, "side_ss", i + 1, n, 1));
+  PetscCall(ReadInts(exodus, "elem_ss", i + 1, n, 0, &elements));
+  PetscCall(ReadInts(exodus, "side_ss", i + 1, n, 1, &sides));
   for (PetscInt s = 0; s < n; s++) {
-    const int       element = exodus->values[0][s], side = exodus->values[1][s];
+    const int       element = elements[s], side = sides[s];
     const int      *corners;
     const PetscInt *cell;
     PetscInt       *nodes, n_corners;
@@ -334,9 +337,10 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
 
 static PetscErrorCode ReadNodeSet(Exodus *exodus, PetscInt i)
 {
-  MeshFile *file = exodus->file;
-  PetscInt  n, number, group;
-  char      name[MESH_NAME_LENGTH];
+  MeshFile  *file = exodus->file;
+  PetscInt   n, number, group;
+  char       name[MESH_NAME_LENGTH];
+  const int *nodes;
 
   PetscFunctionBegin;
   PetscCall(ReadNumber(exodus, "ns", i, &number));
@@ -345,16 +349,15 @@ static PetscErrorCode ReadNodeSet(Exodus *exodus, PetscInt i)
   PetscCall(PetscStrncpy(file->groups[group].name, name, MESH_NAME_LENGTH));
   PetscCall(GetDimensionOf(exodus, "num_nod_ns", i + 1, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ReadInts(exodus, "node_ns", i + 1, n, 0));
+  PetscCall(ReadInts(exodus, "node_ns", i + 1, n, 0, &nodes));
   PetscCall(MeshFileAddRun(file, DM_POLYTOPE_POINT, 1, &group));
   for (PetscInt k = 0; k < n; k++) {
     PetscInt *node;
 
-    PetscCheck(exodus->values[0][k] >= 1 && exodus->values[0][k] <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "node set %" PetscInt_FMT " names node %d; the file has nodes 1 to %" PetscInt_FMT, number, exodus->values[0][k],
-               file->n_nodes);
+    PetscCheck(nodes[k] >= 1 && nodes[k] <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "node set %" PetscInt_FMT " names node %d; the file has nodes 1 to %" PetscInt_FMT, number, nodes[k], file->n_nodes);
     PetscCall(MeshFileAddElement(file, k + 1, &node));
-    *node = exodus->values[0][k] - 1;
+    *node = nodes[k] - 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,7 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include <impakt/private/contactimpl.h>
 
-/* Shifts of gaps may hold surfaces apart for good by this much [edges of the face]. To take all of a shift back loses energy at each
+/* Shifts of gaps may keep surfaces apart for good by this much [edges of the face]. To take all of a shift back loses energy at each
    rebuild, as polygons roll on each other: ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost
    little. */
 #define APART 0.1
@@ -132,7 +132,7 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
 
 /* What remains of a shift, by which the gap of a row in contact goes on from where it was [m]. If surfaces slide far without losing
    contact, shifts add up: between two builds a row moves along the plane across its normal, from which a curved partner bends away, so that
-   surfaces would be held apart by more and more. What a shift is beyond APART is taken back in proportion to the slip [edges of the face],
+   surfaces would be kept apart by more and more. What a shift is beyond APART is taken back in proportion to the slip [edges of the face],
    which loses energy. Shifts of the other sign, by which surfaces overlap, stay: to take them back would gain energy. */
 static PetscReal RemainingShift(PetscReal shift, PetscReal size, PetscReal slip)
 {
@@ -142,8 +142,8 @@ static PetscReal RemainingShift(PetscReal shift, PetscReal size, PetscReal slip)
 /* A row that is built again compares the faceted surfaces at other points, and its gap jumps. To close this jump within one step would be a
    blow out of nothing. So its gap is shifted: that of a row in contact such that it goes on from where it was, that of any other row that
    would begin inside the partner such that it begins at zero. The shift stays until the row is open. Between bodies without inertia there
-   are no blows, and gaps are not shifted. */
-static PetscErrorCode ShiftGaps(Contact contact)
+   are no blows, and gaps are not shifted. `before` are the gaps before the rebuild. */
+static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -162,7 +162,7 @@ static PetscErrorCode ShiftGaps(Contact contact)
       if (!contact->changed[i]) continue;
       if (!contact->opposite[i]) contact->gap_shift[i] = 0;
       else
-        contact->gap_shift[i] = pushes ? RemainingShift(contact->last_gap[i] - contact->gap[i], rows.size[node], rows.slip[node])
+        contact->gap_shift[i] = pushes ? RemainingShift(before[i] - contact->gap[i], rows.size[node], rows.slip[node])
                                        : PetscMax(-contact->gap[i], 0);
       contact->initial_gap[i] += contact->gap_shift[i];
       contact->gap[i] += contact->gap_shift[i];
@@ -225,7 +225,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     contact->saved_active[i] = PETSC_FALSE;
     contact->saved_force[i]  = 0;
   }
-  PetscCall(ShiftGaps(contact));
+  PetscCall(ShiftGaps(contact, contact->last_gap));
   PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

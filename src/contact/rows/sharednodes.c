@@ -192,19 +192,19 @@ PetscReal ContactForceUnit(Contact contact, PetscInt i)
   return contact->shared.unit[contact->row_pair[i]] * contact->area[i] * contact->cross_section[contact->row_pair[i]];
 }
 
-/* Puts the active rows of a node into shared->sorted, in the order in which they are prescribed: first those whose partner does not move
+/* Puts the active rows of a node into `sorted`, in the order in which they are prescribed: first those whose partner does not move
    under forces, of these the ones that penetrate first; then the others. Returns their number. */
-static PetscInt SortActive(Contact contact, PetscInt node)
+static PetscInt SortActive(Contact contact, PetscInt node, PetscInt sorted[])
 {
-  SharedNodes *shared = &contact->shared;
-  PetscInt     count  = 0;
+  const SharedNodes *shared = &contact->shared;
+  PetscInt           count  = 0;
 
   for (PetscInt round = 0; round < 3; round++)
     for (PetscInt k = shared->offsets[node]; k < shared->offsets[node + 1]; k++) {
       const PetscInt  i     = shared->rows[k];
       const PetscBool first = (PetscBool)(contact->gap[i] < -contact->tolerance);
 
-      if (contact->active[i] && round == (shared->answers[contact->row_pair[i]] ? 2 : first ? 0 : 1)) shared->sorted[count++] = i;
+      if (contact->active[i] && round == (shared->answers[contact->row_pair[i]] ? 2 : first ? 0 : 1)) sorted[count++] = i;
     }
   return count;
 }
@@ -234,7 +234,7 @@ void ContactArrangeShared(Contact contact)
   SharedNodes *shared = &contact->shared;
 
   for (PetscInt node = 0; node < shared->n && shared->arranges; node++) {
-    const PetscInt count = SortActive(contact, node);
+    const PetscInt count = SortActive(contact, node, shared->sorted);
     PetscReal      basis[3][3];
     PetscInt       n = 0;
 

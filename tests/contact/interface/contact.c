@@ -156,6 +156,21 @@ static void displacement_into_each_other_is_refused(void **state)
   refused(PETSC_ERR_USER_INPUT, "'left'|'right'|overlap by 0.05 m", SimulationCreate(simulation));
 }
 
+/* What default tolerances are parts of: the size of the smallest body, and the least E A */
+static void tolerances_follow_the_size(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  PetscReal   length, force;
+
+  AddCollision(4, 3, 0);
+  AddOptions("-right_dm_plex_box_upper 0.251 -left_youngs_modulus 3 -left_cross_section 2 -right_youngs_modulus 5 -right_cross_section 1");
+  ok(SimulationCreate(simulation));
+  ok(ContactGetLengthScale(simulation->contact, &length));
+  ok(ContactGetForceScale(simulation->contact, &force));
+  near(length, 0.25, 1e-15);
+  near(force, 5, 1e-14);
+}
+
 static void set_up_is_final(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
@@ -247,6 +262,7 @@ int main(int argc, char **argv)
       simulation_test(unknown_type_is_refused),
       simulation_test(overlap_at_the_start_is_refused),
       simulation_test(displacement_into_each_other_is_refused),
+      simulation_test(tolerances_follow_the_size),
       simulation_test(set_up_is_final),
       simulation_test(one_body_flies_freely),
       simulation_test(three_bars_in_a_row),
