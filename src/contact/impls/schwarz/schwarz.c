@@ -1,4 +1,4 @@
-/* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, and one controller step. */
+/* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, destruction. */
 #include "schwarzimpl.h"
 
 static const char *const ConvergenceTests[] = {"auto", "position", "contact_position", "mismatch", "ConvergenceTest", "CONVERGENCE_", NULL};
@@ -184,26 +184,30 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
    CONTACT_SCHWARZ - the Schwarz alternating method: displacements one way, tractions the other, until both agree
 
    Options Database Keys:
-+  -schwarz_snes_type (newtonls|anderson|nrichardson|ngmres|qn) - the outer iteration; newtonls uses the interface compliance
-.  -schwarz_snes_atol, -schwarz_snes_rtol                       - tolerances on the change of position: [m], 4e-12 of the size of the
-                                                                  smallest body; relative, 1e-15
-.  -schwarz_snes_max_it n                                       - limit of iterations, 50
-.  -schwarz_snes_linesearch_damping theta                       - relaxation of nrichardson, 1 (Aitken: first one, 1/2)
-.  -schwarz_relaxation (fixed|aitken)                           - relaxation of nrichardson
-.  -schwarz_traction (internal|reaction)                        - nodal force handed over: without or with inertia
-.  -schwarz_transmission (dirichlet_neumann|robin|impedance)    - what is prescribed on both sides
-.  -schwarz_robin_parameter alpha                               - stiffness of Robin conditions [N/m for each unit of area], E/h of the
-                                                                  Neumann side's contact elements
-.  -schwarz_predictor (last|trial|extrapolate|inelastic)        - where the first sweep starts from, inelastic
-.  -schwarz_traction_waveform (linear|constant)                 - traction of a partner with longer substeps in the course of them
-.  -contact_constraint (gap|gap_rate)                           - close the gap in the first step in contact, or keep it as it is at its
-start .  -contact_swap_sides (true|false)                             - whether the sides change with every controller step .
--schwarz_convergence (auto|position|contact_position|mismatch) - change of all positions from sweep to sweep (the paper's), of those of the
-contact nodes, or the change of the contact nodes that a plain sweep would bring .  -schwarz_condense (0|1|auto) - whether sweeps run on the
-interface compliance of the bodies .  -schwarz_dense_limit n                                       - interface unknowns up to which its
-matrices are dense, 2000 .  -schwarz_recheck (true|false)                                - whether tensile nodes leave contact within the
-step
--  -schwarz_unconverged (error|accept)                          - what to do with a step that does not converge
++  -schwarz_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration; newtonls uses the interface compliance
+.  -schwarz_snes_atol, -schwarz_snes_rtol                        - tolerances on the change of position: [m], 4e-12 of the size of the
+                                                                   smallest body; relative, 1e-15
+.  -schwarz_snes_max_it n                                        - limit of iterations, 50
+.  -schwarz_snes_linesearch_damping theta                        - relaxation of nrichardson, 1 (Aitken: first one, 1/2)
+.  -schwarz_relaxation (fixed|aitken)                            - relaxation of nrichardson
+.  -schwarz_traction (internal|reaction)                         - nodal force handed over: without or with inertia
+.  -schwarz_transmission (dirichlet_neumann|robin|impedance)     - what is prescribed on both sides
+.  -schwarz_robin_parameter alpha                                - stiffness of Robin conditions [N/m for each unit of area], E/h of the
+                                                                   Neumann side's contact elements
+.  -schwarz_predictor (last|trial|extrapolate|inelastic)         - where the first sweep starts from, inelastic
+.  -schwarz_traction_waveform (linear|constant)                  - traction of a partner with longer substeps in the course of them
+.  -contact_constraint (gap|gap_rate)                            - close the gap in the first step in contact, or keep it as it is at its
+                                                                   start
+.  -contact_swap_sides (true|false)                              - whether the sides change with every controller step
+.  -schwarz_convergence (auto|position|contact_position|mismatch) - what is compared with the tolerances from sweep to sweep: the change of
+                                                                   all positions (the paper's, for which sweeps integrate every body), of
+                                                                   those of the contact nodes, or the change of the contact nodes that a
+                                                                   plain sweep would bring
+.  -schwarz_condense (0|1|auto)                                  - whether sweeps run on the interface compliance of the bodies; auto:
+                                                                   where it tells all that they do
+.  -schwarz_dense_limit n                                        - interface unknowns up to which its matrices are dense, 2000
+.  -schwarz_recheck (true|false)                                 - whether tensile nodes leave contact within the step
+-  -schwarz_unconverged (error|accept)                           - what to do with a step that does not converge
 
    Level: beginner
 
