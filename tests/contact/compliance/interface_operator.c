@@ -1,0 +1,211 @@
+/* S, the operator from contact forces to gaps: dense and by products alone, whole and in part, and when it changes from one to the other.
+ */
+#include "simulation.h"
+#include <contact/compliance/interfaceoperator.h>
+
+#define MOST_ROWS 12
+
+static const InterfaceSettings dense     = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 100, .few = 100};
+static const InterfaceSettings iterative = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 0};
+static const InterfaceSettings chooses   = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 100, .few = 0};
+
+/* Two blocks that do not match, one implicit and one with a massless layer, 1 kg/m^3 and 1 Pa */
+static void Create(Simulation *simulation)
+{
+  AddOptions("-prefix_push a_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 4,5 -dm_plex_box_lower -1,0 -dm_plex_box_upper "
+             "-0.01,1 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 -prefix_pop "
+             "-prefix_push b_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 3,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 1,1 "
+             "-density 1 -youngs_modulus 1 -poissons_ratio 0.25 -ts_type centraldifference -prefix_pop "
+             "-bodies a,b -contact_pairs a.xmax:b.xmin -time_step 0.04 -time_end 1");
+  ok(SimulationCreate(simulation));
+  between(simulation->contact->n_all_rows, 5, MOST_ROWS);
+}
+
+/* All rows with both sides are solved for, but the last of all ranks where `leave` */
+static InterfaceOperator SetUp(Simulation *simulation, const InterfaceSettings *settings, PetscBool leave)
+{
+  const Contact     contact = simulation->contact;
+  InterfaceMark     marks[MOST_ROWS];
+  InterfaceOperator op;
+
+  for (PetscInt i = 0; i < contact->n_rows; i++)
+    marks[i] = leave && contact->row_begin + i == contact->n_all_rows - 1 ? INTERFACE_LEFT_OUT : INTERFACE_SOLVED;
+  ok(InterfaceOperatorCreate(contact, settings, &op));
+  ok(InterfaceOperatorSetRows(op, marks, 1));
+  return op;
+}
+
+static PetscReal force(PetscInt row)
+{
+  return 1 + PetscSinReal(2.0 * row);
+}
+
+static void fill(const Contact contact, PetscScalar x[])
+{
+  for (PetscInt i = 0; i < contact->n_rows; i++) x[i] = force(contact->row_begin + i);
+}
+
+/* Forces of some N bring some m: round-off, and what conjugate gradients leave */
+static void products_are_the_same(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  InterfaceOperator op[2];
+  Contact           contact;
+
+  Create(simulation);
+  contact = simulation->contact;
+  for (PetscInt leave = 0; leave < 2; leave++) {
+    PetscScalar x[MOST_ROWS], gap[MOST_ROWS], side[2][MOST_ROWS], other[MOST_ROWS];
+
+    op[0] = SetUp(simulation, &dense, (PetscBool)leave);
+    op[1] = SetUp(simulation, &iterative, (PetscBool)leave);
+    fill(contact, x);
+    for (PetscInt map = 0; map < 4; map++) {
+      ok(InterfaceOperatorMultiply(op[0], (InterfaceMap)map, x, gap));
+      ok(InterfaceOperatorMultiply(op[1], (InterfaceMap)map, x, other));
+      for (PetscInt i = 0; i < contact->n_rows; i++) {
+        near(gap[i], other[i], 1e-12);
+        if (leave && contact->row_begin + i == contact->n_all_rows - 1) near(gap[i], 0, 0);
+        else assert_true(gap[i] != 0 || map == INTERFACE_NEUMANN_DIRICHLET); /* where both sides are apart */
+      }
+    }
+    /* the gap is what both sides do, the Dirichlet side under forces against it, the other one under what is left of S */
+    ok(InterfaceOperatorMultiply(op[0], INTERFACE_GAP, x, gap));
+    ok(InterfaceOperatorMultiply(op[0], INTERFACE_DIRICHLET, x, side[0]));
+    ok(InterfaceOperatorMultiply(op[0], INTERFACE_NEUMANN_GAP, x, side[1]));
+    for (PetscInt i = 0; i < contact->n_rows; i++) near(gap[i], side[0][i] - side[1][i], 1e-13);
+    for (PetscInt k = 0; k < 2; k++) ok(InterfaceOperatorDestroy(&op[k]));
+  }
+}
+
+/* With springs on the diagonal, and rows that are taken out for the time being */
+static void solutions_are_the_same(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  Contact     contact;
+
+  Create(simulation);
+  contact = simulation->contact;
+  for (PetscInt which = 0; which < 2; which++) {
+    InterfaceOperator op = SetUp(simulation, which ? &iterative : &dense, PETSC_FALSE);
+    PetscScalar       x[MOST_ROWS], gap[MOST_ROWS], found[MOST_ROWS] = {0};
+    PetscReal         springs[MOST_ROWS];
+    PetscBool         in[MOST_ROWS];
+
+    for (PetscInt some = 0; some < 2; some++) {
+      for (PetscInt i = 0; i < contact->n_rows; i++) {
+        in[i]      = (PetscBool)(!some || (contact->row_begin + i) % 2);
+        springs[i] = some ? 0.3 + 0.1 * i : 0;
+        x[i]       = in[i] ? force(contact->row_begin + i) : 0;
+      }
+      ok(InterfaceOperatorMultiply(op, INTERFACE_GAP, x, gap));
+      for (PetscInt i = 0; i < contact->n_rows; i++) gap[i] += springs[i] * x[i];
+      ok(InterfaceOperatorFactor(op, some ? in : NULL, some ? springs : NULL));
+      ok(InterfaceOperatorSolve(op, gap, found));
+      for (PetscInt i = 0; i < contact->n_rows; i++) near(found[i], x[i], 1e-10);
+    }
+    ok(InterfaceOperatorDestroy(&op));
+  }
+}
+
+/* Rows are dense once iterations have cost as much as columns and factors would, and never before; solutions stay what they are */
+static void becomes_dense_when_that_has_paid(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  InterfaceOperator op;
+  Contact           contact;
+  PetscScalar       gap[MOST_ROWS], first[MOST_ROWS], found[MOST_ROWS] = {0};
+  InterfaceMark     marks[MOST_ROWS];
+  PetscBool         is_dense;
+  PetscInt          solutions = 0;
+
+  Create(simulation);
+  contact = simulation->contact;
+  fill(contact, gap);
+  op = SetUp(simulation, &chooses, PETSC_FALSE);
+  InterfaceOperatorGetRows(op, NULL, NULL, &is_dense);
+  assert_false(is_dense);
+  ok(InterfaceOperatorSolve(op, gap, first));
+  while (!InterfaceOperatorWantsDense(op) && solutions < 100) {
+    ok(InterfaceOperatorSolve(op, gap, found));
+    solutions++;
+  }
+  /* a column for each row costs as one iteration does, and an iteration closes one gap at least */
+  between(solutions, 0, 3);
+  for (PetscInt i = 0; i < contact->n_rows; i++) marks[i] = INTERFACE_SOLVED;
+  ok(InterfaceOperatorSetRows(op, marks, 1));
+  InterfaceOperatorGetRows(op, NULL, NULL, &is_dense);
+  assert_true(is_dense);
+  assert_false(InterfaceOperatorWantsDense(op));
+  ok(InterfaceOperatorSolve(op, gap, found));
+  for (PetscInt i = 0; i < contact->n_rows; i++) near(found[i], first[i], 1e-10);
+  ok(InterfaceOperatorDestroy(&op));
+}
+
+/* A method may give S itself: a diagonal with one pair of other entries, which two rows of the same rank or of different ones have */
+static void may_be_a_sparse_matrix(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  Contact     contact;
+  Mat         S;
+
+  Create(simulation);
+  contact = simulation->contact;
+  ok(MatCreateAIJ(PETSC_COMM_WORLD, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, 2, NULL, 2, NULL, &S));
+  for (PetscInt i = contact->row_begin; i < contact->row_begin + contact->n_rows; i++) {
+    ok(MatSetValue(S, i, i, 2 + i, INSERT_VALUES));
+    if (i == 0) ok(MatSetValue(S, i, contact->n_all_rows - 1, 1, INSERT_VALUES));
+    if (i == contact->n_all_rows - 1) ok(MatSetValue(S, i, 0, 1, INSERT_VALUES));
+  }
+  ok(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
+  ok(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
+  for (PetscInt which = 0; which < 2; which++) {
+    InterfaceOperator op;
+    InterfaceMark     marks[MOST_ROWS];
+    PetscScalar       gap[MOST_ROWS], found[MOST_ROWS] = {0};
+
+    ok(InterfaceOperatorCreate(contact, which ? &iterative : &dense, &op));
+    ok(InterfaceOperatorSetMatrix(op, S));
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const PetscInt row = contact->row_begin + i, last = contact->n_all_rows - 1;
+
+      marks[i] = INTERFACE_SOLVED;
+      gap[i]   = (2 + row) * force(row) + (row == 0 ? force(last) : row == last ? force(0) : 0);
+    }
+    ok(InterfaceOperatorSetRows(op, marks, 1));
+    ok(InterfaceOperatorSolve(op, gap, found));
+    for (PetscInt i = 0; i < contact->n_rows; i++) near(found[i], force(contact->row_begin + i), 1e-12);
+    ok(InterfaceOperatorDestroy(&op));
+    assert_null(op);
+  }
+  ok(MatDestroy(&S));
+}
+
+/* Conjugate gradients that stop early end the run, and say what is left and what to do */
+static void iterations_that_do_not_converge_are_an_error(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  InterfaceOperator op;
+  PetscScalar       gap[MOST_ROWS], found[MOST_ROWS] = {0};
+
+  Create(simulation);
+  AddOptions("-operator_ksp_max_it 1");
+  fill(simulation->contact, gap);
+  op = SetUp(simulation, &iterative, PETSC_FALSE);
+  refused(PETSC_ERR_NOT_CONVERGED, "Conjugate gradients for the contact forces|after 1 iterations|-operator_ksp_max_it",
+          InterfaceOperatorSolve(op, gap, found));
+  ok(InterfaceOperatorDestroy(&op));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      simulation_test(products_are_the_same),
+      simulation_test(solutions_are_the_same),
+      simulation_test(becomes_dense_when_that_has_paid),
+      simulation_test(may_be_a_sparse_matrix),
+      simulation_test(iterations_that_do_not_converge_are_an_error),
+  };
+
+  return impakt_main(argc, argv, tests);
+}

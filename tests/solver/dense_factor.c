@@ -1,0 +1,94 @@
+/* ranks: 1 */
+/* LU factors of dense matrices that become larger and smaller. */
+#include "support.h"
+#include <solver/densefactor.h>
+
+#define MOST 30
+
+/* No entry is small, and the largest of a column is not on the diagonal, so that rows change places */
+static PetscScalar entry(PetscInt n, PetscInt i, PetscInt j)
+{
+  return PetscCosReal(1 + 2.3 * i * j + 0.7 * i) + (i == (j + 1) % n ? n : 0);
+}
+
+static void solve(DenseFactor *factor, PetscInt n)
+{
+  PetscScalar solution[MOST], x[MOST];
+  PetscBool   singular;
+
+  ok(DenseFactorResize(factor, n, MOST));
+  assert_int_equal(factor->n, n);
+  between(factor->room, n, MOST);
+  for (PetscInt j = 0; j < n; j++) solution[j] = 1 - 0.3 * j;
+  for (PetscInt i = 0; i < n; i++) {
+    x[i] = 0;
+    for (PetscInt j = 0; j < n; j++) {
+      factor->values[j * n + i] = entry(n, i, j);
+      x[i] += entry(n, i, j) * solution[j];
+    }
+  }
+  ok(DenseFactorCompute(factor, &singular));
+  assert_false(singular);
+  ok(DenseFactorSolve(factor, x));
+  for (PetscInt j = 0; j < n; j++) near(x[j], solution[j], 1e-13); /* round-off of numbers up to 8 */
+}
+
+static void solves_whatever_its_order(void **state)
+{
+  static const PetscInt orders[] = {1, 3, 2, 7, 0, MOST, 5};
+  DenseFactor           factor   = {0};
+
+  (void)state;
+  for (size_t k = 0; k < sizeof(orders) / sizeof(orders[0]); k++) solve(&factor, orders[k]);
+  assert_int_equal(factor.room, MOST);
+  ok(DenseFactorDestroy(&factor));
+  assert_int_equal(factor.room, 0);
+  solve(&factor, 4);
+  ok(DenseFactorDestroy(&factor));
+}
+
+/* Of one row, which is no matter for LAPACK, and of three, whose last column is the sum of the others */
+static void tells_a_singular_matrix(void **state)
+{
+  static const PetscInt orders[] = {1, 3};
+  DenseFactor           factor   = {0};
+
+  (void)state;
+  for (size_t k = 0; k < 2; k++) {
+    const PetscInt n    = orders[k];
+    PetscScalar    x[3] = {1, 2, 3};
+    PetscBool      singular;
+
+    ok(DenseFactorResize(&factor, n, MOST));
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = 0; i < n; i++) factor.values[j * n + i] = n == 1 ? 0 : j < 2 ? 1 + i * j : 2 + i;
+    ok(DenseFactorCompute(&factor, &singular));
+    assert_true(singular);
+    refused(PETSC_ERR_ARG_WRONGSTATE, "DenseFactorCompute()", DenseFactorSolve(&factor, x));
+  }
+  solve(&factor, 3);
+  ok(DenseFactorDestroy(&factor));
+}
+
+static void a_part_of_a_larger_matrix_is_multiplied_with(void **state)
+{
+  const PetscScalar A[] = {1, 2, 100, 3, 4, 100}, x[] = {10, -1};
+  PetscScalar       y[] = {7, 8};
+
+  (void)state;
+  ok(DenseMultiplyAdd(2, 3, A, -2, x, y));
+  near(y[0], 7 - 2 * (10 - 3), 0);
+  near(y[1], 8 - 2 * (20 - 4), 0);
+  ok(DenseMultiplyAdd(0, 0, NULL, 1, NULL, NULL));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(solves_whatever_its_order),
+      cmocka_unit_test(tells_a_singular_matrix),
+      cmocka_unit_test(a_part_of_a_larger_matrix_is_multiplied_with),
+  };
+
+  return impakt_main(argc, argv, tests);
+}
