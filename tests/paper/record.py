@@ -1,9 +1,10 @@
 """Records the golden figures of the report's tables anew, tests/paper/golden.json, and tells what has changed.
 
-    python tests/paper/record.py --program build/impakt [--out out/paper]
+    python tests/paper/record.py --program build/impakt [--out out/paper] [--changed]
 
 For when a change of the figures is meant: look at what is printed before the file is committed. Runs of `make paper` are used
-where they are there, and its own, in out/paper/shifted, are made once too. How far a figure may be off is measured: each run is
+where they are there, and its own, in out/paper/shifted, are made once too. With --changed only those runs are recorded whose figures are not what they
+were within their tolerances. How far a figure may be off is measured: each run is
 made again with one bar shifted by some 1e-17 m, a few units in the last place of its coordinates. Runs that chatter amplify
 such differences, others do not.
 """
@@ -19,7 +20,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "plots"), str(ROOT / "tests/support")]
 
-from goldenfigures import FILE
+from goldenfigures import FILE, GOLDEN, differences
 from paper.experiments import Experiment, find
 from paper.results import NoResult, Results
 from paper.running import Runner, run_all
@@ -97,12 +98,19 @@ def figures_of(result):
     return found
 
 
-def measure(program, runs, folder):
-    """Figures of all experiments: those of `runs`, and of runs that differ by round-off."""
+def has_changed(name, result):
+    return name not in GOLDEN["figures"] or bool(result.error) or bool(differences(name, result.summary))
+
+
+def measure(program, runs, folder, changed):
+    """Figures of all experiments, or of those that have changed: those of `runs`, and of runs that differ by round-off."""
     experiments = find()
     runner = Runner(program, runs)
     run_all(runner, list(experiments.values()))
     base = Results(runner, experiments)
+    if changed:
+        experiments = {name: experiment for name, experiment in experiments.items() if has_changed(name, base[name])}
+        base = Results(runner, experiments)
     quick = {
         name: experiment
         for name, experiment in experiments.items()
@@ -139,10 +147,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=Path("build/impakt"))
     parser.add_argument("--out", type=Path, default=Path("out/paper"))
+    parser.add_argument("--changed", action="store_true", help="only runs whose figures have changed")
     chosen = parser.parse_args()
-    old = json.loads(FILE.read_text(encoding="utf-8"))["figures"] if FILE.exists() else {}
-    base, others = measure(chosen.program, chosen.out / "runs", chosen.out / "shifted")
-    figures, cheap = {}, []
+    old = GOLDEN["figures"]
+    base, others = measure(chosen.program, chosen.out / "runs", chosen.out / "shifted", chosen.changed)
+    figures = {name: entries for name, entries in old.items() if chosen.changed and name not in base.experiments}
+    cheap = [name for name in GOLDEN["cheap"] if name in figures]
     for name in base.experiments:
         try:
             again = [other[name] for other in others if name in other.experiments and not other[name].error]
@@ -161,10 +171,10 @@ def main():
         f"    {json.dumps(name)}: {{\n"
         + ",\n".join(f"      {json.dumps(q)}: {json.dumps(v)}" for q, v in entries.items())
         + "\n    }"
-        for name, entries in figures.items()
+        for name, entries in sorted(figures.items())
     )
     FILE.write_text(
-        f'{{\n  "reasons": {json.dumps(REASONS, indent=4)},\n  "cheap": {json.dumps(cheap)},\n  "figures": {{\n{lines}\n  }}\n}}\n',
+        f'{{\n  "reasons": {json.dumps(REASONS, indent=4)},\n  "cheap": {json.dumps(sorted(cheap))},\n  "figures": {{\n{lines}\n  }}\n}}\n',
         encoding="utf-8",
     )
 
