@@ -71,11 +71,8 @@ export OMPI_MCA_rmaps_base_oversubscribe := 1
 export OMPI_MCA_hwloc_base_binding_policy := none
 export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
-# Only what one machine needs: without these, a process starts a daemon beside it, and loads drivers of networks, one of which takes 0.2 s to
-# calibrate a clock. A start takes 0.04 s instead of 0.34 s.
-export OMPI_MCA_ess_singleton_isolated := 1
+# Messages within one machine: else MPI loads the drivers of networks too, one of which takes 0.2 s to calibrate a clock.
 export OMPI_MCA_pml := ob1
-export OMPI_MCA_btl := self,vader
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg

@@ -310,6 +310,7 @@ def test_contact_fields_drawn(pictured, launch, tmp_path):
     assert ((pictures["gap"][middle] == 0xBB).all(axis=2)).sum() > 1000  # the bars, but for their contact nodes
 
 
+@pytest.mark.long
 def test_cut(pictured, launch, tmp_path):
     """What is before the plane is gone: two thirds of the larger body; the upper half of both."""
     shares = {}

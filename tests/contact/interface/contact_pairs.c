@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Which pairs there are, which side takes displacements, what obstacles and tied surfaces do. */
 #include "simulation.h"
 
