@@ -25,7 +25,7 @@ METHODS = {
     "paper": f"{WITH_MASS} -schwarz_snes_type nrichardson",
     "penalty": f"{AVERAGED} -contact_type penalty -contact_penalty {{penalty}}",
     "penalty-explicit": f"{BOTH_EXPLICIT} -contact_type penalty -contact_penalty {{penalty}}",
-    "augmented-lagrangian": f"{AVERAGED} -contact_type augmented_lagrangian -contact_penalty {{penalty}}",
+    "augmented-lagrangian": f"{AVERAGED} -contact_type augmented_lagrangian -contact_augmentation_tolerance 1e-10 -contact_penalty {{penalty}}",
     "lagrange": f"{AVERAGED} -contact_type lagrange",
     "lagrange-explicit": f"{WITH_MASS} {BOTH_EXPLICIT} -contact_type lagrange",
 }

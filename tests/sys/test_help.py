@@ -16,6 +16,8 @@ OF_PETSC = {
     "snes_anderson_beta",
     "snes_linesearch_damping",
     "snes_vi_zero_tolerance",
+    "snes_lag_jacobian_persists",  # which is refused
+    "snes_lag_preconditioner_persists",
     "lagrange_snes_vi_zero_tolerance",
     "ts_view",
     "dm_view",

@@ -4,19 +4,33 @@
 */
 #include <impakt/private/contactimpl.h>
 
-/* Longest edge of the box about a body's mesh [m] */
+/* Diameter of the ball about the mean of a body's nodes that has all of them in it [m]: the length of a bar, however it lies in space */
 static PetscErrorCode GetExtent(Body body, PetscReal *extent)
 {
-  PetscReal lower[3] = {0}, upper[3] = {0};
-  PetscInt  dim;
-  DM        dm;
+  PetscReal          center[4] = {0}, radius = 0; /* the mean of the nodes, and their number */
+  PetscInt           dim, n;
+  const PetscScalar *x;
+  Vec                coordinates;
+  DM                 dm;
 
   PetscFunctionBegin;
   PetscCall(BodyGetDM(body, &dm));
   PetscCall(DMGetCoordinateDim(dm, &dim));
-  PetscCall(DMGetBoundingBox(dm, lower, upper));
-  *extent = 0;
-  for (PetscInt d = 0; d < dim; d++) *extent = PetscMax(*extent, upper[d] - lower[d]);
+  PetscCall(DMGetCoordinates(dm, &coordinates));
+  PetscCall(VecGetLocalSize(coordinates, &n));
+  PetscCall(VecGetArrayRead(coordinates, &x));
+  center[3] = n / dim;
+  for (PetscInt i = 0; i < n; i++) center[i % dim] += PetscRealPart(x[i]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, center, 4, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)dm)));
+  for (PetscInt i = 0; i < n; i += dim) {
+    PetscReal square = 0;
+
+    for (PetscInt d = 0; d < dim; d++) square += PetscSqr(PetscRealPart(x[i + d]) - center[d] / center[3]);
+    radius = PetscMax(radius, PetscSqrtReal(square));
+  }
+  PetscCall(VecRestoreArrayRead(coordinates, &x));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &radius, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)dm)));
+  *extent = 2 * radius;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,7 +77,8 @@ PetscErrorCode ContactSetUpScales(Contact contact)
 . contact - the `Contact`, in or after `ContactSetUp()`
 
   Output Parameter:
-. length - size of the smallest body: of each body the longest edge of the box about its mesh at the start, of all bodies the least [m]
+. length - size of the smallest body: of each body the diameter of the ball about the mean of its nodes that has all of them in it, of all
+           bodies the least [m]
 
   Level: developer
 
