@@ -22,7 +22,7 @@ made: $(filter clean,$(MAKECMDGOALS))
 	$(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(cores)) PETSC_ROOT="$$petsc" PYTHON="$$python" $(goals)
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 18
 	@sed -n 's/^#   /  /p' Makefile
 
 clean: ## remove build/; what runs wrote to out/ stays
@@ -71,16 +71,13 @@ export OMPI_MCA_rmaps_base_oversubscribe := 1
 export OMPI_MCA_hwloc_base_binding_policy := none
 export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
-# Only what one machine needs: without these, a process starts a daemon beside it, and loads drivers of networks, one of which takes 0.2 s to
-# calibrate a clock. A start takes 0.04 s instead of 0.34 s.
-export OMPI_MCA_ess_singleton_isolated := 1
+# Messages within one machine: else MPI loads the drivers of networks too, one of which takes 0.2 s to calibrate a clock.
 export OMPI_MCA_pml := ob1
-export OMPI_MCA_btl := self,vader
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg
 
-.PHONY: all run paper test bench format lint force
+.PHONY: all run paper test test-all bench format lint force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units))
 
@@ -97,9 +94,12 @@ paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in 
 	$(PYTHON) -m paper --program $(BUILD)/impakt --out out/paper || status=$$?; \
 	$(PYTHON) -m pytest -q -p no:cacheprovider --rootdir=. tests/paper/golden.py || status=$$?; exit $$status
 
-test: $(BUILD)/impakt $(units) ## unit tests on 1 to 3 ranks and regression tests
+# Where TESTS does not say what is wanted, `make test` leaves out what is marked as long.
+test: ## unit tests on 1 to 3 ranks and regression tests, without the long ones; or what TESTS names
+test-all: ## all tests
+test test-all: $(BUILD)/impakt $(units)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS)
+	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long")
 
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time, memory and scaling, beside plain C yardsticks
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD)

@@ -1,4 +1,4 @@
-"""What the tests share: starting programs under MPI, running Impakt, and the tally that ends `make test`."""
+"""What the tests share: starting programs under MPI, running Impakt, long tests, and the tally that ends `make test`."""
 
 import fcntl
 import json
@@ -74,10 +74,17 @@ def start(command, ranks=1, timeout=120, **more):
         return run_command(command, ranks, timeout, **more)
 
 
-def run_command(command, ranks, timeout, **more):
+# A process on its own needs neither Open MPI's daemon beside it, which takes 0.1 s to start, nor a folder to meet others in
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}
+
+
+def run_command(command, ranks, timeout, env=None, **more):
     command = [str(word) for word in command]
+    env = dict(os.environ if env is None else env)
     if ranks > 1:
         command = MPIEXEC + ["-n", str(ranks)] + command
+    elif BUILD in Path(command[0]).parents:
+        env |= ALONE
     process = subprocess.Popen(
         command,
         stdin=subprocess.DEVNULL,
@@ -86,6 +93,7 @@ def run_command(command, ranks, timeout, **more):
         text=True,
         errors="replace",
         start_new_session=True,
+        env=env,
         **more,
     )
     late = False
@@ -179,6 +187,14 @@ def impakt(tmp_path):
     for done in runs:
         if "history" in done.__dict__:
             done.history.close()
+
+
+def pytest_configure(config):
+    config.addinivalue_line(
+        "markers",
+        "long: what `make test` leaves to `make test-all`. A test is long if it takes more than 2 s of a core, with the runs that it alone needs, or if it "
+        "repeats at some cost, for one more mesh, pairing or number of ranks, what a quicker case shows of the same feature.",
+    )
 
 
 def tally(config):

@@ -1,5 +1,5 @@
 """The CMocka programs, which are the C files of all folders here but scaling and library, each on 1, 2 and 3 ranks or on those that a comment
-in it names: /* ranks: 1 2 */"""
+in it names: /* ranks: 1 2 */. On those that another one names, /* long: 3 */, only where long tests are run; on all, if it names none: /* long */"""
 
 import os
 import re
@@ -8,6 +8,7 @@ import pytest
 from conftest import BUILD, ROOT, complaints, fail
 
 RANKS = re.compile(r"/\*\s*ranks:\s*([\d\s,]+)\*/")
+LONG = re.compile(r"/\*\s*long(?::\s*([\d\s,]+))?\s*\*/")
 
 
 def cases():
@@ -16,9 +17,11 @@ def cases():
         program = source.relative_to(tests).with_suffix("")
         if program.parts[0] in ("scaling", "library"):
             continue
-        named = RANKS.search(source.read_text())
-        for ranks in re.findall(r"\d+", named.group(1)) if named else (1, 2, 3):
-            yield pytest.param(program, int(ranks), id=f"{program}-{ranks}")
+        text = source.read_text()
+        named, long = RANKS.search(text), LONG.search(text)
+        for ranks in re.findall(r"\d+", named.group(1)) if named else "123":
+            is_long = long and (long.group(1) is None or ranks in re.findall(r"\d+", long.group(1)))
+            yield pytest.param(program, int(ranks), id=f"{program}-{ranks}", marks=[pytest.mark.long] if is_long else [])
 
 
 @pytest.mark.parametrize(("name", "ranks"), list(cases()))

@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Exact solutions: the closed form for two equal bars, Hoy, Tezaur, Mota, eqs. (4.1) to (4.7), and the method of characteristics. */
 #include "simulation.h"
 

@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Rows between non-matching surfaces in two and three dimensions: what they reproduce and conserve, and when they are built. */
 #include "interfaces.h"
 

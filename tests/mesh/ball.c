@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Discs and balls from options: their volume, surfaces, grading and parts. */
 #include "meshes.h"
 

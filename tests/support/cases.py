@@ -1,6 +1,7 @@
 """Options of the runs that the paper names, and figures that many tests ask for."""
 
 import numpy as np
+import pytest
 
 DEFAULTS = "-options_file options/impact-high-speed.opts"
 LUMPED = f"{DEFAULTS} -left_mass_type lumped -right_mass_type lumped"
@@ -21,7 +22,14 @@ PAIRINGS = {
 # before is the solution already, and impact is at the end of a step.
 INSIDE = "-left_dm_plex_box_lower -0.2700037 -left_dm_plex_box_upper -0.0200037"  # after 0.185 of a step of 1e-7 s
 MOVING = "-left_initial_velocity 150 -right_initial_velocity -50"
+# The right bar has another impedance, which is 2.4 times that of the left one, and waves of 816 m/s, 1000 m/s in the left one
+UNLIKE = "-exact characteristics -right_density 3000 -right_youngs_modulus 2e9"
 FRAMES = {"as-is": "", "inside": INSIDE, "moving": MOVING, "moving-inside": f"{MOVING} {INSIDE}"}
+
+
+def long(*cases):
+    """Values of a test's parameters that `make test` leaves to `make test-all`."""
+    return [pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.long) for case in cases]
 
 
 def joined(*parts):

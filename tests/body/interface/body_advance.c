@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Integrating a body: conservation, bitwise repetition, prescribed rows and reactions. */
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Forces from outside: tractions, body forces and gravity. */
 #include "loads.h"
 

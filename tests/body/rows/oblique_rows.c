@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Prescribed rows of one node along any directions, beside displacements that are held, and more than its displacements can follow. */
 #include "row_bodies.h"
 

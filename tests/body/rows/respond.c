@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Rows through a controller step by the compliance alone, against an integration under the same conditions. */
 #include "row_bodies.h"
 

@@ -1,3 +1,4 @@
+/* long: 3 */
 /* The response of a body to unit inputs on its rows, and the shortcut that it gives repeated sweeps. */
 #include "support.h"
 

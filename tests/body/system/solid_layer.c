@@ -1,3 +1,4 @@
+/* long: 3 */
 /* The massless layer of explicit bodies in two and three dimensions: in balance with what is inside and with its loads, by linear and by
    nonlinear materials; energy; prescribed and loaded rows on it. */
 #include "solid_bodies.h"

@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Newton's method on the interface compliance: how many sweeps it takes, and that every way of solving the interface problem gives the same
    contact. */
 #include "simulation.h"

@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Bodies in two and three dimensions that fly and touch allocate nothing in a controller step that builds nothing again. What PETSc takes
    for itself in some solvers is counted apart. PETSc's allocator is replaced by one that counts, and on one rank the C library's too: on
    several, MPI takes memory for messages. */

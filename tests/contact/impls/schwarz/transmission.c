@@ -1,3 +1,4 @@
+/* long: 3 */
 /* Robin rows of a body, transmission conditions, predictors, and sides that swap: other ways to the same solution. */
 #include "simulation.h"
 
