@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+from cases import long
 from headon import ENDS, NORMAL, SHAPES, compare, figures, options
 
 EXPLICIT = "-{b}_ts_type centraldifference"
@@ -27,6 +28,7 @@ METHODS = {
     "lagrange-explicit": f"{WITH_MASS} {BOTH_EXPLICIT} -contact_type lagrange",
 }
 CASES = [(shape, method) for shape in SHAPES for method in METHODS if "over" not in shape or method in ("II", "EE", "penalty")]
+QUICK = ("quad4-turned", "hex8")  # of which `make test` takes all methods
 
 
 def in_one_dimension(method):
@@ -34,31 +36,35 @@ def in_one_dimension(method):
     return method.replace(" -schwarz_condense 0", "") + (" -schwarz_condense 1" if "ts_time_step" in method else "")
 
 
-@pytest.mark.parametrize(("shape", "method"), CASES)
+@pytest.mark.parametrize(("shape", "method"), [*(case for case in CASES if case[0] in QUICK), *long(*(case for case in CASES if case[0] not in QUICK))])
 def test_impact(shape, method, shared_run):
-    """At every step. The issue wants 1e-6; measured: 1e-12, as the outer iteration stops at 1e-12 m of displacements of 1e-2 m, and 1.4e-10 with the
-    paper's method, which chatters. The figures themselves are tested in one dimension, and here for what they must be in a rough way:
+    """At every step. Measured: 1e-12, as the outer iteration stops at 1e-12 m of displacements of 1e-2 m, and 1.4e-10 with the paper's method, which
+    chatters. The figures themselves are tested in one dimension and in test_solids_exact.py, and here for what they must be in a rough way:
     rho A c v = 1e4 N, over two passages of 2.5e-4 s."""
     bars = shared_run(options("bar2", in_one_dimension(METHODS[method])))
     run = shared_run(options(shape, METHODS[method]))
     compare(figures(bars, "bar2"), figures(run, shape), 1e-9)
     assert run.summary["contact"]["onsets"] == bars.summary["contact"]["onsets"]
-    assert run.summary["contact"]["force_mean"] == pytest.approx(1e4, rel=0.01)
-    assert run.summary["contact"]["impulse"] == pytest.approx(5, rel=0.03)  # 25 elements with lumped mass lose 2.1 %
-    if method not in ("EI", "paper"):  # EI: the partner of a body with substeps does not know the force in them; paper: nodes with mass lose theirs
-        assert run.summary["system"]["momentum_error_max"] <= 1e-10
+    assert run.summary["contact"]["force_mean"] == pytest.approx(1e4, rel=2e-3 if method == "paper" else 1e-4)  # measured: 1.6e-3 and 8e-5
+    assert 0.978 * 5 <= run.summary["contact"]["impulse"] <= 5  # 25 elements with mass on the contact nodes lose 2.1 %
+    momentum = run.summary["system"]["momentum_error_max"]
+    if method == "paper":  # the inertia of the contact nodes, which internal forces leave out: as much as in one dimension
+        assert momentum == pytest.approx(bars.summary["system"]["momentum_error_max"], rel=1e-6)
+        assert momentum == pytest.approx(1.94e-2, rel=1e-2)
+    else:
+        assert momentum <= 1e-12  # round-off of 500 steps; measured: 1.3e-13 at most
 
 
-@pytest.mark.parametrize("shape", ["quad4-turned", "hex8-turned"])
+@pytest.mark.parametrize("shape", ["quad4-turned", *long("hex8-turned")])
 @pytest.mark.parametrize("method", ["II", "IE", "EI", "EE", "anderson"])
 def test_condensed(shape, method, shared_run):
-    """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: the issue wants 1e-10; measured: 6e-13."""
+    """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: measured 6e-13."""
     runs = [shared_run(options(shape, f"{METHODS[method]} -schwarz_condense {condense}")) for condense in (0, 1)]
     compare(*(figures(run, shape) for run in runs), 1e-10)
     np.testing.assert_array_equal(*(run.history["schwarz/iterations"][()] for run in runs))
 
 
-@pytest.mark.parametrize("shape", list(SHAPES))
+@pytest.mark.parametrize("shape", ["quad4-turned", "hex8", *long(*(shape for shape in SHAPES if shape not in QUICK))])
 @pytest.mark.parametrize("pairs", ["auto", "l:r"])
 def test_surfaces_not_named(shape, pairs, shared_run):
     """Of all the surface of the bars only the ends that face each other have gaps, and the figures are the same."""
@@ -78,7 +84,7 @@ def test_surfaces_not_named(shape, pairs, shared_run):
         np.testing.assert_array_equal(np.isfinite(gap), ends)
 
 
-@pytest.mark.parametrize(("method", "ranks"), [("II", 2), ("II", 4), ("IE", 3), ("penalty", 2), ("lagrange-explicit", 3)])
+@pytest.mark.parametrize(("method", "ranks"), [("II", 2), *long(("II", 4)), ("IE", 3), ("penalty", 2), *long(("lagrange-explicit", 3))])
 def test_ranks(method, ranks, shared_run):
     compare(*(figures(shared_run(options("hex8-turned", METHODS[method]), n), "hex8-turned") for n in (1, ranks)), 1e-9)
 
