@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from cases import ANDERSON, joined, never_tensile, worst_energy_error
+from cases import ANDERSON, joined, long, never_tensile, worst_energy_error
 
 BLOCKS = "-options_file options/blocks.opts"
 LEFT, RIGHT = (f"-{body}_ts_type centraldifference" for body in ("left", "right"))
 PAIRINGS = {"II": "", "IE": RIGHT, "EI": LEFT, "EE": f"{LEFT} {RIGHT}"}
 FINE = f"{RIGHT} -right_ts_time_step 2.5e-7"  # four substeps beside one implicit step
-# the issue's demands; measured: 1.5e-6 (II), 1.2e-6 (IE), 8e-7 (EI), 4e-7 (EE)
-ENERGY = {"II": 1e-5, "IE": 2e-4, "EI": 2e-4, "EE": 2e-4}
+ENERGY = {"II": 2e-6, "IE": 1.6e-6, "EI": 1.1e-6, "EE": 6e-7}  # measured: 1.5e-6, 1.2e-6, 8e-7, 4e-7
 STEADY = (1e-4, 3.5e-4)  # from the passage of the first waves to before the release [s]
 
 
@@ -39,7 +38,7 @@ def test_impact(pairing, shared_run):
     assert run.summary["contact"]["onsets"] == 1
     assert run.summary["system"]["momentum_error_max"] <= 1e-12  # round-off of 600 steps: 2.5e-14
     assert run.summary["system"]["angular_momentum_error_max"] <= 1e-12  # none at the start: of momentum times the farthest corner; 2.9e-14
-    assert force_change(run) <= 0.01  # measured: 0.0032
+    assert force_change(run) <= 0.004  # measured: 0.0032
     assert never_tensile(run, pair_of(run))
 
 
@@ -61,7 +60,7 @@ def test_anderson(pairing, shared_run):
     runs = [shared_run(joined(BLOCKS, PAIRINGS[pairing], more)) for more in ("", ANDERSON)]
     assert runs[1].summary["schwarz"]["mean_contact_steps"] <= 8  # measured: 5.9 to 6.0
     forces = [contact_force(run) for run in runs]
-    assert np.abs(forces[1] - forces[0]).max() <= 1e-6 * forces[0].max()
+    assert np.abs(forces[1] - forces[0]).max() <= 1e-8 * forces[0].max()  # measured: 2e-10
 
 
 @pytest.mark.parametrize("pairing", ["II", "EE", "FINE"])
@@ -70,7 +69,7 @@ def test_condensed(pairing, shared_run):
     same(*(shared_run(f"{options} -schwarz_condense {way}") for way in (0, 1)), 1e-10)  # the issue's; measured: 1e-13
 
 
-@pytest.mark.parametrize("ranks", [2, 3, 4])
+@pytest.mark.parametrize("ranks", [2, 3, *long(4)])
 @pytest.mark.parametrize("pairing", ["II", "FINE"])
 def test_ranks(pairing, ranks, shared_run):
     options = joined(BLOCKS, {**PAIRINGS, "FINE": FINE}[pairing], "-time_end 1e-4")
@@ -88,10 +87,10 @@ def same(first, second, tolerance):
 @pytest.mark.parametrize(
     ("options", "most"),
     [
-        (f"{RIGHT} -right_ts_time_step 2.5e-7", 2e-4),
-        (f"{LEFT} -left_ts_time_step 5e-7", 2e-4),
-        (f"{LEFT} {RIGHT} -right_ts_time_step 1e-7", 2e-4),
-        (f"{LEFT} {RIGHT} -left_ts_time_step 2.5e-7 -right_ts_time_step 2.5e-7", 2e-4),
+        (f"{RIGHT} -right_ts_time_step 2.5e-7", 3.5e-5),
+        (f"{LEFT} -left_ts_time_step 5e-7", 3.5e-5),
+        (f"{LEFT} {RIGHT} -right_ts_time_step 1e-7", 3.5e-5),
+        (f"{LEFT} {RIGHT} -left_ts_time_step 2.5e-7 -right_ts_time_step 2.5e-7", 7e-7),
     ],
 )
 def test_substeps(options, most, shared_run):
@@ -112,9 +111,9 @@ def test_materials(left, right, shared_run):
     """Strains of 10 %. Explicit bodies, which are cheap: implicit ones need as many sweeps."""
     run = shared_run(f"{BLOCKS} {PAIRINGS['EE']} -left_material_type {left} -right_material_type {right}")
     assert run.summary["schwarz"]["mean_contact_steps"] <= 5  # the issue's; measured: 2.0 (both linear), 3.4 to 4.6
-    assert worst_energy_error(run.summary) <= 2e-4  # measured: 8.1e-5
+    assert worst_energy_error(run.summary) <= 1.1e-4  # measured: 8.1e-5
     assert run.summary["system"]["momentum_error_max"] <= 1e-12
-    assert force_change(run) <= 0.01
+    assert force_change(run) <= 0.004  # measured: 0.0032
 
 
 @pytest.mark.parametrize("integrator", ["II", "EE"])
@@ -126,9 +125,9 @@ def test_penalty(integrator, shared_run):
     initial = 2 * 0.5 * 12.5 * 100**2
     assert system["penalty_energy_max"] > force**2 / (2 * tau * area)
     assert abs(system["energy_error_min"]) == pytest.approx(system["penalty_energy_max"] / initial, rel=0.02)
-    assert abs(system["energy_error_final"]) <= 1e-5  # measured: 1.7e-6
+    assert abs(system["energy_error_final"]) <= 2.3e-6  # measured: 1.8e-6
     assert run.summary["contact"]["onsets"] == 1
-    assert force_change(run) <= 0.01
+    assert force_change(run) <= 0.004  # measured: 0.0032
 
 
 def test_as_in_the_paper(shared_run):
@@ -138,7 +137,7 @@ def test_as_in_the_paper(shared_run):
     assert worst_energy_error(run.summary) > 1000 * worst_energy_error(best.summary)  # measured: 5.0e-3 against 1.5e-6
     assert force_change(run) > 3 * force_change(best)  # measured: 0.0130 against 0.0032
     assert run.summary["schwarz"]["mean_contact_steps"] > 5  # measured: 6.0
-    assert run.summary["system"]["momentum_error_max"] > 1e-3  # measured: 9.7e-3, by the inertia that internal forces leave out
+    assert run.summary["system"]["momentum_error_max"] > 5e-3  # measured: 9.7e-3, by the inertia that internal forces leave out
 
 
 @pytest.mark.parametrize("pairing", ["II", "EE"])
@@ -173,6 +172,6 @@ def test_dirichlet_side_with_shorter_steps(steps, shared_run):
     is taken where the other side has a time for it."""
     run = shared_run(f"{BLOCKS} {UNEQUAL[steps]} -contact_pairs left:right")
     assert run.summary["system"]["momentum_error_max"] <= 1e-12  # measured: 1e-15 to 1.6e-13
-    assert worst_energy_error(run.summary) <= 2e-4  # measured: 1.3e-5 to 3.5e-5
+    assert worst_energy_error(run.summary) <= 4.5e-5  # measured: 1.3e-5 to 3.5e-5
     assert run.summary["schwarz"]["mean_contact_steps"] <= 3  # measured: 2.02, 2.9 where conjugate gradients leave the coupling in time to secants
     assert run.summary["contact"]["onsets"] == 1

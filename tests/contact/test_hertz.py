@@ -7,6 +7,7 @@ import h5py
 import hertz
 import numpy as np
 import pytest
+from cases import long
 from conftest import ROOT
 
 CYLINDER = "-options_file options/hertz-cylinder.opts"
@@ -58,7 +59,7 @@ def test_profile(options, shared_run):
     distance = series["distance"] / radius
     inside = distance < 0.9
     assert distance[~inside].min() < 0.96  # the next one is in the last element
-    assert np.abs(series["pressure"][inside] / (peak * hertz.hertz_pressure(distance[inside])) - 1).max() <= 0.03
+    assert np.abs(series["pressure"][inside] / (peak * hertz.hertz_pressure(distance[inside])) - 1).max() <= 0.025
 
 
 FACES = np.array([[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])  # of a hexahedron
@@ -92,12 +93,12 @@ def means(run):
 
 def test_pressures_are_means(shared_run):
     """What is left of the error where the profile is curved is that a node's pressure is a mean over its faces: with that of Hertz's, the sphere's agree
-    to 0.3 % of the largest within 0.9 of the radius (measured 0.09 %, where values at the nodes differ by 0.9 %), and to 3 % up to the rim (1.7 %)."""
+    to 0.12 % of the largest within 0.9 of the radius (measured 0.09 %, where values at the nodes differ by 0.9 %), and to 2.2 % up to the rim (1.7 %)."""
     distance, pressure, mean = means(shared_run(SPHERE))
     assert len(distance) > 60
     error = np.abs(pressure - mean)
-    assert error[distance < 0.9].max() <= 0.003
-    assert error.max() <= 0.03
+    assert error[distance < 0.9].max() <= 0.0012
+    assert error.max() <= 0.022
 
 
 def test_rim(shared_run):
@@ -125,7 +126,7 @@ def test_rim(shared_run):
             theory = hertz.hertz_pressure(distance / radius)
             inside = distance < radius - element
             assert np.abs(pressure / peak - theory).max() <= 0.35 * np.sqrt(element / radius)
-            assert np.abs(pressure[inside] / peak / theory[inside] - 1).max() <= 0.05
+            assert np.abs(pressure[inside] / peak / theory[inside] - 1).max() <= 0.045
         assert looked_at >= 10
 
 
@@ -168,17 +169,17 @@ def impact_errors(ball, series):
     return np.array((contact_time(series) / duration - 1, series["force"].max() / force - 1))
 
 
-@pytest.mark.parametrize("options", [IMPACT, f"{IMPACT} {EXPLICIT}"], ids=["implicit", "explicit"])
+@pytest.mark.parametrize("options", [IMPACT, *long(f"{IMPACT} {EXPLICIT}")], ids=["implicit", "explicit"])
 def test_impact(options, shared_run):
-    """Contact time and largest force within 3 %: measured 1.2 % (a step is 0.7 %) and -1.2 %; with twice the elements -0.9 % and 1.6 %. The
+    """Contact time and largest force within 1.6 %: measured 1.2 % (a step is 0.7 %) and -1.2 %; with twice the elements -0.9 % and 1.6 %. The
     ball is no half-space, which makes it stiffer: on meshes that resolve it, the force is 0.5 a/R above theory, a/R being 0.031 here (2.3 %
     at 0.3 m/s, 4.0 % at 1 m/s). Restitution 0.99995 implicit, 0.9998 explicit, from the ball's momentum; contact once."""
     run = shared_run(options)
     ball, series = read(run)
-    assert np.abs(impact_errors(ball, series)).max() <= 0.03
+    assert np.abs(impact_errors(ball, series)).max() <= 0.016
     assert run.summary["contact"]["onsets"] == 1
     assert series["force"][-1] == 0
-    assert 0.99 <= series["velocity"][-1] / -series["velocity"][0] <= 1
+    assert 0.9997 <= series["velocity"][-1] / -series["velocity"][0] <= 1
     assert run.summary["system"]["energy_error_max"] <= 1e-10
     transit = 2 * ball.radius / np.sqrt(1.3462e9 / 1000)  # wave speed from the modulus E (1 - nu) / (1 + nu) / (1 - 2 nu)
     assert contact_time(series) > 15 * transit
@@ -191,7 +192,7 @@ def test_impact_converges(shared_run):
     assert np.all(coarse < 0.1)
 
 
-@pytest.mark.parametrize("options", [COARSE_IMPACT, f"{CYLINDER} -time_step 0.5", f"{COARSE_SPHERE}"], ids=["impact", "cylinder", "sphere"])
+@pytest.mark.parametrize("options", [*long(COARSE_IMPACT), f"{CYLINDER} -time_step 0.5", *long(COARSE_SPHERE)], ids=["impact", "cylinder", "sphere"])
 def test_ranks(options, shared_run):
     """The same history on 2 and 3 ranks to 1e-7 of the largest number; gaps that are closed, to the round-off of positions of 1 m."""
     histories = [shared_run(options, ranks=ranks).history for ranks in (1, 2, 3)]

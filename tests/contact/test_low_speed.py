@@ -50,10 +50,10 @@ def test_lagrange_force(shared_run):
     run = shared_run(LAGRANGE)
     time, data = series(run)
     contact = run.summary["contact"]
-    assert contact["force_mean"] == pytest.approx(FORCE, rel=1e-3)  # measured: -9e-5
-    assert contact["force_std"] <= 5e-3 * FORCE  # measured: 1.7e-3
+    assert contact["force_mean"] == pytest.approx(FORCE, rel=2e-4)  # measured: -9e-5
+    assert contact["force_std"] <= 2.2e-3 * FORCE  # measured: 1.7e-3
     middle = (time > IMPACT + 0.2 * DURATION) & (time < IMPACT + 0.8 * DURATION)
-    np.testing.assert_allclose(data["force"][middle], FORCE, rtol=0.01)  # measured: 5e-3
+    np.testing.assert_allclose(data["force"][middle], FORCE, rtol=7e-3)  # measured: 5e-3
 
 
 def test_lagrange_release(shared_run):
@@ -67,7 +67,7 @@ def test_lagrange_release(shared_run):
     exact = np.where(time < IMPACT, SPEED * time - GAP, np.where(time > release, SPEED * (release - time), 0))
     assert np.abs(data["x"] - exact).max() <= SPEED * DURATION / ELEMENTS  # measured: 1.3 steps of v0; this is 2.2
     # in the mean over the run: that lag over the 52 us after release, relative to the 0.15 mm that positions are on average
-    assert run.summary["errors"]["contact_position"] <= 0.06  # measured: 0.042
+    assert run.summary["errors"]["contact_position"] <= 0.055  # measured: 0.042
 
 
 def test_lagrange_energy(shared_run):
@@ -103,10 +103,10 @@ def test_penalty_force_and_release(shared_run):
     s = (time - IMPACT) / constant
     after = (time - IMPACT - DURATION) / constant
     exact = np.where(s < 0, 0, np.where(after < 0, 1 - np.exp(-s), np.maximum(0, 2 * (1 + after) * np.exp(-after) - 1)))
-    # relative L2 in time over the contact; dispersion and steps of T / 4.4 make 2 to 3 %
+    # relative L2 in time over the contact
     touching = (s > 0) & (after < 1.67835)
     error = np.linalg.norm((data["force"] / FORCE - exact)[touching]) / np.linalg.norm(exact[touching])
-    assert error <= 0.05
+    assert error <= 0.01  # measured: 0.0069
     # the springs give back what they held
-    assert abs(run.summary["system"]["energy_error_final"]) <= 5e-3  # measured: -1.4e-3
-    assert run.summary["system"]["penalty_energy_max"] == pytest.approx(FORCE**2 / (2 * STIFFNESS), rel=0.02)
+    assert abs(run.summary["system"]["energy_error_final"]) <= 2e-3  # measured: -1.4e-3
+    assert run.summary["system"]["penalty_energy_max"] == pytest.approx(FORCE**2 / (2 * STIFFNESS), rel=0.013)  # measured: 0.0098

@@ -1,7 +1,8 @@
 """A stack of five blocks and ten discs that fall and bounce: energy never grows, and no row of a contact pair is ever open to penetration.
 
 Every figure of energy is relative to the largest one, less the work of gravity. The massless contact layer loses a little at each onset, in
-proportion to the square of the step; it must not gain.
+proportion to the square of the step; it must not gain. Bounds on losses are 1.3 times what was measured: the courses of bodies that bounce part after a
+while by what round-off makes of them, so that another compiler or library may count some other onsets.
 """
 
 import re
@@ -12,7 +13,8 @@ import pytest
 STACK = "-options_file options/stack.opts -time_end 0.3"
 BALLS = "-options_file options/ten-balls.opts -time_end 0.5"
 EXPLICIT = " ".join(f"-{b}_ts_type centraldifference -{b}_ts_time_step auto" for b in "abcde")
-GROWTH = 1e-4  # the demand: an impulse at the start of contact is shared out to the square of the step
+ROUND_OFF = 1e-12  # what energies may grow by where nothing else makes them
+DEPTH = 2e-12  # m: the outer iteration stops at 1e-12 m
 
 
 def depths(run):
@@ -23,34 +25,35 @@ def depths(run):
 def test_stack(more, shared_run):
     run = shared_run(f"{STACK} {more}")
     system = run.summary["system"]
-    assert system["energy_error_max"] <= GROWTH
-    assert system["energy_error_min"] >= -1e-2  # 0.4 % measured, of some 4000 changes of the active sets
-    assert max(depths(run)) <= 1e-6 * 0.035  # of the smallest elements; 1e-16 m measured
+    assert system["energy_error_max"] <= ROUND_OFF  # measured: 8e-14
+    assert -3.1e-3 <= system["energy_error_min"] < 0  # measured: -2.3e-3 and -2.4e-3, of some 4000 changes of the active sets
+    assert max(depths(run)) <= DEPTH  # measured: 5e-17 m
     assert run.summary["schwarz"]["set_cycles"] == 0
     contacts = run.history["contact"]
-    assert all(np.any(contacts[pair]["active"][()]) for pair in contacts)  # the impact goes through the whole stack
+    assert len(contacts) == 5 and all(np.any(contacts[pair]["active"][()]) for pair in contacts)  # the impact goes through the whole stack
     # the floor bears the weight of 340 kg in the mean, and what turns the fall round
     mass = 80 + 74 + 68 + 62 + 56
     momentum = sum(run.history["body"][b]["momentum"][-1][1] for b in "abcde")
     impulse = contacts["a.ymin:floor"]["impulse"][-1][1]
-    assert momentum + impulse == pytest.approx(-mass * 9.81 * 0.3, rel=1e-3)  # the impulse is integrated by trapezoids, the step's forces jump at onsets
+    assert momentum + impulse == pytest.approx(-mass * 9.81 * 0.3, rel=1e-10)  # round-off; measured: 3e-15
 
 
 def test_stack_converges(shared_run):
-    """Half the step, about a quarter of the loss; less than that is asked for here, since bounces take another course after a while."""
+    """Half the step, about a quarter of the loss: measured 0.28."""
     losses = [-shared_run(f"{STACK} {more}").summary["system"]["energy_error_min"] for more in ("", "-time_step 5e-5")]
-    assert losses[1] <= 0.5 * losses[0]
+    assert 0.2 * losses[0] <= losses[1] <= 0.36 * losses[0]
 
 
 def test_stack_on_ranks(shared_run):
-    """The demand is 1e-7, of the largest energy, 5e-12 measured: tilting blocks make it grow tenfold in 0.03 s. The upper ones have next to none of their own before they are hit."""
+    """Of the largest energy 5e-12 measured: tilting blocks make it grow tenfold in 0.03 s. The upper ones have next to none of their own before they are hit."""
     one, two = (shared_run(f"{STACK} -time_step 2e-4 -time_end 0.1", ranks).history for ranks in (1, 2))
     energies = [(name, figure) for name in "abcde" for figure in ("kinetic", "potential")]
     scale = max(np.abs(one["body"][name][figure][()]).max() for name, figure in energies)
     for name, figure in energies:
-        np.testing.assert_allclose(two["body"][name][figure][()], one["body"][name][figure][()], rtol=0, atol=1e-7 * scale, err_msg=f"{name} {figure}")
+        np.testing.assert_allclose(two["body"][name][figure][()], one["body"][name][figure][()], rtol=0, atol=1e-9 * scale, err_msg=f"{name} {figure}")
 
 
+@pytest.mark.long
 def test_ten_balls(shared_run):
     run = shared_run(BALLS)
     system = run.summary["system"]
@@ -58,25 +61,30 @@ def test_ten_balls(shared_run):
     touched = [name for name, pair in run.summary["pairs"].items() if pair["onsets"]]
     assert sum("floor" in name for name in touched) >= 2
     assert sum(":" in name and not name.endswith(("floor", "left", "right")) for name in touched) >= 8
-    assert system["energy_error_max"] <= GROWTH  # without gaps that go on when rows are built again, 0.4
-    assert system["energy_error_min"] >= -0.1
-    assert max(depths(run)) <= 1e-6 * 0.03  # of rows; discs of 16 edges overlap by up to 6 mm at their corners
+    assert system["energy_error_max"] <= 7e-5  # measured: 5.4e-5; without gaps that go on when rows are built again, 0.4
+    assert -0.04 <= system["energy_error_min"] < 0  # measured: -0.031
+    assert max(depths(run)) <= DEPTH  # of rows; discs of 16 edges overlap by up to 6 mm at their corners
 
 
+@pytest.mark.long
 def test_ten_balls_explicit(shared_run):
     """Bodies with substeps. The longer step loses much where contacts begin, but must not gain where they end: 1.4e-3 if forces fade over the whole
     step while rows open. Nor may a row that is pulled when held and penetrates when not end the rounds for all others, which left discs 6.6e-4 m deep."""
     explicit = " ".join(f"-{b}_ts_type centraldifference -{b}_ts_time_step auto -{b}_material_type linear_elastic" for b in "abcdefghij")
-    for step, until, loss in (("2e-4", 0.35, 0.1), ("4e-4", 0.31, 0.2)):  # 0.052 and 0.084 measured
+    for step, until, loss in (("2e-4", 0.35, 0.046), ("4e-4", 0.31, 0.05)):  # measured: 0.0357 and 0.0390
         run = shared_run(f"-options_file options/ten-balls.opts {explicit} -time_step {step} -time_end {until}")
-        assert max(depths(run)) <= 1e-6 * 0.03  # 3e-16 m measured
+        assert max(depths(run)) <= DEPTH  # measured: 3e-16 m
         assert -loss <= run.summary["system"]["energy_error_min"]
-        assert run.summary["system"]["energy_error_max"] <= GROWTH  # 6e-15 measured
+        assert run.summary["system"]["energy_error_max"] <= ROUND_OFF  # measured: 6e-15
     assert run.summary["schwarz"]["set_cycles"] >= 1  # there is such a row
 
 
-@pytest.mark.parametrize("steps", ["-a_ts_time_step 2e-5", "-b_ts_type centraldifference -a_ts_time_step 2e-5 -b_ts_time_step 2.5e-5"], ids=["10 to 1", "10 to 8"])
-def test_two_discs_of_other_steps(steps, shared_run):
+@pytest.mark.parametrize(
+    ("steps", "loss"),
+    [("-a_ts_time_step 2e-5", 0.0235), ("-b_ts_type centraldifference -a_ts_time_step 2e-5 -b_ts_time_step 2.5e-5", 0.0286)],
+    ids=["10 to 1", "10 to 8"],
+)
+def test_two_discs_of_other_steps(steps, loss, shared_run):
     """The Dirichlet side makes substeps that the other does not have, and contact begins and ends: momentum stays, where 1 % of it was lost with 10 to 1."""
     disc = "-{0}_dm_plex_dim 2 -{0}_dm_plex_shape ball -{0}_ball_radius 0.1 -{0}_ball_centre {1} -{0}_ball_divisions 4 -{0}_density 1000 -{0}_youngs_modulus 1e8 -{0}_poissons_ratio 0.25 -{0}_initial_velocity {2}"
     bodies = " ".join(disc.format(*each) for each in (("a", "0,0", "1,0"), ("b", "0.205,0.03", "-1,0")))
@@ -84,7 +92,8 @@ def test_two_discs_of_other_steps(steps, shared_run):
     system = run.summary["system"]
     assert run.history["contact"]["a:b"]["active"][-1] == 0 < run.summary["contact"]["onsets"]
     assert system["momentum_error_max"] <= 1e-12  # measured: 1.3e-14
-    assert -0.1 <= system["energy_error_min"] <= system["energy_error_max"] <= GROWTH
+    assert -1.3 * loss <= system["energy_error_min"] <= -0.7 * loss  # one contact, which is no matter of chance
+    assert system["energy_error_max"] <= ROUND_OFF
 
 
 def contact_nodes(run):
@@ -98,12 +107,13 @@ def test_faces_that_see_each_other(shared_run):
     assert contact_nodes(shared_run(f"{two} -contact_facing true")) <= 8
 
 
+@pytest.mark.long
 def test_ten_balls_in_three_dimensions(shared_run):
     """In three dimensions: measured, energy grows by 7.2e-5 of itself at most, at a step of 2e-4 s (1e-14 at half of it); rows close to 1e-15 m."""
     summary = shared_run("-options_file options/ten-balls-3d.opts").summary
-    assert summary["system"]["energy_error_max"] <= 2e-4
-    assert -1e-2 <= summary["system"]["energy_error_min"]  # what impacts inside steps cost: measured 4.0e-3
-    assert summary["contact"]["max_penetration"] <= 1e-9
+    assert summary["system"]["energy_error_max"] <= 9.4e-5
+    assert -6.1e-3 <= summary["system"]["energy_error_min"] < 0  # what impacts inside steps cost: measured 4.7e-3
+    assert summary["contact"]["max_penetration"] <= 1e-14
     assert summary["contact"]["onsets"] >= 10  # they do meet
 
 
@@ -116,8 +126,8 @@ def test_explicit_disc_that_turns(gap, shared_run):
     run = shared_run(f"-bodies a {floor} {disc} -a_initial_velocity '-20*(y-{0.1 + gap}),20*x-0.1' -a_ts_type centraldifference -a_ts_time_step auto -time_step 2e-4 -time_end 0.4")
     system = run.summary["system"]
     assert (run.summary["contact"]["onsets"] > 0) == (gap < 0.1)
-    assert (-1e-5 if gap == 1 else -0.01) <= system["energy_error_min"]  # measured: 6.4e-7; 1.6e-3, where contact begins inside a step
-    assert system["energy_error_max"] <= GROWTH
+    assert (-8.3e-7 if gap == 1 else -2.1e-3) <= system["energy_error_min"]  # measured: 6.4e-7; 1.6e-3, where contact begins inside a step
+    assert system["energy_error_max"] <= ROUND_OFF
     momentum = run.history["body"]["a"]["angular_momentum"][()]
     momentum = momentum[:, -1] if momentum.ndim > 1 else momentum
-    assert abs(momentum[-1] / momentum[0] - 1) <= (1e-8 if gap == 1 else 0.1)  # measured: 4.4e-10; 0.04, as a polygon's corners meet the floor
+    assert abs(momentum[-1] / momentum[0] - 1) <= (6e-10 if gap == 1 else 0.053)  # measured: 4.4e-10; 0.040, as a polygon's corners meet the floor

@@ -1,7 +1,7 @@
 """Three equal bars in a row: a hits b and c, which are at rest. An elastic collision hands the speed on to c."""
 
 import pytest
-from cases import ANDERSON, never_tensile, worst_energy_error
+from cases import ANDERSON, long, never_tensile, worst_energy_error
 
 BARS = "-options_file options/three-bars.opts"
 PENALTY = f"{BARS} -contact_type penalty -contact_penalty 7.5e4"
@@ -30,40 +30,40 @@ def check_collision(run):
     assert len(pairs) == 2
     for name, pair in pairs.items():
         assert pair["onsets"] == 1, name
-        # each pair hands on all of the momentum; 0.4 % of the speed stays in what the bars ring with
-        assert pair["impulse"] == pytest.approx(MASS * SPEED, rel=5e-3), name
-        assert pair["force_mean"] == pytest.approx(PUSH, rel=5e-3), name  # the gaps send small waves through the bars
+        # each pair hands on all of the momentum; 0.2 % of the speed stays in what the bars ring with
+        assert pair["impulse"] == pytest.approx(MASS * SPEED, rel=2.5e-3), name  # measured: 1.9e-3
+        assert pair["force_mean"] == pytest.approx(PUSH, rel=5e-6), name  # measured: 1.7e-6
         assert never_tensile(run, name), name
     velocity = {body: run.history[f"body/{body}/mean_velocity"][-1] for body in "abc"}
-    assert velocity["c"] == pytest.approx(SPEED, rel=5e-3)
-    assert abs(velocity["a"]) <= 5e-3 * SPEED
-    assert abs(velocity["b"]) <= 5e-3 * SPEED
+    assert velocity["c"] == pytest.approx(SPEED, rel=2.5e-3)  # measured: 1.9e-3
+    assert abs(velocity["a"]) <= 1.5e-3 * SPEED  # measured: 8e-4
+    assert abs(velocity["b"]) <= 1.5e-3 * SPEED  # measured: 1.1e-3
     # b and c start one gap of 1 mm later, when the wave from a has come through b
     onsets = sorted(pair["first_contact_time"] for pair in pairs.values())
     assert onsets[0] == pytest.approx(1e-3 / SPEED, abs=2e-7)
     assert onsets[1] == pytest.approx(1e-3 / SPEED + 2.5e-4 + 1e-3 / SPEED, abs=1e-5)
     releases = sorted(pair["release_time"] for pair in pairs.values())
-    assert releases[0] == pytest.approx(onsets[0] + 5e-4, rel=0.05)  # 2 L / c
-    assert releases[1] == pytest.approx(onsets[1] + 5e-4, rel=0.05)
+    for onset, release in zip(onsets, releases, strict=True):  # 2 L / c; late by the elements that fronts are smeared over: measured 1.1e-5 s
+        assert 0 <= release - onset - 5e-4 <= 1.5e-5
 
 
-@pytest.mark.parametrize("case", list(SCHWARZ))
+@pytest.mark.parametrize("case", [*(case for case in SCHWARZ if case != "two-ranks"), *long("two-ranks")])
 def test_schwarz(case, shared_run):
     run = shared_run(*SCHWARZ[case])
     check_collision(run)
-    assert run.summary["system"]["momentum_error_max"] <= 1e-10  # opposite forces, to round-off over 1e4 steps
-    assert worst_energy_error(run.summary) <= 1e-5
-    assert run.summary["contact"]["max_penetration"] <= 1e-9
+    assert run.summary["system"]["momentum_error_max"] <= 2e-11  # opposite forces, to round-off over 1e4 steps; measured: 6e-12
+    assert worst_energy_error(run.summary) <= 5.5e-6  # measured: 4.2e-6
+    assert run.summary["contact"]["max_penetration"] <= 2e-12  # where the outer iteration stops is 1e-12 m
     assert run.summary["schwarz"]["unconverged_steps"] == 0
 
 
 @pytest.mark.parametrize("case", list(MIXED))
 def test_mixed(case, shared_run):
-    """As for two bars: energy to 1e-4; momentum to the square of the step, as a waveform is not its mean at the ends."""
+    """As with equal steps."""
     run = shared_run(MIXED[case])
     check_collision(run)
-    assert run.summary["system"]["momentum_error_max"] <= 1e-5
-    assert worst_energy_error(run.summary) <= 1e-4
+    assert run.summary["system"]["momentum_error_max"] <= 2e-11  # measured: 7e-12
+    assert worst_energy_error(run.summary) <= 4.6e-6  # measured: 3.5e-6
 
 
 @pytest.mark.parametrize("case", list(PENALTIES))
@@ -71,9 +71,9 @@ def test_penalty(case, shared_run):
     run = shared_run(*PENALTIES[case])
     check_collision(run)
     system = run.summary["system"]
-    assert system["momentum_error_max"] <= 1e-10
-    assert abs(system["energy_error_final"]) <= 1e-5
-    assert system["energy_error_max"] <= 1e-5
+    assert system["momentum_error_max"] <= 3e-11  # measured: 9e-12
+    assert abs(system["energy_error_final"]) <= 2.6e-7  # measured: 1.9e-7
+    assert system["energy_error_max"] <= 2.6e-7
     # both springs hold F^2 / (2 tau) while both pairs touch, of the 1.25 J that a had
     assert system["energy_error_min"] == pytest.approx(-2 * PUSH**2 / (2 * 7.5e4) / 1.25, rel=0.02)
     # F / tau; and up to a tenth more where the waves that the gaps sent meet

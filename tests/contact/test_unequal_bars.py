@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases import PAIRINGS, joined, never_tensile, worst_energy_error
+from cases import PAIRINGS, joined, long, never_tensile, worst_energy_error
 from characteristics import Impact
 
 GRAZING = "-options_file options/grazing.opts"
@@ -12,7 +12,7 @@ MOVING = "-left_initial_velocity 150 -right_initial_velocity -50 -left_dm_plex_b
 # options, ranks. Mass is redistributed, with the default outer iteration
 GRAZINGS = {
     "default": (GRAZING, 1),
-    "two-ranks": (GRAZING, 2),
+    "two-ranks": (joined(GRAZING, MOVING, "-time_step 1e-6"), 2),
     "moving": (joined(GRAZING, MOVING), 1),  # and impact inside a step
     "swapped": (f"{GRAZING} -contact_pairs right:left", 1),
     "non-matching": (joined(GRAZING, "-contact_pairs left:right -left_dm_plex_box_faces 137 -right_dm_plex_box_faces 311"), 1),
@@ -23,6 +23,7 @@ GRAZINGS = {
     "lumped-IE": (joined(GRAZING, LUMPED, PAIRINGS["IE"]), 1),
     "lumped-EE": (joined(GRAZING, LUMPED, PAIRINGS["EE"]), 1),
 }
+COARSE = ("two-ranks", "coarse-step")
 
 TWO = "-options_file options/two-materials.opts"
 MATERIALS = {
@@ -40,16 +41,17 @@ def test_grazing(case, shared_run):
     run = shared_run(*GRAZINGS[case])
     pair = "right:left" if case == "swapped" else "left:right"
     contact, errors, schwarz = (run.summary[key] for key in ("contact", "errors", "schwarz"))
-    assert contact["onsets"] <= 3  # the issue's; 1 without chatter
-    assert worst_energy_error(run.summary) <= 1e-4
+    assert contact["onsets"] == 1
+    # measured: 3.5e-6 where they meet inside a step, 3.8e-5 where that is ten times as long
+    assert worst_energy_error(run.summary) <= (5e-5 if case in COARSE else 4.6e-6)
     assert never_tensile(run, pair)
-    assert contact["max_penetration"] <= 1e-9
+    assert contact["max_penetration"] <= 2e-12  # where the outer iteration stops is 1e-12 m
     assert schwarz["unconverged_steps"] == 0
     assert schwarz["mean_contact_steps"] <= 2.2
     assert contact["impulse"] == pytest.approx(0.05, rel=5e-3)  # 100 N over 5e-4 s; the end of the force is a few elements wide
     # Late by that width; a wave needs 2.5e-3 of the contact time for an element. Fronts are wider with lumped mass, and with
     # implicit steps of 0.8 elements, whose dispersion is as strong: (k h)^2 / 24, and (w dt)^2 / 12.
-    assert 0 <= errors["release_time"] <= (0.02 if "lumped" in case or case == "coarse-step" else 0.01)
+    assert 0 <= errors["release_time"] <= (0.0165 if "lumped" in case or case in COARSE else 0.0096)
     # the faces do not touch again once the force has ended
     late = run.history["time"][()] > 5.1e-4
     assert not run.history[f"contact/{pair}/force"][()][late].any()
@@ -72,18 +74,19 @@ def test_exact_grazing(shared_run):
     np.testing.assert_allclose(gap, np.maximum(0, -200 * time), atol=1e-15)
 
 
-@pytest.mark.parametrize("case", list(MATERIALS))
+@pytest.mark.parametrize("case", [*(case for case in MATERIALS if case != "two-ranks"), *long("two-ranks")])
 def test_two_materials(case, shared_run):
-    """The issue's 1 %, in the L2 norm and at worst, for both bars."""
+    """In the L2 norm and at worst, for both bars: measured 0.49 % at most."""
     run = shared_run(*MATERIALS[case])
     contact = run.summary["contact"]
+    assert len(run.summary["errors"]["bodies"]) == 2
     for body, errors in run.summary["errors"]["bodies"].items():
         for key in ("kinetic", "potential", "kinetic_max", "potential_max", "mean_velocity"):
-            assert errors[key] <= 0.01, (body, key)
-    assert abs(run.summary["errors"]["peak_potential"]) <= 0.01
-    assert abs(run.summary["errors"]["release_time"]) <= 0.01
+            assert errors[key] <= 0.006, (body, key)
+    assert abs(run.summary["errors"]["peak_potential"]) <= 0.0032  # measured: 0.0025 at most
+    assert abs(run.summary["errors"]["release_time"]) <= 0.0039  # measured: 0.0030 at most
     assert contact["onsets"] == 1
-    assert worst_energy_error(run.summary) <= 1e-4
+    assert worst_energy_error(run.summary) <= 2e-6  # measured: 1.5e-6
     assert never_tensile(run)
     assert run.summary["schwarz"]["mean_contact_steps"] <= 2.2
 
@@ -97,7 +100,7 @@ def test_steps_of_force(shared_run):
     second = 2 * (50 - (-50 + first / z)) / (1 + 1 / z)
     for value, begin, end in ((first, 0, back), (second, back, 5e-4)):
         middle = (time > begin + 0.2 * (end - begin)) & (time < end - 0.2 * (end - begin))
-        assert force[middle].mean() == pytest.approx(value, rel=2e-3)  # what ringing leaves over 1/3 of 100 elements
+        assert force[middle].mean() == pytest.approx(value, rel=3e-5)  # measured: 1.8e-5, what ringing leaves over 1/3 of 100 elements
 
 
 @pytest.mark.parametrize("side", [0, 1], ids=["left", "right"])

@@ -35,7 +35,7 @@ def test_stack_between_other_meshes(shared_run):
     alone, corners of tilting blocks got 2.3 mm deep. Nothing gets into the floor."""
     stack = bodies(shared_run(f"{STACK} -time_end 0.3"))
     deepest = max(each.depth for each in overlap.overlaps(stack))
-    assert 0 < deepest <= 0.01 * stack.size()
+    assert 0.003 * stack.size() < deepest <= 0.0055 * stack.size()
     assert min(x[:, 1].min() for x in stack.frames) >= -1e-6 * stack.size()
 
 
@@ -46,7 +46,7 @@ def test_stack_of_matching_meshes(shared_run):
     run = shared_run(f"{STACK} -time_end 0.15 {same}")
     stack = bodies(run)
     contacts = run.history["contact"]
-    assert all(np.any(contacts[pair]["active"][()]) for pair in contacts)
+    assert len(contacts) == 5 and all(np.any(contacts[pair]["active"][()]) for pair in contacts)
     assert max((each.depth for each in overlap.overlaps(stack)), default=0) <= 1e-6 * stack.size()
     assert min(x[:, 1].min() for x in stack.frames) >= -1e-6 * stack.size()
 
@@ -104,7 +104,7 @@ def test_side_by_side(left, right, shared_run):
     run = shared_run(f"-bodies base,left,right -contact_pairs base.ymax:left.ymin,base.ymax:right.ymin {base} {' '.join(blocks)} -time_step 1 -time_end 1 {FIELDS}")
     forces = [-contact["force_vector"][-1][1] for contact in run.history["contact"].values()]
     assert forces[0] / (left + 0.6) == pytest.approx(forces[1] / (0.6 - right), rel=0.05)
-    assert overlap.largest(run.folder / "fields.h5") <= 0.2e-3
+    assert overlap.largest(run.folder / "fields.h5") <= 0.15e-3
 
 
 def test_figure(shared_run, launch, tmp_path):

@@ -15,7 +15,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from cases import LUMPED
+from cases import LUMPED, long
 from conftest import IMPAKT, MPIEXEC, ROOT, start
 from PIL import Image
 
@@ -84,17 +84,18 @@ def same(path, contact=True):
     return times, grids
 
 
-@pytest.mark.parametrize(("ranks", "precision"), [(1, "single"), (2, "double"), (3, "single")])
-def test_bars(ranks, precision, impakt):
-    run = impakt(f"{BARS} -output_fields fields.h5 -output_fields_precision {precision}", ranks=ranks)
+@pytest.mark.parametrize(("ranks", "precision", "step", "interval"), [(1, "single", 1e-7, 102), (2, "double", 1e-6, 11), (3, "single", 1e-6, 11)])
+def test_bars(ranks, precision, step, interval, impakt):
+    run = impakt(f"{BARS} -time_step {step} -output_fields fields.h5 -output_fields_precision {precision}", ranks=ranks)
     assert re.search(r"^ *fields +fields.xdmf$", run.stdout, re.MULTILINE)
     times, grids = same(run.folder / "fields.xdmf")
-    # of 10000 steps every 102nd, the least interval with at most 100 frames; and the last
-    steps = np.append(np.arange(0, 10000, 102), 10000)
-    assert len(times) == 100
+    # of 10000 steps every 102nd, of 1000 every 11th, the least interval with at most 100 frames; and the last
+    last = round(1e-3 / step)
+    steps = np.append(np.arange(0, last, interval), last)
+    assert len(times) == len(steps) <= 100 < last / (interval - 1) + 1
     np.testing.assert_array_equal(times, run.history["time"][()][steps])
     rounding = SINGLE if precision == "single" else 1e-14  # the history sums in another order
-    for grid, step in zip(grids, steps):
+    for grid, at in zip(grids, steps, strict=True):
         assert grid["displacement"].dtype == grid["stress"].dtype == (np.float32 if precision == "single" else np.float64)
         assert set(grid["rank"]) == set(range(ranks))
         ends = grid.cells.reshape(-1, 3)[:, 1:]
@@ -103,9 +104,9 @@ def test_bars(ranks, precision, impakt):
             mine = grid["body"] == number
             assert mine.sum() == ELEMENTS
             mean = grid["velocity"][:, 0][ends[mine]].astype(float).mean()
-            np.testing.assert_allclose(mean, run.history[f"body/{name}/mean_velocity"][step].item(), rtol=0, atol=200 * rounding)  # |v| < 200 m/s
+            np.testing.assert_allclose(mean, run.history[f"body/{name}/mean_velocity"][at].item(), rtol=0, atol=200 * rounding)  # |v| < 200 m/s
             tip = (x[ends[mine]].max, x[ends[mine]].min)[number]()
-            np.testing.assert_allclose(tip, run.history[f"body/{name}/contact_position"][step].item(), rtol=0, atol=0.5 * rounding)  # bars of 0.25 m, 0.02 m apart
+            np.testing.assert_allclose(tip, run.history[f"body/{name}/contact_position"][at].item(), rtol=0, atol=0.5 * rounding)  # bars of 0.25 m, 0.02 m apart
         if precision == "double":
             strain = np.diff(grid["displacement"][:, 0][ends])[:, 0] / np.diff(grid.points[:, 0][ends])[:, 0]
             # differences of displacements up to 0.1 m over 1.25e-3 m: 1e-14 relative to 1
@@ -186,7 +187,7 @@ def test_refused(options, message, ranks, launch, tmp_path):
     assert not list(tmp_path.glob("*fields*"))
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, *long(2)])
 def test_disk_too_small(ranks, launch, tmp_path):
     """Refused before anything is computed: 9999 frames with 22 numbers of 8 bytes for each of 300200 elements."""
     if not os.path.isdir("/dev/shm") or shutil.disk_usage("/dev/shm").free > 520e9:
@@ -294,6 +295,7 @@ def test_png(pictured, launch, tmp_path):
     assert min(shares["solids"], shares["fields"], shares["moved"]) > 0.06
 
 
+@pytest.mark.long
 def test_contact_fields_drawn(pictured, launch, tmp_path):
     """Pressure comes with contact; the gap is drawn though most nodes have none."""
     pictures = {}
@@ -309,6 +311,7 @@ def test_contact_fields_drawn(pictured, launch, tmp_path):
     assert ((pictures["gap"][middle] == 0xBB).all(axis=2)).sum() > 1000  # the bars, but for their contact nodes
 
 
+@pytest.mark.long
 def test_cut(pictured, launch, tmp_path):
     """What is before the plane is gone: two thirds of the larger body; the upper half of both."""
     shares = {}

@@ -261,7 +261,7 @@ def test_monitor_lines(launch, tmp_path):
     assert [int(line[1]) for line in found] == list(range(0, 10001, 1000))
     np.testing.assert_allclose([float(line[2]) for line in found], np.linspace(-2e-4, 8e-4, 11), atol=1e-12)
     assert [int(line[5]) for line in found] == [0, 0, 0, 1, 1, 1, 1, 1, 0, 0, 0]  # from 0 to 5.009e-4 s
-    np.testing.assert_allclose([float(line[6]) for line in found[3:7]], 100, rtol=1e-3)
+    np.testing.assert_allclose([float(line[6]) for line in found[3:7]], 100, rtol=1e-4)  # measured: 1.1e-5
     assert not run.stderr
 
 

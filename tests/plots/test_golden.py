@@ -3,8 +3,10 @@
 import pytest
 from goldenfigures import GOLDEN, differences
 
+QUICK = ("high-speed/", "low-speed/", "one-step/")  # of each pairing and method
 
-@pytest.mark.parametrize("name", GOLDEN["cheap"])
+
+@pytest.mark.parametrize("name", [name if name.startswith(QUICK) else pytest.param(name, marks=pytest.mark.long) for name in GOLDEN["cheap"]])
 def test_golden(name, shared_run):
     assert not differences(name, shared_run(f"-options_file options/paper/{name}.opts").summary)
 

@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from cases import DEFAULTS
+from cases import DEFAULTS, long
 from conftest import ROOT
 from PIL import Image
 
@@ -20,7 +20,7 @@ FIGURES = {
 ENVIRONMENT = {**os.environ, "MPLBACKEND": "Agg"}
 
 
-@pytest.mark.parametrize("name", list(FIGURES))
+@pytest.mark.parametrize("name", ["schwarz", "three", *long("penalty", "characteristics")])
 def test_figure(name, shared_run, launch, tmp_path):
     history = shared_run(FIGURES[name]).folder / "history.h5"
     figure = tmp_path / "new/figure.png"
@@ -31,7 +31,7 @@ def test_figure(name, shared_run, launch, tmp_path):
     assert figure.stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("name", list(FIGURES))
+@pytest.mark.parametrize("name", ["schwarz", "three", *long("penalty", "characteristics")])
 def test_history_figure(name, shared_run, launch, tmp_path):
     """Four panels, in colours of the lines that there must be: of the force, and of the energy's error."""
     history = shared_run(FIGURES[name]).folder / "history.h5"

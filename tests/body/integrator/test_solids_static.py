@@ -84,7 +84,7 @@ def test_neo_hookean(impakt, kind, stretch):
         assert error <= 1e-11
         assert potential[-1] == pytest.approx(energy * volume(kind), rel=1e-11)
         gaps.append(abs(work[-1] / potential[-1] - 1))
-    assert gaps[0] < 0.01  # 0.003 measured, a quarter of it in half the step
+    assert gaps[0] < 0.0045  # 0.0033 measured, a quarter of it in half the step
     assert np.log2(gaps[0] / gaps[1]) > 1.8
 
 

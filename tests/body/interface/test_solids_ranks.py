@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 import pytest
+from cases import long
 from solidmeshes import dim_of, write_box
 
 MATERIAL = "-b_density 1000 -b_youngs_modulus 1e5 -b_poissons_ratio 0.3"
@@ -46,7 +47,7 @@ def figures(run):
     return found
 
 
-@pytest.mark.parametrize("ranks", [2, 3, 4])
+@pytest.mark.parametrize("ranks", [2, 3, *long(4)])
 @pytest.mark.parametrize("case", list(CASES))
 def test_ranks(case, ranks, shared_run, tmp_path_factory):
     """Energies, work and momenta at every step, and the distance of all displacements from an arbitrary function at the end. 2e-14

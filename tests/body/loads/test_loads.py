@@ -38,9 +38,9 @@ def test_wave_from_a_traction(load, impakt, tmp_path):
     run = impakt(f"{BAR} -bar_boundary_traction xmin -bar_boundary_traction_xmin {load.replace('step.txt', str(tmp_path / 'step.txt'))}")
     kinetic, potential, work = energies(run, "bar")
     exact = (1e6 * 1e-2) ** 2 / 1e4 * 1e-3
-    assert work == pytest.approx(exact, rel=1e-3)
-    assert kinetic == pytest.approx(exact / 2, rel=2e-3)
-    assert potential == pytest.approx(exact / 2, rel=2e-3)
+    assert work == pytest.approx(exact, rel=6e-4)
+    assert kinetic == pytest.approx(exact / 2, rel=2e-4)  # measured: 1.5e-4
+    assert potential == pytest.approx(exact / 2, rel=1.3e-3)  # measured: 1.05e-3
     assert kinetic + potential == pytest.approx(work, rel=1e-9)
 
 
@@ -52,7 +52,7 @@ def test_wave_from_a_growing_traction(load, ranks, impakt, tmp_path):
     run = impakt(f"{BAR} -bar_boundary_traction xmin -bar_boundary_traction_xmin {load.replace('ramp.txt', str(tmp_path / 'ramp.txt'))}", ranks=ranks)
     kinetic, potential, work = energies(run, "bar")
     assert work == pytest.approx((1e9 * 1e-2) ** 2 / 1e4 * 1e-9 / 3, rel=1e-3)
-    assert kinetic + potential == pytest.approx(work, rel=1e-6)
+    assert kinetic + potential == pytest.approx(work, rel=1e-11)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -63,7 +63,7 @@ def test_wave_from_a_prescribed_displacement(integrator, ranks, impakt):
     run = impakt(f"{BAR} -bar_ts_type {integrator} -bar_boundary_displacement xmin -bar_boundary_displacement_xmin 500*t^2", ranks=ranks)
     kinetic, potential, work = energies(run, "bar")
     assert work == pytest.approx(1e4 * 1e6 * 1e-9 / 3, rel=1e-4)
-    assert kinetic + potential == pytest.approx(work, rel=1e-4)
+    assert kinetic + potential == pytest.approx(work, rel=1e-6)  # measured: 3.8e-7, of central differences
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3])

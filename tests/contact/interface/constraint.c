@@ -1,3 +1,4 @@
+/* long: 3 */
 /* -contact_constraint: gap, its rate, or both, for penalty and Lagrange multipliers. */
 #include "simulation.h"
 

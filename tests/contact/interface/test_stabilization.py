@@ -24,8 +24,8 @@ def test_contact_stabilized(mass, frame, shared_run):
     run = shared_run(joined(LAGRANGE, mass, "-contact_stabilization contact_stabilized", FRAMES[frame]))
     assert run.summary["contact"]["onsets"] == 1
     assert force_scatter(run.summary) <= 2e-4
-    assert run.summary["contact"]["force_peak"] <= 115
-    assert run.summary["system"]["energy_error_max"] <= 1e-8
+    assert run.summary["contact"]["force_peak"] <= 115  # measured: 109
+    assert run.summary["system"]["energy_error_max"] <= 5e-9  # measured: 2e-9
     assert -2.6e-3 <= run.summary["system"]["energy_error_final"] <= -1.6e-3
     assert run.summary["contact"]["max_penetration"] <= 1e-12
     assert run.summary["errors"]["contact_velocity"] > 0.5
@@ -70,7 +70,7 @@ def test_naive_for_schwarz(paper, shared_run):
 def test_naive_for_penalty(integrators, shared_run):
     """The scatter of the force, a thousandth without it, falls to a millionth; a little energy is gained at release."""
     run = shared_run(joined("-options_file options/impact-penalty.opts -contact_stabilization naive", integrators))
-    assert force_scatter(run.summary) <= 1e-5
-    assert 0 < run.summary["system"]["energy_error_final"] <= 1e-3
+    assert force_scatter(run.summary) <= 2e-6  # measured: 1.1e-6
+    assert 0 < run.summary["system"]["energy_error_final"] <= 8e-4  # measured: 7.2e-4
     assert run.summary["contact"]["onsets"] == 1
     assert never_tensile(run)

@@ -43,7 +43,7 @@ def test_astride_two_blocks(pairing, dim, shared_run):
         values = whole.history[f"contact/a:b/{name}"][()]
         np.testing.assert_allclose(both(halves, name), values, rtol=0, atol=1e-8 * values.max(), err_msg=name)
     assert halves.summary["system"]["energy_error_final"] == pytest.approx(whole.summary["system"]["energy_error_final"], abs=1e-9)
-    assert worst_energy_error(halves.summary) <= 5e-4
+    assert worst_energy_error(halves.summary) <= 1.7e-4  # measured: 1.3e-4
     assert halves.summary["system"]["momentum_error_max"] <= 1e-12
     assert halves.summary["contact"]["max_penetration"] <= 1e-11
     assert halves.summary["contact"]["tension_max"] == 0
@@ -61,7 +61,7 @@ def test_astride_unlike_blocks(pairing, law, shared_run):
     options = stack(True, pairing, f"{UNLIKE} -contact_law {law}", nu=0.25)
     pairs = ("a:b", "a:c")
     run = shared_run(options)
-    assert worst_energy_error(run.summary) <= (1e-10 if law == "tied" and pairing == "II" else 5e-4)
+    assert worst_energy_error(run.summary) <= (1e-10 if law == "tied" and pairing == "II" else 7e-5)  # measured: 5.4e-5
     assert run.summary["system"]["momentum_error_max"] <= 1e-12
     for more in ("-schwarz_condense 0", "-schwarz_dense_limit 0"):
         same(run, shared_run(f"{options} {more}"), 1e-8 if "limit" in more else SAME, "abc", pairs)
@@ -76,7 +76,7 @@ def test_astride_unlike_blocks(pairing, law, shared_run):
 def test_astride_with_substeps(more, shared_run):
     options = stack(True, more=f"{UNLIKE} {more}", nu=0.25)
     run = shared_run(options)
-    assert worst_energy_error(run.summary) <= 1e-3
+    assert worst_energy_error(run.summary) <= 9e-5  # measured: 6.7e-5
     assert run.summary["system"]["momentum_error_max"] <= 1e-12
     same(run, shared_run(f"{options} -schwarz_condense 0"), SAME, "abc", ("a:b", "a:c"))
 
@@ -163,7 +163,7 @@ def test_slides_over_a_joint(shared_run):
     moving = run.history["time"][()] > 0.1 + 1e-9
     normal = force[moving, 1]
     assert np.abs(force[moving, 0]).max() <= 2e-6 * np.abs(normal).mean()  # the tilt of the pressed surface; measured: 1.1e-6
-    assert np.abs(normal / normal.mean() - 1).max() <= 0.05
+    assert np.abs(normal / normal.mean() - 1).max() <= 0.027  # measured: 0.0204
     assert run.summary["contact"]["max_penetration"] <= 1e-12
     np.testing.assert_allclose(force, both_vectors(shared_run(over_a_joint("-contact_type lagrange"))), rtol=0, atol=1e-7 * np.abs(normal).max())
     np.testing.assert_allclose(force, both_vectors(shared_run(over_a_joint("-schwarz_condense 0"))), rtol=0, atol=SAME * np.abs(normal).max())
@@ -181,6 +181,6 @@ def test_bar_on_two_bars(more, shared_run):
     velocity = 0.1 / sum(impedance.values())
     for name in "bc":
         force = run.history[f"contact/a:{name}/force"][()][steady]
-        np.testing.assert_allclose(force, impedance[name] * velocity, rtol=5e-3)  # what is left of the front, which dispersion spreads
-    assert worst_energy_error(run.summary) <= 2e-4  # measured: 1.1e-4 at most
+        np.testing.assert_allclose(force, impedance[name] * velocity, rtol=3e-4)  # measured: 1.6e-4, what is left of the front, which dispersion spreads
+    assert worst_energy_error(run.summary) <= 1.4e-4  # measured: 1.02e-4 at most
     assert run.summary["system"]["momentum_error_max"] <= 1e-12

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import overlap
 import pytest
+from cases import long
 
 FLAT = {"sliding-flat": ("block.ymin:base.ymax", 1, 22), "sliding-flat-3d": ("block.zmin:base.zmax", 2, 64)}
 PRESSED = 0.1  # s: from then on the block slides
@@ -18,7 +19,7 @@ def sliding(run, pair):
     return contact, run.history["time"][()] > PRESSED + 1e-9
 
 
-@pytest.mark.parametrize("name", FLAT)
+@pytest.mark.parametrize("name", ["sliding-flat", *long("sliding-flat-3d")])
 def test_flat(name, shared_run):
     pair, up, nodes = FLAT[name]
     contact, moving = sliding(shared_run(f"-options_file options/{name}.opts"), pair)
@@ -29,8 +30,8 @@ def test_flat(name, shared_run):
     assert normal.min() > 0
     assert (contact["active"][()][moving] == nodes).all()
     assert tangential.max() <= 1e-6 * normal.mean()
-    # the edges of the block, where the pressure is singular, pass over elements of finite width: measured 0.1 % and 0.4 %
-    assert np.abs(normal / normal.mean() - 1).max() <= 0.01
+    # the edges of the block, where the pressure is singular, pass over elements of finite width: measured 0.1 % and 0.38 %
+    assert np.abs(normal / normal.mean() - 1).max() <= (0.0015 if name == "sliding-flat" else 0.005)
     # the gap of each row is closed to the tolerance of the outer iteration, against elements of 0.05 m and more
     assert contact["gap"][()][moving].min() >= -1e-12
 
@@ -58,12 +59,13 @@ def radial(run):
     return force[:, 0] * np.sin(angle) + force[:, 1] * np.cos(angle), force[:, 0] * np.cos(angle) - force[:, 1] * np.sin(angle)
 
 
-def test_curved(shared_run):
+@pytest.mark.parametrize("end", [0.4, *long(1.1)])
+def test_curved(end, shared_run):
     """Rows are built where a controller step begins, and are half a step old on the way: the step turns the normal by 3.9e-3, and the share of the
     force along the path is twice that. Half the step halves it."""
-    normal, tangential = radial(shared_run(CURVED))
+    normal, tangential = radial(shared_run(f"{CURVED} -time_end {end}"))
     assert normal.min() > 0
-    assert np.abs(normal / normal.mean() - 1).max() <= 0.01  # 0.2 % measured
+    assert np.abs(normal / normal.mean() - 1).max() <= 0.004  # measured: 0.3 %
     assert np.abs(tangential).max() <= 0.01 * normal.mean()  # 0.85 % measured
 
 
@@ -82,13 +84,14 @@ def true_gaps(run):
     return np.array(gaps)
 
 
+@pytest.mark.long
 def test_gaps_do_not_drift(shared_run):
     """With inertia, gaps of rows in contact go on when the rows are built again; what that adds up to is given back. Over 10 widths of the base's elements, of
     39 mm, the surfaces come to be 2.8 mm apart, 0.1 of the slider's faces of 29 mm, and stay so (0.1 mm without inertia, where rows start anew). Else it was
     10 mm by then, and growing. The force is larger by what that is of the indentation of 20 mm, at most."""
     fields = "-output_fields fields.h5 -output_fields_precision double -output_fields_interval 5"
     static, dynamic = (shared_run(f"{CURVED} {more} {fields}") for more in ("-time_end 0.6", DYNAMIC))
-    assert np.abs(true_gaps(static)).max() <= 0.2e-3
+    assert np.abs(true_gaps(static)).max() <= 0.12e-3  # measured: 0.09 mm
     gaps = true_gaps(dynamic)
     assert np.abs(gaps).max() <= 0.1 * 0.029
     halves = np.array_split(gaps, 2)
@@ -97,7 +100,8 @@ def test_gaps_do_not_drift(shared_run):
     assert forces[0] <= forces[1] <= (1 + 2.9e-3 / 20e-3) * forces[0]  # measured: 1.107
 
 
+@pytest.mark.long
 def test_ranks(shared_run):
-    """The demand is 1e-7; forces are differences of positions that the outer iteration has to 1e-12 m of an indentation of 2e-2 m."""
+    """Round-off: measured 1e-14."""
     one, two = (radial(shared_run(f"{CURVED} -time_end 0.3", ranks))[0] for ranks in (1, 2))
-    np.testing.assert_allclose(two, one, rtol=1e-7)
+    np.testing.assert_allclose(two, one, rtol=1e-10)

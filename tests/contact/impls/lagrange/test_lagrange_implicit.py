@@ -6,8 +6,10 @@ from cases import (
     DEFAULTS,
     FRAMES,
     PAIRINGS,
+    UNLIKE,
     force_scatter,
     joined,
+    long,
     never_tensile,
     worst_energy_error,
 )
@@ -40,8 +42,8 @@ def test_defaults(pairing, shared_run):
     assert run.summary["schwarz"]["max"] == 2
     assert run.summary["contact"]["onsets"] == 1
     assert run.summary["contact"]["max_penetration"] <= 1e-12
-    assert force_scatter(run.summary) <= 1e-5
-    assert worst_energy_error(run.summary) <= 4e-6
+    assert force_scatter(run.summary) <= 5e-6  # measured: 3.3e-6
+    assert worst_energy_error(run.summary) <= 4e-6  # measured: 2.7e-6
     assert run.summary["errors"]["kinetic"] <= 1.3e-3
     assert run.summary["system"]["momentum_error_max"] <= 1e-10
     assert never_tensile(run)
@@ -52,8 +54,8 @@ def test_substeps(shared_run):
     run = shared_run(joined(LAGRANGE, PAIRINGS["IE"]))
     assert run.summary["contact"]["onsets"] == 1
     assert run.summary["contact"]["max_penetration"] <= 1e-12
-    assert force_scatter(run.summary) <= 1e-4
-    assert worst_energy_error(run.summary) <= 1e-4
+    assert force_scatter(run.summary) <= 5e-6  # measured: 2.8e-6
+    assert worst_energy_error(run.summary) <= 4e-6  # measured: 2.4e-6
     assert never_tensile(run)
 
 
@@ -61,35 +63,36 @@ def test_semismooth(shared_run):
     """The other solver of PETSc for variational inequalities ends at the same forces: 2e-12 m over 2.5e-6 m/N, of 100 N."""
     a, b = shared_run(LAGRANGE), shared_run(f"{LAGRANGE} -lagrange_snes_type vinewtonssls")
     name = "contact/left:right/force"
-    assert abs(a.history[name][()] - b.history[name][()]).max() <= 1e-5
+    assert abs(a.history[name][()] - b.history[name][()]).max() <= 4e-6  # N of 100 N; measured: 3.8e-7
     assert never_tensile(b)
 
 
 def test_trapezoidal_rule_chatters(shared_run):
     """With mass on the contact nodes each change of the force by the constraint is undone by the trapezoidal rule in the next step:
-    well known, and the reason for redistribution, stabilisation, and the other constraints. Energy more than doubles."""
+    well known, and the reason for redistribution, stabilisation, and the other constraints. The energy comes to be six times what it was."""
     run = shared_run(f"{LAGRANGE} {LUMPED}")
-    assert run.summary["contact"]["onsets"] > 10
-    assert run.summary["system"]["energy_error_max"] > 1
+    assert run.summary["contact"]["onsets"] > 50  # measured: 118
+    assert run.summary["system"]["energy_error_max"] > 2  # measured: 5.0
     assert run.summary["contact"]["max_penetration"] <= 1e-12
     assert never_tensile(run)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, *long(2)])
 def test_three_bars(ranks, shared_run):
-    """Two pairs with one body in common: the impulses of Schwarz, within 1e-12 m over 2.5e-6 m/N of 100 N."""
+    """Two pairs with one body in common: the impulses of Schwarz."""
     bars = "-options_file options/three-bars.opts"
     schwarz, lagrange = shared_run(bars).summary, shared_run(f"{bars} -contact_type lagrange", ranks=ranks).summary
     for pair in ("a:b", "b:c"):
         assert lagrange["pairs"][pair]["onsets"] == 1
-        assert lagrange["pairs"][pair]["impulse"] == pytest.approx(schwarz["pairs"][pair]["impulse"], rel=1e-8)
+        assert lagrange["pairs"][pair]["impulse"] == pytest.approx(schwarz["pairs"][pair]["impulse"], rel=1e-11)  # measured: 4e-13
     assert lagrange["schwarz"]["max"] == 2
     assert abs(lagrange["system"]["energy_error_final"]) <= 4e-6
 
 
 @pytest.mark.parametrize("ranks", [2, 3])
 def test_ranks(ranks, shared_run):
-    """The same on any number of ranks, but for round-off: 1e-12 m over 2.5e-6 m/N, of 100 N."""
-    one, many = shared_run(f"{LAGRANGE} -time_end 0 -time_step 1e-6"), shared_run(f"{LAGRANGE} -time_end 0 -time_step 1e-6", ranks=ranks)
-    name = "contact/left:right/force"
-    assert abs(one.history[name][()] - many.history[name][()]).max() <= 1e-5
+    """The same on any number of ranks, but for round-off."""
+    options = f"{LAGRANGE} {UNLIKE} -time_end 1e-4 -time_step 1e-6"
+    forces = [shared_run(options, n).history["contact/left:right/force"][()] for n in (1, ranks)]
+    assert forces[0].max() > 100
+    np.testing.assert_allclose(*forces, rtol=0, atol=1e-8)  # of 190 N

@@ -23,7 +23,7 @@ def test_stiff(pairing, shared_run):
     assert run.summary["schwarz"]["mean_contact_steps"] <= 2.1
     assert run.summary["contact"]["onsets"] == 1
     assert run.summary["contact"]["max_penetration"] <= 1e-10  # -contact_augmentation_tolerance
-    assert force_scatter(run.summary) <= 1e-5
+    assert force_scatter(run.summary) <= 5e-6  # measured: 3.3e-6
     assert worst_energy_error(run.summary) <= 4e-6
     assert run.summary["errors"]["kinetic"] <= 1.3e-3
     assert run.summary["system"]["penalty_energy_max"] == 0
@@ -47,7 +47,7 @@ def test_tolerance(shared_run):
     run = shared_run(f"{AUGMENTED} -contact_penalty 1e9 -contact_augmentation_tolerance 1e-14")
     lagrange = shared_run(f"{DEFAULTS} -contact_type lagrange -lagrange_snes_atol 1e-15")
     assert run.summary["contact"]["max_penetration"] <= 3e-12 * 0.27
-    assert abs(run.history[NAME][()] - lagrange.history[NAME][()]).max() <= 1e-7
+    assert abs(run.history[NAME][()] - lagrange.history[NAME][()]).max() <= 3e-8  # measured: 8.6e-9
 
 
 def test_unconverged(impakt):

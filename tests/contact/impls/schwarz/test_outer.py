@@ -1,7 +1,16 @@
-"""The outer iteration beyond the rows of the issue: bodies that both make substeps, traction with inertia, every type."""
+"""The outer iteration where both bodies make substeps, with the inertia of nodes in the traction, and of every type."""
 
+import numpy as np
 import pytest
-from cases import DEFAULTS, LUMPED, MOVING, force_scatter, joined, worst_energy_error
+from cases import (
+    DEFAULTS,
+    LUMPED,
+    MOVING,
+    UNLIKE,
+    force_scatter,
+    joined,
+    worst_energy_error,
+)
 
 COARSE = "-time_step 1e-6"
 EXPLICIT = "-left_ts_type centraldifference -right_ts_type centraldifference"
@@ -15,10 +24,10 @@ def test_both_make_substeps(types, left, right, shared_run):
     run = shared_run(joined(DEFAULTS, COARSE, types, MOVING, f"-left_ts_time_step {left} -right_ts_time_step {right}"))
     assert run.summary["schwarz"]["mean_contact_steps"] <= 2.05
     assert run.summary["contact"]["onsets"] == 1
-    assert force_scatter(run.summary) <= 1e-3
+    assert force_scatter(run.summary) <= 5e-6  # measured: 2.5e-6
     # contact is made and lost at the ends of controller steps only, ten times longer here than in the issue's runs: a bar at
     # 100 m/s then goes 1e-4 m within one, over which the contact force of 100 N would do 1e-2 J of the 3.125 J there are
-    assert worst_energy_error(run.summary) <= 3e-3
+    assert worst_energy_error(run.summary) <= 7e-4  # measured: 4.9e-4
 
 
 @pytest.mark.parametrize("snes", ["newtonls", "anderson", "nrichardson -schwarz_snes_linesearch_damping 0.5", "nrichardson -schwarz_relaxation aitken"])
@@ -26,19 +35,23 @@ def test_reaction_traction(snes, shared_run):
     """With the inertia of contact nodes that have mass in the traction: no chatter, but what the impact of two nodes loses."""
     run = shared_run(joined(LUMPED, PLAIN, MOVING, f"-schwarz_traction reaction -schwarz_snes_type {snes}"))
     assert run.summary["schwarz"]["max"] <= 3
-    assert force_scatter(run.summary) <= 1e-3
+    assert force_scatter(run.summary) <= 1.5e-4  # measured: 1.1e-4
     # two nodes of h rho A / 2 each meet at +-100 m/s and go on together: their kinetic energy of 2 x 3.125e-3 J is lost, of
-    # 3.125 J in this frame, and no more than a percent of it else
-    assert run.summary["system"]["energy_error_final"] == pytest.approx(-2 * 3.125e-3 / 3.125, rel=0.01)
+    # 3.125 J in this frame, and no more than 1e-5 of it else
+    assert run.summary["system"]["energy_error_final"] == pytest.approx(-2 * 3.125e-3 / 3.125, rel=1e-5)  # measured: 5.6e-7
 
 
-@pytest.mark.parametrize("snes", ["newtonls", "anderson", "ngmres", "qn", "nrichardson -schwarz_relaxation aitken"])
+@pytest.mark.parametrize("snes", ["anderson", "ngmres", "qn", "nrichardson -schwarz_relaxation aitken"])
 def test_types_agree(snes, shared_run):
-    """All types end in the same solution, to the tolerance of 1e-12 m in positions that move by 1e-5 m in a step."""
-    reference = shared_run(joined(DEFAULTS, COARSE, MOVING)).summary
-    summary = shared_run(joined(DEFAULTS, COARSE, MOVING, f"-schwarz_snes_type {snes}")).summary
-    for figure in ("force_mean", "force_peak", "impulse", "release_time"):
-        assert summary["contact"][figure] == pytest.approx(reference["contact"][figure], rel=1e-6)
+    """All types end in the same solution. Each takes sweeps of its own to it where the bars are unlike and make 2 and 3 substeps. Within the tolerance of
+    1e-12 m forces differ by 6e-7 N of 190 N."""
+    options = joined(DEFAULTS, COARSE, MOVING, UNLIKE, "-left_ts_time_step 5e-7 -right_ts_time_step 3.3333333333333333e-7")
+    reference, run = (shared_run(f"{options} -schwarz_snes_type {each}") for each in ("newtonls", snes))
+    assert run.summary["schwarz"]["mean_contact_steps"] > reference.summary["schwarz"]["mean_contact_steps"] >= 1.9
+    forces = [each.history["contact/left:right/force"][()] for each in (reference, run)]
+    assert forces[0].max() > 100
+    np.testing.assert_allclose(*forces, rtol=0, atol=5e-6)
+    assert run.summary["contact"]["release_time"] == reference.summary["contact"]["release_time"]
 
 
 @pytest.mark.parametrize("pairing", ["ii", "ie", "ee"])
@@ -46,14 +59,13 @@ def test_types_agree(snes, shared_run):
 def test_types_agree_on_nodes_with_mass(snes, pairing, shared_run):
     """As the paper has it: lumped mass, internal-force traction. The contact nodes take velocities from their partner, as they were in
     the sweep before: an accelerated iteration must not stop before they agree too. (When it did, quasi-Newton ended some steps with
-    6900 J in bars that have 10 J.) Runs that chatter amplify the tolerance; 1e-3 of each figure is far more, and was not seen."""
+    6900 J in bars that have 10 J.) Runs that chatter amplify the tolerance: 1e-9 of each figure was seen."""
     paper = f"-options_file options/paper/high-speed/{pairing}.opts"
     reference = shared_run(paper).summary
     run = shared_run(f"{paper} -schwarz_snes_type {snes}")
     for figure in ("kinetic", "potential", "contact_position"):
-        assert run.summary["errors"][figure] == pytest.approx(reference["errors"][figure], rel=1e-3), figure
+        assert run.summary["errors"][figure] == pytest.approx(reference["errors"][figure], rel=1e-6), figure
     assert run.history["body/left/kinetic"][()].max() <= 1.001 * run.history["body/left/kinetic"][0]
-    assert run.history["body/left/kinetic"][()].min() >= 0
 
 
 def test_petsc_monitors_of_a_body(impakt):

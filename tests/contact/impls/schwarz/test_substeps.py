@@ -4,7 +4,14 @@ The bars fly along with the frame and meet inside a step, so that no start of th
 """
 
 import pytest
-from cases import FRAMES, PAIRINGS, force_scatter, never_tensile, worst_energy_error
+from cases import (
+    FRAMES,
+    PAIRINGS,
+    force_scatter,
+    long,
+    never_tensile,
+    worst_energy_error,
+)
 
 BARS = f"-options_file options/bars-high-speed.opts {FRAMES['moving-inside']}"
 INTEGRATORS = {
@@ -26,10 +33,10 @@ def run_with(shared_run, step, ratio, integrators):
 
 def check(run, step, ratio):
     contact, schwarz, system = (run.summary[key] for key in ("contact", "schwarz", "system"))
-    assert [body["substeps"] for body in run.summary["bodies"].values()] >= [n * round(1e-3 / step) for n in ratio]
+    assert all(body["substeps"] >= n * round(1e-3 / step) for body, n in zip(run.summary["bodies"].values(), ratio, strict=True))
     assert contact["onsets"] == 1
-    assert contact["max_penetration"] <= 1e-9
-    assert contact["force_mean"] == pytest.approx(FORCE, rel=1e-4)
+    assert contact["max_penetration"] <= 2e-12  # where the outer iteration stops is 1e-12 m
+    assert contact["force_mean"] == pytest.approx(FORCE, rel=4e-5)  # measured: 2.8e-5
     assert schwarz["unconverged_steps"] == 0
     # Newton on the waveform response: one sweep to measure, one to confirm; a change of the set costs as much again
     assert schwarz["mean_contact_steps"] <= 2.2
@@ -48,16 +55,16 @@ def test_large_steps(ratio, integrators, shared_run):
     """1e-6 s, 0.8 of what a wave needs for an element, and ten times the paper's."""
     run = run_with(shared_run, 1e-6, ratio, integrators)
     check(run, 1e-6, ratio)
-    assert run.summary["errors"]["kinetic"] <= 5e-3
+    assert run.summary["errors"]["kinetic"] <= 4e-3  # measured: 3.1e-3
     # one step or two late, or early, of 500; and the release of the default is late by an element, 2.5e-3
     assert abs(run.summary["errors"]["release_time"]) <= 5e-3
 
 
-@pytest.mark.parametrize("integrators", ["IE", "EE"])
-@pytest.mark.parametrize("ratio", [(1, 7), (50, 1), (4, 4), (3, 5)], ids=lambda ratio: "{}-{}".format(*ratio))
+@pytest.mark.parametrize("integrators", ["IE", *long("EE")])
+@pytest.mark.parametrize("ratio", [(1, 7), *long(((50, 1),), ((4, 4),)), (3, 5)], ids=lambda ratio: "{}-{}".format(*ratio))
 def test_steps_of_the_paper(ratio, integrators, shared_run):
     run = run_with(shared_run, 1e-7, ratio, integrators)
     check(run, 1e-7, ratio)
     assert never_tensile(run)
-    assert force_scatter(run.summary) <= 1e-3
-    assert run.summary["errors"]["kinetic"] <= 2e-3
+    assert force_scatter(run.summary) <= 5e-6  # measured: 3.2e-6
+    assert run.summary["errors"]["kinetic"] <= 2.5e-4  # measured: 1.8e-4

@@ -3,7 +3,15 @@
 import math
 
 import pytest
-from cases import DEFAULTS, MOVING, PAIRINGS, force_scatter, joined, worst_energy_error
+from cases import (
+    DEFAULTS,
+    MOVING,
+    PAIRINGS,
+    UNLIKE,
+    force_scatter,
+    joined,
+    worst_energy_error,
+)
 
 # A frame in which the last position of the contact nodes is not the answer
 CASES = {"II": "", "EE": f"{PAIRINGS['EE']} -left_mass_type lumped -right_mass_type lumped", "IE": f"{PAIRINGS['IE']} -right_mass_type lumped"}
@@ -26,14 +34,14 @@ def same(one, other, relative, absolute=0.0):
 @pytest.mark.parametrize("way", list(WAYS))
 @pytest.mark.parametrize("case", list(CASES))
 def test_one_solution(case, way, shared_run):
-    """The conditions change the way to the solution, not the solution: the issue asks for the outer tolerance, 1e-12 m."""
-    base = joined(DEFAULTS, MOVING, CASES[case])
+    """The conditions change the way to the solution, not the solution. Unlike bars: of equal ones the first guess is the solution already."""
+    base = joined(DEFAULTS, MOVING, UNLIKE, CASES[case])
     reference, summary = shared_run(base).summary, shared_run(joined(base, WAYS[way])).summary
-    # Where both sides make the same substeps only the outer tolerance is left: 1e-12 m on layers of 8e5 N/m is 1e-5 of the force of
-    # 0.1 N, which the steps do not pile up; 1.1e-9 was seen in these figures, which are means and peaks over many steps. Where they do
-    # not, what happens between the ends of the controller step is a matter of the conditions: a soft spring leaves a path that a
-    # displacement forces; 8e-5 was seen in the peak of the force.
-    tolerance = 2e-4 if case == "IE" else 1e-8
+    assert summary["schwarz"]["mean_contact_steps"] > 1.4
+    # Where both sides make the same substeps only the outer tolerance is left, 1e-12 m: 3e-10 was seen in these figures, which are
+    # means and peaks over many steps. Where they do not, what happens between the ends of the controller step is a matter of the conditions: a soft
+    # spring leaves a path that a displacement forces; 3e-5 was seen in the peak of the force.
+    tolerance = 5e-5 if case == "IE" else 2e-9
     for name in ("force_mean", "force_peak", "impulse"):
         assert same(summary["contact"][name], reference["contact"][name], tolerance), name
     for name in ("first_contact_time", "release_time", "onsets", "steps_in_contact"):
@@ -41,10 +49,10 @@ def test_one_solution(case, way, shared_run):
     for body in ("left", "right"):
         assert same(summary["bodies"][body]["peak_potential"], reference["bodies"][body]["peak_potential"], tolerance)
     for name in ("kinetic", "potential", "contact_position", "mean_velocity"):
-        assert same(summary["errors"][name], reference["errors"][name], 2e-3 if case == "IE" else 1e-5), name  # 9e-4 and 8e-7 seen: differences of large numbers
+        assert same(summary["errors"][name], reference["errors"][name], 2e-3 if case == "IE" else 2e-6), name  # 1.9e-3 and 4.8e-7 seen: differences of large numbers
     assert summary["contact"]["max_penetration"] <= 2e-12  # the outer tolerance
-    assert worst_energy_error(summary) <= 1e-5  # as the default's, which is 1.4e-6
-    assert force_scatter(summary) <= 1e-4
+    assert worst_energy_error(summary) <= 4e-6  # measured: 3.1e-6
+    assert force_scatter(summary) <= 1.3e-5  # measured: 1.03e-5
     assert summary["schwarz"]["unconverged_steps"] == 0
 
 
@@ -52,14 +60,14 @@ def test_one_solution(case, way, shared_run):
 @pytest.mark.parametrize("way", ["robin", "impedance", "swapped", "swapped-robin"])
 def test_newton_needs_two_sweeps(case, way, shared_run):
     """Its Jacobian is that of the conditions chosen."""
-    assert shared_run(joined(DEFAULTS, MOVING, CASES[case], WAYS[way])).summary["schwarz"]["max"] <= 2
+    assert shared_run(joined(DEFAULTS, MOVING, UNLIKE, CASES[case], WAYS[way])).summary["schwarz"]["max"] == 2
 
 
 @pytest.mark.parametrize("case", list(CASES))
 def test_plain_robin_converges(case, shared_run):
     """A spring as stiff as the massless layer behind it makes the plain alternation converge without relaxation, where Dirichlet
     and Neumann conditions only alternate: at most 4 sweeps have been seen, the last of which finds no change."""
-    assert shared_run(joined(DEFAULTS, MOVING, CASES[case], WAYS["plain-robin"])).summary["schwarz"]["max"] <= 5
+    assert 3 <= shared_run(joined(DEFAULTS, MOVING, UNLIKE, CASES[case], WAYS["plain-robin"])).summary["schwarz"]["max"] <= 4
 
 
 @pytest.mark.parametrize(("case", "most"), [("II", 1.01), ("EE", 1.01), ("IE", 2.0)])
@@ -73,7 +81,7 @@ def test_inelastic_predictor(case, most, shared_run):
 @pytest.mark.parametrize("way", ["robin", "impedance", "swapped"])
 def test_ranks(way, shared_run):
     """Two ranks that share bodies and rows: the same within round-off."""
-    options = joined(DEFAULTS, MOVING, WAYS[way], "-time_end 1e-4")
+    options = joined(DEFAULTS, MOVING, UNLIKE, WAYS[way], "-time_step 1e-6 -time_end 1e-4")
     one, two = (shared_run(options, ranks).summary for ranks in (1, 2))
     assert one["schwarz"]["max"] == two["schwarz"]["max"]
     assert same(one["contact"]["force_mean"], two["contact"]["force_mean"], 1e-8)
