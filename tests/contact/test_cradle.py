@@ -52,6 +52,7 @@ def test_cradle(case, shared_run):
     run = shared_run(options, ranks)
     check_system(run)
     n, pairs = len(bodies), list(run.summary["pairs"])
+    assert len(pairs) == n - 1
     assert run.summary["pairs"][pairs[-1]]["release_time"] == pytest.approx(n * CROSSING, rel=2e-3)  # measured: 1.3e-3
     *others, last = velocities(run, bodies)
     assert last == pytest.approx(SPEED, rel=3e-3)  # measured: 2.1e-3

@@ -18,6 +18,7 @@ STRAIN, LENGTH, HALF = 0.1, 1e-3, 5e-5  # v / c, of a bar and of its width [m]
 def test_energies(shared_run):
     """All of 1/2 rho V v^2 = 5e-5 J is strain energy in the end, and the force is rho c v A = 1 N."""
     run = shared_run(RUN)
+    assert len(run.summary["bodies"]) == len(run.summary["errors"]["bodies"]) == 2
     for body in run.summary["bodies"].values():
         assert body["potential"] == pytest.approx(5e-5, rel=0.017)  # measured: 4.93e-5
         assert body["kinetic"] <= 8e-7  # measured: 6.8e-7

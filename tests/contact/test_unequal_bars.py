@@ -79,6 +79,7 @@ def test_two_materials(case, shared_run):
     """In the L2 norm and at worst, for both bars: measured 0.49 % at most."""
     run = shared_run(*MATERIALS[case])
     contact = run.summary["contact"]
+    assert len(run.summary["errors"]["bodies"]) == 2
     for body, errors in run.summary["errors"]["bodies"].items():
         for key in ("kinetic", "potential", "kinetic_max", "potential_max", "mean_velocity"):
             assert errors[key] <= 0.006, (body, key)

@@ -295,6 +295,7 @@ def test_png(pictured, launch, tmp_path):
     assert min(shares["solids"], shares["fields"], shares["moved"]) > 0.06
 
 
+@pytest.mark.long
 def test_contact_fields_drawn(pictured, launch, tmp_path):
     """Pressure comes with contact; the gap is drawn though most nodes have none."""
     pictures = {}

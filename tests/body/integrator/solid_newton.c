@@ -1,4 +1,4 @@
-/* long: 3 */
+/* long: 2 3 */
 /* Nonlinear bodies: convergence of Newton's method, windows repeated bit for bit, prescribed rows, and what cannot converge. */
 #include "solid_bodies.h"
 

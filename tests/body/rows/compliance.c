@@ -1,4 +1,4 @@
-/* long: 3 */
+/* long: 2 3 */
 /* The interface compliance of a body, against integrations under unit hats; rows that become known, are forgotten, and change. */
 #include "row_bodies.h"
 

@@ -1,4 +1,4 @@
-/* long: 3 */
+/* long: 2 3 */
 /* Mass of a surface layer in two and three dimensions, moved to the nodes inside: its total, its sign, its place, also where elements
    have no inner node. */
 #include "solid_bodies.h"
