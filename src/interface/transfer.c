@@ -1,4 +1,5 @@
 #include "interfaceimpl.h"
+#include <sys/citations.h>
 
 /*@
   TransferCreate - prepares the rows that compare a surface with another, or with an obstacle
@@ -35,6 +36,10 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->slip_bound  = 0.05;
   t->angle_bound = 0.02;
   t->guards      = PETSC_TRUE;
+  if (neumann && t->dim > 1) {
+    PetscCall(ImpaktCite(CITE_DUAL_MORTAR));
+    PetscCall(ImpaktCite(CITE_SEGMENTS));
+  }
   if (neumann)
     PetscCheck(t->dim == neumann->data.dim, comm, PETSC_ERR_USER_INPUT,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);

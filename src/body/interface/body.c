@@ -1,51 +1,10 @@
 /* Creation, set-up and destruction of a body. */
 #include <body/layout/bodyimpl.h>
-
-PetscClassId  BODY_CLASSID = 0;
-PetscLogEvent BODY_Integrate, BODY_Response, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
-
-/*@
-  BodyRegisterAll - registers the class, its materials and elements
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `Body`, `ImpaktInitialize()`
-@*/
-PetscErrorCode BodyRegisterAll(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscClassIdRegister("Body", &BODY_CLASSID));
-  PetscCall(PetscLogEventRegister("BodyIntegrate", BODY_CLASSID, &BODY_Integrate));
-  PetscCall(PetscLogEventRegister("BodyResponse", BODY_CLASSID, &BODY_Response));
-  PetscCall(PetscLogEventRegister("BodyForce", BODY_CLASSID, &BODY_InternalForce));
-  PetscCall(PetscLogEventRegister("BodyLayerForce", BODY_CLASSID, &BODY_LayerForce));
-  PetscCall(PetscLogEventRegister("BodyTangent", BODY_CLASSID, &BODY_Tangent));
-  PetscCall(MaterialRegisterAll());
-  PetscCall(ElementRegisterAll());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include <sys/citations.h>
+#include "bodysetup.h"
 
 /*@
-  BodyFinalizePackage - empties the registries of materials and elements
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `BodyRegisterAll()`
-@*/
-PetscErrorCode BodyFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  PetscCall(ElementFinalizePackage());
-  PetscCall(MaterialFinalizePackage());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyCreate - creates a body; all about it comes from options with its name as prefix
+  BodyCreate - creates a body, which wants a mesh and a material
 
   Collective
 
@@ -58,18 +17,25 @@ PetscErrorCode BodyFinalizePackage(void)
 
   Level: beginner
 
-.seealso: `Body`, `BodySetFromOptions()`, `BodyDestroy()`
+.seealso: `Body`, `BodySetDM()`, `BodySetMaterial()`, `BodySetFromOptions()`, `BodySetUp()`, `BodyDestroy()`
 @*/
 PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
 {
   char prefix[128];
 
   PetscFunctionBegin;
+  PetscAssertPointer(name, 2);
+  PetscAssertPointer(body, 3);
+  PetscCall(BodyInitializePackage());
   PetscCall(PetscHeaderCreate(*body, BODY_CLASSID, "Body", "Deformable body", "Body", comm, BodyDestroy, BodyView));
   PetscCall(PetscObjectSetName((PetscObject)*body, name));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*body, prefix));
   PetscCallMPI(MPI_Comm_size(comm, &(*body)->rows.size));
+  (*body)->mass_type         = (BodyMassType)PETSC_DECIDE;
+  (*body)->mass_redistribute = PETSC_TRUE;
+  PetscCall(ElementCreate(comm, &(*body)->element));
+  PetscCall(ElementSetOptionsPrefix((*body)->element, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,6 +57,8 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(body, start, 2);
+  PetscValidLogicalCollectiveReal(body, step, 3);
   body->time_start      = start;
   body->controller_step = step;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -123,6 +91,8 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  if (n) PetscAssertPointer(vertices, 3);
+  PetscCall(BodySetUpDiscretization(body));
   PetscCall(BodyCreateVec(body, &marks));
   local = marks;
   if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
@@ -208,8 +178,9 @@ PetscErrorCode BodySetUp(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
+  PetscCall(BodySetUpDiscretization(body));
   PetscCall(SetUpRows(body));
+  if (body->mass_redistribute && body->rows.global) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
   for (size_t i = 0; i < sizeof(always) / sizeof(always[0]); i++) PetscCall(BodyCreateVec(body, always[i]));
   if (body->rows.global) {
     for (size_t i = 0; i < sizeof(sweeps) / sizeof(sweeps[0]); i++) PetscCall(BodyCreateVec(body, sweeps[i]));
@@ -227,8 +198,11 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(CreateTraces(body));
   PetscCall(BodySetUpTime(body));
   PetscCall(TSViewFromOptions(body->ts, NULL, "-ts_view"));
+  PetscCall(MaterialViewFromOptions(body->material, (PetscObject)body, "-material_view"));
+  PetscCall(ElementViewFromOptions(body->element, (PetscObject)body, "-element_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
+  PetscCall(BodyViewFromOptions(body, NULL, "-body_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* A body from its options, and its initial state. */
 #include <body/layout/bodyimpl.h>
 #include <impakt/mesh.h>
+#include "bodysetup.h"
 
 /* Every body named by -bodies must be described somewhere */
 static PetscErrorCode CheckDescribed(Body body)
@@ -24,100 +25,22 @@ static PetscErrorCode CreateMesh(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -<body>_ts_time_step takes a word where PETSc's own option of that name takes a number */
-static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
-{
-  const char *prefix = ((PetscObject)body)->prefix;
-  char        text[64], full[160];
-  PetscBool   set, is_auto;
-
-  PetscFunctionBegin;
-  *hidden = PETSC_FALSE;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_time_step", text, sizeof(text), &set));
-  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
-  if (is_auto) {
-    body->requested_step = -1;
-    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
-    PetscCall(PetscOptionsClearValue(NULL, full));
-    *hidden = PETSC_TRUE;
-  } else {
-    PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &body->requested_step, NULL));
-    PetscCheck(body->requested_step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-               "-%sts_time_step %s: a time step must be positive", prefix, text);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateTime(Body body)
-{
-  MPI_Comm    comm     = PetscObjectComm((PetscObject)body);
-  const char *prefix   = ((PetscObject)body)->prefix;
-  char        type[64] = TSALPHA2, full[160];
-  PetscBool   hidden, alpha2;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
-  PetscCall(PetscStrcmp(type, TSALPHA2, &alpha2));
-  PetscCall(PetscStrcmp(type, TSCENTRALDIFFERENCE, &body->is_explicit));
-  PetscCall(PetscStrcmp(type, TSSTATIC, &body->is_static));
-  PetscCheck(alpha2 || body->is_explicit || body->is_static, comm, PETSC_ERR_ARG_UNKNOWN_TYPE,
-             "Unknown -%sts_type '%s'; known: alpha2 (implicit), centraldifference (explicit), static (without inertia)", prefix, type);
-  PetscCall(ReadTimeStep(body, &hidden));
-  PetscCall(TSCreate(comm, &body->ts));
-  PetscCall(TSSetOptionsPrefix(body->ts, prefix));
-  PetscCall(TSSetDM(body->ts, body->dm));
-  PetscCall(TSSetType(body->ts, type));
-  if (alpha2) {
-    TSAdapt adapt;
-
-    /* TSALPHA2's own default is the implicit midpoint rule; ours is Newmark's trapezoidal rule */
-    PetscCall(TSAlpha2SetParams(body->ts, 1, 1, 0.5, 0.25));
-    PetscCall(TSGetAdapt(body->ts, &adapt));
-    PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
-  }
-  PetscCall(TSSetFromOptions(body->ts));
-  if (hidden) {
-    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
-    PetscCall(PetscOptionsSetValue(NULL, full, "auto"));
-    PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_time_step", NULL)); /* it has been used */
-  }
-  if (!body->is_explicit) {
-    PetscCall(TSAlpha2GetParams(body->ts, &body->alpha_m, &body->alpha_f, &body->gamma, &body->beta));
-    if (body->is_static)
-      PetscCheck(body->alpha_m == 1 && body->alpha_f == 1, comm, PETSC_ERR_USER_INPUT,
-                 "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", prefix);
-    PetscCheck(body->beta > 0 && body->alpha_f > 0 && body->alpha_m > 0 && body->gamma > 0, comm, PETSC_ERR_USER_INPUT,
-               "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose "
-               "-%sts_type centraldifference",
-               prefix, (double)body->alpha_m, (double)body->alpha_f, (double)body->gamma, (double)body->beta, prefix);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Mass matrices that are not diagonal have to be factored, which explicit bodies in two and three dimensions do not pay for */
 static PetscErrorCode ReadMass(Body body)
 {
-  PetscFunctionBegin;
-  body->mass_type         = body->is_explicit && body->dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
-  body->mass_redistribute = PETSC_TRUE;
-  PetscObjectOptionsBegin((PetscObject)body);
-  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass_type,
-                             (PetscEnum *)&body->mass_type, NULL));
-  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions",
-                             body->mass_redistribute, &body->mass_redistribute, NULL));
-  PetscOptionsEnd();
-  if (body->is_static) body->mass_redistribute = PETSC_FALSE; /* it has no inertia to move */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  BodyMassType type;
+  PetscBool    redistribute = body->mass_redistribute;
 
-static PetscErrorCode ReadLoads(Body body)
-{
   PetscFunctionBegin;
-  PetscCall(BodyLoadsSetFromOptions(body));
-  PetscCall(BodyLoadsGetHeld(body, &body->n_held, &body->held_dofs));
-  body->any_held = (PetscBool)(body->n_held > 0);
-  PetscCall(BodyAnyRank(body, &body->any_held));
+  PetscCall(BodySetUpMassType(body));
+  type = body->mass_type;
+  PetscObjectOptionsBegin((PetscObject)body);
+  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetMassType", BodyMassTypes, (PetscEnum)type, (PetscEnum *)&type, NULL));
+  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetMassRedistribute",
+                             redistribute, &redistribute, NULL));
+  PetscOptionsEnd();
+  PetscCall(BodySetMassType(body, type));
+  PetscCall(BodySetMassRedistribute(body, redistribute));
+  PetscCall(BodySetUpMassType(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,23 +65,35 @@ static PetscErrorCode ReadLoads(Body body)
 
   Level: beginner
 
-.seealso: `Body`, `BodySetUp()`
+  Note:
+  Mesh and material that the program has set before (`BodySetDM()`, `BodySetMaterial()`) are left as they are, and so is what else it has
+  set and the options do not name. Functions that look at the mesh, such as `BodyAddTraction()`, come after this one.
+
+.seealso: `Body`, `BodySetDM()`, `BodySetMaterial()`, `BodySetTSType()`, `BodySetMassType()`, `BodySetUp()`
 @*/
 PetscErrorCode BodySetFromOptions(Body body)
 {
+  MPI_Comm comm = PetscObjectComm((PetscObject)body);
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(!body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has its options already", body->hdr.name);
-  PetscCall(CheckDescribed(body));
-  PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->material));
-  PetscCall(MaterialSetOptionsPrefix(body->material, ((PetscObject)body)->prefix));
-  PetscCall(MaterialSetFromOptions(body->material));
-  PetscCall(MaterialIsLinear(body->material, &body->linear));
-  PetscCall(CreateMesh(body));
-  PetscCall(BodySetUpLayout(body));
-  PetscCall(CreateTime(body));
+  PetscCheck(!body->positions, comm, PETSC_ERR_ARG_WRONGSTATE,
+             "Body '%s' has its options, or its loads, already: call BodySetFromOptions() once, and before functions that look at the mesh",
+             body->hdr.name);
+  if (!body->dm) PetscCall(CheckDescribed(body));
+  if (!body->material) {
+    PetscCall(MaterialCreate(comm, &body->material));
+    PetscCall(MaterialSetOptionsPrefix(body->material, ((PetscObject)body)->prefix));
+    PetscCall(MaterialSetFromOptions(body->material));
+  }
+  if (!body->dm) PetscCall(CreateMesh(body));
+  PetscCall(BodySetUpCells(body));
+  PetscCall(ElementSetFromOptions(body->element));
+  PetscCall(BodySetUpMesh(body));
+  PetscCall(BodySetTimeFromOptions(body));
   PetscCall(ReadMass(body));
-  PetscCall(ReadLoads(body));
+  PetscCall(BodyLoadsSetFromOptions(body));
+  PetscCall(BodyNoteHeld(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

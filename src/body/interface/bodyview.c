@@ -23,19 +23,24 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 
   Input Parameters:
 + body   - the `Body`
-- viewer - an ASCII viewer
+- viewer - an ASCII viewer, `NULL` for standard output
 
   Level: beginner
 
-.seealso: `Body`
+.seealso: `Body`, `BodyViewFromOptions()`
 @*/
 PetscErrorCode BodyView(Body body, PetscViewer viewer)
 {
-  TSType   type;
-  PetscInt dofs;
+  TSType    type;
+  PetscInt  dofs;
+  PetscBool ascii;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)body), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(VecGetSize(body->positions, &dofs));
   PetscCall(TSGetType(body->ts, &type));
@@ -49,6 +54,31 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
 }
 
 /*@
+  BodyViewFromOptions - prints a body where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ body   - the `Body`, set up
+. object - has the prefix of the option, `NULL` for the body
+- name   - the option
+
+  Options Database Key:
+. -<body>_body_view - print the body at its set-up
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode BodyViewFromOptions(Body body, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)body, object, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetDM - the mesh
 
   Not Collective
@@ -57,40 +87,18 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
 . body - the `Body`
 
   Output Parameter:
-. dm - its `DMPLEX`, owned by the body
+. dm - its `DMPLEX`, owned by the body; `NULL` until it has one
 
   Level: intermediate
 
-.seealso: `Body`
+.seealso: `Body`, `BodySetDM()`
 @*/
 PetscErrorCode BodyGetDM(Body body, DM *dm)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(dm, 2);
   *dm = body->dm;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetTS - the time integrator
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. ts - its `TS`, owned by the body
-
-  Level: intermediate
-
-.seealso: `Body`
-@*/
-PetscErrorCode BodyGetTS(Body body, TS *ts)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *ts = body->ts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,16 +111,17 @@ PetscErrorCode BodyGetTS(Body body, TS *ts)
 . body - the `Body`
 
   Output Parameter:
-. material - its `Material`, owned by the body
+. material - its `Material`, owned by the body; `NULL` until it has one
 
   Level: intermediate
 
-.seealso: `Body`, `Material`
+.seealso: `Body`, `BodySetMaterial()`
 @*/
 PetscErrorCode BodyGetMaterial(Body body, Material *material)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(material, 2);
   *material = body->material;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -136,6 +145,7 @@ PetscErrorCode BodyGetSubsteps(Body body, PetscInt *substeps)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(substeps, 2);
   *substeps = body->substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,6 +172,7 @@ PetscErrorCode BodyGetStableStep(Body body, PetscReal *step)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(step, 2);
   PetscCall(BodyComputeStableStep(body));
   *step = body->stable_step;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -216,6 +227,7 @@ PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(positions, 2);
   *positions = body->positions;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -239,6 +251,8 @@ PetscErrorCode BodyGetDimension(Body body, PetscInt *dim)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(dim, 2);
+  PetscCheck(body->dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has no mesh yet", body->hdr.name);
   PetscCall(DMGetCoordinateDim(body->dm, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -262,6 +276,7 @@ PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(is_explicit, 2);
   *is_explicit = body->is_explicit;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -285,6 +300,7 @@ PetscErrorCode BodyIsStatic(Body body, PetscBool *is_static)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(is_static, 2);
   *is_static = body->is_static;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -308,6 +324,7 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(redistributed, 2);
   *redistributed = (PetscBool)(body->mass_redistribute || body->is_static);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -318,7 +335,7 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
   Not Collective
 
   Input Parameter:
-. body - the `Body`, after `BodySetFromOptions()`
+. body - the `Body`, with mesh and loads
 
   Output Parameters:
 + n    - how many of this rank's
@@ -326,12 +343,14 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
 
   Level: developer
 
-.seealso: `Body`, `BodySetFromOptions()`
+.seealso: `Body`, `BodyAddDisplacement()`, `BodySetFromOptions()`
 @*/
 PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(n, 2);
+  PetscAssertPointer(dofs, 3);
   *n    = body->n_held;
   *dofs = body->held_dofs;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,7 +20,7 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  PetscCall((*body->element->ops.energy)(body->element, u, potential));
+  PetscCall((*body->element->ops->energy)(body->element, u, potential));
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

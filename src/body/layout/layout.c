@@ -1,5 +1,6 @@
 /* Mesh and numbering: what the element loops and vectors of a body run over. */
 #include "bodyimpl.h"
+#include <body/interface/bodysetup.h>
 
 /* One node at each vertex, `dim` displacements at each node */
 static PetscErrorCode SetUpSection(Body body)
@@ -73,7 +74,8 @@ static PetscErrorCode SetUpCoordinates(Body body, PetscInt vstart, PetscInt vend
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+/* The shape of all cells, and with it that of the elements */
+PetscErrorCode BodySetUpCells(Body body)
 {
   PetscInt       cstart, cend;
   int            shape[2] = {DM_NUM_POLYTOPES, -1};
@@ -99,10 +101,20 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
       -shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
       "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported; give each shape a body of its own",
       body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
-  PetscCall(ElementCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, cell, body->material, &body->element));
+  PetscCall(ElementSetMaterial(body->element, body->material));
+  PetscCall(ElementSetCellType(body->element, cell));
   PetscCheck(body->element->dim == body->dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
              "Body '%s': cells of shape '%s' in %" PetscInt_FMT " dimensions are not supported", body->hdr.name, DMPolytopeTypes[cell],
              body->dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+{
+  PetscInt cstart, cend;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetHeightStratum(body->dm, 0, &cstart, &cend));
   PetscCall(PetscMalloc1((cend - cstart) * body->element->nodes, &body->connectivity));
   for (PetscInt c = cstart; c < cend; c++) {
     PetscInt *closure = NULL, n_points, nodes = 0;
@@ -112,14 +124,14 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
       if (closure[2 * p] >= vstart && closure[2 * p] < vend)
         body->connectivity[(c - cstart) * body->element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
     PetscCall(DMPlexRestoreTransitiveClosure(body->dm, c, PETSC_TRUE, &n_points, &closure));
-    PetscCall(DMPlexInvertCell(cell, body->connectivity +
-                                         (c - cstart) * body->element->nodes)); /* from DMPLEX's order of vertices to the usual one */
+    PetscCall(DMPlexInvertCell(
+        body->cell_shape, body->connectivity + (c - cstart) * body->element->nodes)); /* from DMPLEX's order of vertices to the usual one */
   }
   PetscCall(ElementSetUp(body->element, cend - cstart, body->connectivity, body->coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbering, coordinates, connectivity and elements from the DMPlex */
+/* Numbering, coordinates, connectivity and elements from the DMPlex, after BodySetUpCells() */
 PetscErrorCode BodySetUpLayout(Body body)
 {
   PetscInt     vstart, vend, *node_of_vertex;
@@ -218,6 +230,10 @@ PetscErrorCode BodyGetCells(Body body, DMPolytopeType *shape, PetscInt *n_cells,
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(shape, 2);
+  PetscAssertPointer(n_cells, 3);
+  PetscAssertPointer(n_nodes, 4);
+  PetscAssertPointer(cells, 5);
   PetscCall(VecGetOwnershipRange(body->positions, &rstart, NULL));
   PetscCall(PetscMalloc1(n, cells));
   for (PetscInt i = 0; i < n; i++) {

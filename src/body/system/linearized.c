@@ -26,7 +26,7 @@ PetscErrorCode BodyPrepareLinearized(Body body)
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   if (body->linear || body->linearized_element) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MaterialLinearize(body->material, &body->linearized_material));
-  PetscCall(ElementCreateLike(body->element, body->linearized_material, &body->linearized_element));
+  PetscCall(ElementDuplicate(body->element, body->linearized_material, &body->linearized_element));
   PetscCall(ElementSetUp(body->linearized_element, body->element->count, body->connectivity, body->coordinates));
   PetscCall(BodyLayerLinearize(body, body->linearized_material));
   PetscFunctionReturn(PETSC_SUCCESS);

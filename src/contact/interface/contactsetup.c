@@ -1,5 +1,6 @@
 /* Set-up, and what contact tells of itself. */
 #include <impakt/private/contactimpl.h>
+#include <sys/citations.h>
 
 /*@
   ContactSetUp - finds the contact rows, sets up the bodies and the method
@@ -18,6 +19,9 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
+  if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
+  if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(ContactSetUpPairs(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodySetUp(contact->bodies[b]));
@@ -29,6 +33,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   if (contact->n_all_rows) PetscTryTypeMethod(contact, setup);
   contact->setup = PETSC_TRUE;
   PetscCall(ContactCheckInitialGap(contact));
+  PetscCall(ContactViewFromOptions(contact, NULL, "-contact_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,6 +92,7 @@ PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(n, 2);
   *n = contact->n_pairs;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -141,6 +147,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(normal, 3);
   PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -164,6 +171,7 @@ PetscErrorCode ContactGetPenaltyEnergy(Contact contact, PetscReal *energy)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(energy, 2);
   *energy = contact->penalty_energy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -187,6 +195,7 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(counts, 2);
   *counts = contact->counts_made;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -217,6 +226,8 @@ PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal pos
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(position, 3);
+  PetscAssertPointer(velocity, 4);
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
   PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));

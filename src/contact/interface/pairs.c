@@ -1,6 +1,5 @@
 /* Contact pairs: from their names to surfaces of bodies, and which side takes displacements. */
 #include <impakt/private/contactimpl.h>
-#include <sys/names.h>
 
 /* One side of a pair; the second may be an obstacle, for which the body is one past the last */
 static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)
@@ -46,14 +45,14 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   Input Parameters:
 + contact - the `Contact`, with its bodies
 - pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`; or of a body and an
-            obstacle, `ball:floor`
+            obstacle that has been added, `ball:floor`
 
   Options Database Key:
 . -contact_pairs a:b,b:c - pairs
 
   Level: beginner
 
-.seealso: `Contact`, `SurfaceCreate()`
+.seealso: `Contact`, `ContactSetBodies()`, `ContactAddObstacle()`, `SurfaceCreate()`
 @*/
 PetscErrorCode ContactAddPair(Contact contact, const char pair[])
 {
@@ -62,6 +61,7 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(pair, 2);
   PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
   PetscCall(PetscStrncpy(text, pair, sizeof(text)));
   PetscCall(PetscStrchr(text, ':', &colon));
@@ -85,38 +85,6 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
     PetscCall(PetscStrcmp(pair, contact->pairs[other].name, &same));
     PetscCheck(!same, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs: pair %s is given twice", pair);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AddObstacle(Contact contact, const char name[])
-{
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool same;
-
-    PetscCall(PetscStrcmp(name, ((PetscObject)contact->bodies[b])->name, &same));
-    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
-  }
-  PetscCall(ObstacleCreateFromOptions(comm, name, &contact->obstacles[contact->n_obstacles]));
-  contact->n_obstacles++;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rigid obstacles, by the options */
-PetscErrorCode ContactReadObstacles(Contact contact)
-{
-  PetscErrorCode error = PETSC_SUCCESS;
-  char         **names;
-  PetscInt       n;
-
-  PetscFunctionBegin;
-  PetscCall(NamesRead(NULL, "-obstacles", &n, &names, NULL));
-  PetscCall(PetscMalloc1(n, &contact->obstacles));
-  for (PetscInt o = 0; o < n && !error; o++) error = AddObstacle(contact, names[o]);
-  PetscCall(NamesDestroy(n, &names));
-  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -225,6 +193,7 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
   PetscBool   hidden;
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
   PetscCall(ContactFindDimension(contact));
   PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
   PetscCall(GetPreferences(contact, preferences));

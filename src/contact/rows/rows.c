@@ -274,6 +274,7 @@ PetscErrorCode ContactSetUpPairs(Contact contact)
                          &contact->interfaces, contact->n_bodies, &contact->order, contact->n_bodies, &contact->node_dofs,
                          contact->n_bodies, &contact->n_node_dofs, contact->n_bodies, &contact->n_all_nodes));
   PetscCall(ContactOrderBodies(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
   PetscCall(ContactFindDimension(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CreateTransfer(contact, &contact->pairs[p], &extent));
