@@ -51,8 +51,9 @@ export UBSAN_OPTIONS := print_stacktrace=1
 endif
 
 WARNINGS := -Wall -Wextra -Werror
-# One set of objects for the program and for the shared library, which shows nothing but what is PETSC_EXTERN
-CFLAGS   := -std=c11 -fopenmp-simd $(WARNINGS) $(OPTIMISE) -fPIC -fvisibility=hidden -fno-semantic-interposition
+CFLAGS   := -std=c11 -fopenmp-simd $(WARNINGS) $(OPTIMISE)
+# One set of objects serves the program and the shared library, which shows nothing but what is PETSC_EXTERN
+SHARED   := -fPIC -fvisibility=hidden -fno-semantic-interposition
 # Other people's headers are system headers: their warnings are not ours to mend.
 CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(PETSC_CC_INCLUDES) $(shell pkg-config --cflags jansson muparser netcdf-mpi))) \
             -isystem $(shell pkg-config --variable=prefix netcdf-mpi)/include # Debian's netcdf-mpi.pc does not name it
@@ -144,7 +145,7 @@ $(BUILD)/libimpakt.a: $(members) $(BUILD)/members
 # PETSc goes into the library by name alone: a static one would be there twice, in the library and in the programs that use it
 $(BUILD)/libimpakt.so: $(members) $(BUILD)/members
 	@ls $(PETSC_ROOT)/lib/libpetsc.* | grep -q '\.\(so\|dylib\)' || { echo "make install needs a shared PETSc; $(PETSC_ROOT) has a static one" >&2; exit 1; }
-	$(call say,LINK) $(CC) $(CFLAGS) -shared -Wl,-soname,libimpakt.so.$(interface) -Wl,-z,defs -o $@ $(members) $(LIBS)
+	$(call say,LINK) $(CC) $(CFLAGS) $(SHARED) -shared -Wl,-soname,libimpakt.so.$(interface) -Wl,-z,defs -o $@ $(members) $(LIBS)
 
 $(BUILD)/impakt.pc: text = prefix=$(prefix)\nlibdir=$${prefix}/lib\nincludedir=$${prefix}/include\n\nName: Impakt\nDescription: dynamic contact by the Schwarz alternating method\nVersion: $(version)\nCflags: -I$${includedir} $(pc_cflags)\nLibs: -L$${libdir} -Wl,-rpath,$${libdir} -limpakt $(pc_libs)\n
 $(BUILD)/impakt.pc: force
@@ -152,6 +153,8 @@ $(BUILD)/impakt.pc: force
 
 $(BUILD)/tests/unit/%: $(BUILD)/tests/unit/%.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
+
+$(members): private CFLAGS += $(SHARED)
 
 $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
 	@mkdir -p $(@D)
@@ -166,7 +169,7 @@ $(BUILD)/yardstick_hex8: tests/scaling/yardstick_hex8.c
 	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
 
 # What the objects and the library were made with: rewritten only when that changes
-$(BUILD)/flags: text = $(CC) $(CPPFLAGS) $(CFLAGS) $(LIBS)
+$(BUILD)/flags: text = $(CC) $(CPPFLAGS) $(CFLAGS) $(LIBS), $(SHARED)
 $(BUILD)/members: text = $(members)
 $(BUILD)/flags $(BUILD)/members: force
 	@mkdir -p $(@D); echo '$(text)' | cmp -s - $@ || echo '$(text)' >$@

@@ -1,9 +1,11 @@
 /* Private to src/interface. */
 #pragma once
 #include <petscsf.h>
+#include <petsc/private/petscimpl.h>
 #include <impakt/transfer.h>
 
-struct _n_Surface {
+struct _p_Surface {
+  PETSCHEADER(int);
   DM           dm;
   SurfaceData  data;
   PetscInt    *points;      /* per face: point of the DMPLEX, ascending */
@@ -62,7 +64,8 @@ typedef struct {
   PetscSF    vectors;              /* from owned nodes of the Neumann side to columns, three numbers of each */
 } RowSet;
 
-struct _n_Transfer {
+struct _p_Transfer {
+  PETSCHEADER(int);
   MPI_Comm   comm;
   Surface    dirichlet, neumann; /* neumann NULL: an obstacle */
   Obstacle   obstacle;

@@ -2,13 +2,16 @@
 #include <impakt/obstacle.h>
 #include <petsc/private/petscimpl.h>
 
+/* An axis whose first component is above this is crossed with the second unit vector, not the first, which it may be parallel to */
+#define NEARLY_PARALLEL 0.9
+
 struct _p_Obstacle {
   PETSCHEADER(int);
   ObstacleType type;
   PetscBool    complete;     /* it has a shape and a place */
   PetscReal    point[3];     /* of the plane or axis, or the centre [m] */
-  PetscReal    direction[3]; /* outward normal of the plane, or axis of the cylinder; zero of a sphere */
-  PetscReal    radius;
+  PetscReal    direction[3]; /* outward normal of the plane, or axis of the cylinder; zero for a sphere */
+  PetscReal    radius;       /* of the sphere or the cylinder [m] */
 };
 
 const char *const ObstacleTypes[] = {"plane", "sphere", "cylinder", "ObstacleType", "OBSTACLE_", NULL};
@@ -221,7 +224,7 @@ PetscErrorCode ObstacleGetType(Obstacle obstacle, ObstacleType *type)
   Level: developer
 
   Note:
-  At the centre of a sphere, and on the axis of a cylinder, the normal is one of those that it might be.
+  At the centre of a sphere, and on the axis of a cylinder, any normal would do; one of them is returned.
 
 .seealso: `Obstacle`
 @*/
@@ -234,7 +237,8 @@ PetscErrorCode ObstacleGetGap(Obstacle obstacle, const PetscReal point[], PetscR
   PetscAssertPointer(point, 2);
   PetscAssertPointer(distance, 3);
   PetscAssertPointer(normal, 4);
-  for (PetscInt d = 0; d < 3; d++) along += (point[d] - obstacle->point[d]) * obstacle->direction[d]; /* the direction of a sphere is 0 */
+  for (PetscInt d = 0; d < 3; d++)
+    along += (point[d] - obstacle->point[d]) * obstacle->direction[d]; /* 0 for a sphere, which has no direction */
   if (obstacle->type == OBSTACLE_PLANE) {
     *distance = along;
     for (PetscInt d = 0; d < 3; d++) normal[d] = obstacle->direction[d];
@@ -249,7 +253,7 @@ PetscErrorCode ObstacleGetGap(Obstacle obstacle, const PetscReal point[], PetscR
   if (length > 0) {
     for (PetscInt d = 0; d < 3; d++) normal[d] /= length;
   } else { /* any direction across the axis */
-    const PetscInt first = PetscAbsReal(obstacle->direction[0]) < 0.9 ? 0 : 1;
+    const PetscInt first = PetscAbsReal(obstacle->direction[0]) < NEARLY_PARALLEL ? 0 : 1;
 
     for (PetscInt d = 0; d < 3; d++) {
       normal[d] = (d == first) - obstacle->direction[first] * obstacle->direction[d];

@@ -50,8 +50,14 @@ PetscErrorCode ImpaktRegisterAll(void)
   PetscCall(BodyInitializePackage());
   PetscCall(MaterialInitializePackage());
   PetscCall(ElementInitializePackage());
+  PetscCall(ExpressionInitializePackage());
+  PetscCall(ObstacleInitializePackage());
+  PetscCall(SurfaceInitializePackage());
+  PetscCall(TransferInitializePackage());
   PetscCall(ContactInitializePackage());
   PetscCall(ControllerInitializePackage());
+  PetscCall(ExactInitializePackage());
+  PetscCall(OutputInitializePackage());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,18 +68,6 @@ static PetscErrorCode Forget(void)
   library.depth       = 0;
   library.began_petsc = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* With the error handler first, for what is wrong with the options file */
-static PetscErrorCode BeginPetsc(int *argc, char ***argv)
-{
-  PetscErrorCode error;
-
-  PetscFunctionBegin;
-  PetscCall(PetscPushErrorHandler(ImpaktReportError, NULL));
-  error = PetscInitialize(argc, argv, NULL, help);
-  if (error) (void)PetscPopErrorHandler();
-  PetscFunctionReturn(error);
 }
 
 /*@C
@@ -108,7 +102,8 @@ PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
   }
   PetscCall(PetscInitialized(&running));
   if (!running) {
-    PetscCall(BeginPetsc(argc, argv));
+    PetscCall(PetscPushErrorHandler(ImpaktReportError, NULL)); /* first, for what is wrong with the options file */
+    PetscCall(PetscInitialize(argc, argv, NULL, help));
     began = PETSC_TRUE;
   }
   PetscCall(ImpaktRegisterAll());

@@ -1,6 +1,6 @@
 /* Mesh and numbering: what the element loops and vectors of a body run over. */
 #include "bodyimpl.h"
-#include <body/interface/bodysetup.h>
+#include "cells.h"
 
 /* One node at each vertex, `dim` displacements at each node */
 static PetscErrorCode SetUpSection(Body body)

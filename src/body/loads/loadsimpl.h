@@ -76,6 +76,8 @@ PETSC_INTERN PetscErrorCode BodyLoadsRefuseNormal(Body, const char[], const Expr
 PETSC_INTERN PetscErrorCode BodyLoadsAddDisplacement(Body, const char[], const char[]);
 PETSC_INTERN PetscErrorCode BodyLoadsAddTraction(Body, const char[], const char[]);
 PETSC_INTERN PetscErrorCode BodyLoadsAddBodyForce(Body, const char[]);
+PETSC_INTERN void           BodyLoadsSetGravity(Body, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyLoadsSetInitial(Body, PetscBool, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyLoadsSetUpHeld(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyForces(struct _BodyLoads *);

@@ -67,75 +67,19 @@ PetscErrorCode BodyLoadsReadInitialState(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same value at all nodes */
-static PetscErrorCode SetUniform(Body body, const char name[], const PetscReal value[])
+/* The same displacement [m] or velocity [m/s] at all nodes */
+PetscErrorCode BodyLoadsSetInitial(Body body, PetscBool velocity, const PetscReal value[])
 {
   PetscScalar *at;
   Vec          values;
 
   PetscFunctionBegin;
-  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
-             "Body '%s': after BodySetUp(), call BodySetInitialState()", body->hdr.name);
-  PetscCall(BodySetUpDiscretization(body));
   PetscCall(BodyCreateVec(body, &values));
   PetscCall(VecGetArrayWrite(values, &at));
   for (PetscInt i = 0; i < body->owned_nodes * body->dim; i++) at[i] = value[i % body->dim];
   PetscCall(VecRestoreArrayWrite(values, &at));
-  PetscCall(PetscObjectCompose((PetscObject)body, name, (PetscObject)values));
+  PetscCall(PetscObjectCompose((PetscObject)body, initial[velocity ? 1 : 0], (PetscObject)values));
   PetscCall(VecDestroy(&values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodySetInitialDisplacement - sets the displacement that all nodes have at the start
-
-  Collective
-
-  Input Parameters:
-+ body         - the `Body`, with mesh and material, not yet set up
-- displacement - as many numbers as the body has dimensions [m]
-
-  Options Database Key:
-. -<body>_initial_displacement ux,uy,uz - expressions in x, y, z [m], default 0
-
-  Level: beginner
-
-.seealso: `Body`, `BodySetInitialVelocity()`, `BodySetInitialState()`
-@*/
-PetscErrorCode BodySetInitialDisplacement(Body body, const PetscReal displacement[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(displacement, 2);
-  PetscCall(SetUniform(body, initial[0], displacement));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodySetInitialVelocity - sets the velocity that all nodes have at the start
-
-  Collective
-
-  Input Parameters:
-+ body     - the `Body`, with mesh and material, not yet set up
-- velocity - as many numbers as the body has dimensions [m/s]
-
-  Options Database Key:
-. -<body>_initial_velocity vx,vy,vz - expressions in x, y, z [m/s], default 0
-
-  Level: beginner
-
-  Note:
-  For a velocity that is not the same everywhere, call `BodySetInitialState()` after `BodySetUp()`.
-
-.seealso: `Body`, `BodySetInitialDisplacement()`, `BodySetInitialState()`
-@*/
-PetscErrorCode BodySetInitialVelocity(Body body, const PetscReal velocity[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(velocity, 2);
-  PetscCall(SetUniform(body, initial[1], velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
