@@ -60,7 +60,7 @@ CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/includ
 LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lm
 
 members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c' -not -path '*/tutorials/*'))))
-units     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/unit/*.c)))
+units     := $(patsubst %.c,$(BUILD)/%,$(filter-out tests/scaling/% tests/library/%,$(sort $(shell find tests -name '*.c'))))
 c_files    = $(shell find src include tests -name '*.[ch]')
 sh_files  := .setup/common .setup/debian .setup/petsc .setup/python .ci/run
 TESTS     ?= tests
@@ -151,9 +151,10 @@ $(BUILD)/impakt.pc: text = prefix=$(prefix)\nlibdir=$${prefix}/lib\nincludedir=$
 $(BUILD)/impakt.pc: force
 	@mkdir -p $(@D); printf '$(text)' >$@
 
-$(BUILD)/tests/unit/%: $(BUILD)/tests/unit/%.o $(BUILD)/libimpakt.a
+$(units): %: %.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
 
+$(addsuffix .o,$(units)): private CPPFLAGS += -Itests/unit
 $(members): private CFLAGS += $(SHARED)
 
 $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h

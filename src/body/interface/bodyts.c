@@ -2,7 +2,7 @@
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
 
-/* TSALPHA2's own default is the implicit midpoint rule; ours is Newmark's trapezoidal rule */
+/* Steps stay as they are. TSALPHA2's own default is the implicit midpoint rule; ours is Newmark's trapezoidal rule. */
 static PetscErrorCode SetDefaults(Body body)
 {
   PetscBool alpha2;
@@ -10,8 +10,7 @@ static PetscErrorCode SetDefaults(Body body)
 
   PetscFunctionBegin;
   PetscCall(PetscObjectTypeCompare((PetscObject)body->ts, TSALPHA2, &alpha2));
-  if (!alpha2) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TSAlpha2SetParams(body->ts, 1, 1, 0.5, 0.25));
+  if (alpha2) PetscCall(TSAlpha2SetParams(body->ts, 1, 1, 0.5, 0.25));
   PetscCall(TSGetAdapt(body->ts, &adapt));
   PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
   PetscFunctionReturn(PETSC_SUCCESS);
