@@ -1,3 +1,4 @@
+/* What the implementation of a contact method needs. */
 #pragma once
 #include <impakt/contact.h>
 #include <impakt/private/bodyrows.h>
@@ -124,13 +125,15 @@ struct _p_Contact {
   void      *data;
 };
 
+PETSC_INTERN PetscFunctionList ContactList;
+
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 
 PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
-PETSC_INTERN PetscErrorCode ContactReadObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);

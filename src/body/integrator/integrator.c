@@ -37,6 +37,7 @@ PetscErrorCode BodyIntegratorCreate(Body body, const char type[])
     PetscCall(PetscStrcmp(type, known[i].type, &same));
     if (!same) continue;
     PetscCall(PetscNew(&body->integrator));
+    body->integrator->type = known[i].type;
     PetscCall((*known[i].create)(body->integrator));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
