@@ -117,6 +117,14 @@ PETSC_INTERN PetscFunctionList ContactList;
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 
+/* What a method calls in a controller step */
+PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
+PETSC_EXTERN PetscErrorCode ContactComputeGaps(Contact);
+PETSC_EXTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactOr(Contact, int *);
+
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
@@ -142,14 +150,9 @@ PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMultiplyCompliance(Contact, const PetscBool[], PetscBool, Vec[2], Vec, Vec);
 PETSC_INTERN PetscErrorCode ContactCreateRowSolver(Contact, const char[], PetscReal, PetscErrorCode (*)(Mat, Vec, Vec), void *, KSP *);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
-PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
-PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
-PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);
-PETSC_INTERN PetscErrorCode ContactOr(Contact, int *);
 PETSC_INTERN PetscErrorCode ContactAddCompliance(Contact, PetscInt, const PetscScalar[], PetscScalar[]);
-PETSC_INTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactGatherActive(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
