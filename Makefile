@@ -101,7 +101,7 @@ pc_libs    = -Wl,-rpath,$(PETSC_ROOT)/lib -L$(PETSC_ROOT)/lib -lpetsc $(filter -
 
 all: $(BUILD)/impakt ## the program, build/impakt (the default)
 
-install: $(BUILD)/impakt $(BUILD)/libimpakt.so $(BUILD)/impakt.pc ## program, shared library, headers and impakt.pc, below PREFIX
+install: $(BUILD)/impakt $(BUILD)/libimpakt.so ## program, shared library, headers and impakt.pc, below PREFIX
 	@mkdir -p $(stage)/bin $(stage)/lib/pkgconfig $(stage)/include/impakt/private
 	install -m 755 $(BUILD)/impakt $(stage)/bin
 	install -m 755 $(BUILD)/libimpakt.so $(stage)/lib/libimpakt.so.$(version)
@@ -110,7 +110,10 @@ install: $(BUILD)/impakt $(BUILD)/libimpakt.so $(BUILD)/impakt.pc ## program, sh
 	install -m 644 include/impakt.h $(stage)/include
 	install -m 644 $(wildcard include/impakt/*.h) $(stage)/include/impakt
 	install -m 644 $(wildcard include/impakt/private/*.h) $(stage)/include/impakt/private
-	install -m 644 $(BUILD)/impakt.pc $(stage)/lib/pkgconfig
+	@echo "impakt.pc to $(stage)/lib/pkgconfig"
+	@printf '%s\n' 'prefix=$(prefix)' 'libdir=$${prefix}/lib' 'includedir=$${prefix}/include' '' 'Name: Impakt' \
+	  'Description: dynamic contact by the Schwarz alternating method' 'Version: $(version)' 'Cflags: -I$${includedir} $(pc_cflags)' \
+	  'Libs: -L$${libdir} -Wl,-rpath,$${libdir} -limpakt $(pc_libs)' >$(stage)/lib/pkgconfig/impakt.pc
 
 run: $(BUILD)/impakt ## the paper's high-speed impact: results table, history, summary and plot in out/
 	@mkdir -p out
@@ -158,10 +161,6 @@ $(BUILD)/libimpakt.a: $(members) $(BUILD)/members
 $(BUILD)/libimpakt.so: $(members) $(BUILD)/members
 	@ls $(PETSC_ROOT)/lib/libpetsc.* | grep -q '\.\(so\|dylib\)' || { echo "make install needs a shared PETSc; $(PETSC_ROOT) has a static one" >&2; exit 1; }
 	$(call say,LINK) $(CC) $(CFLAGS) $(SHARED) -shared -Wl,-soname,libimpakt.so.$(interface) -Wl,-z,defs -o $@ $(members) $(LIBS)
-
-$(BUILD)/impakt.pc: text = prefix=$(prefix)\nlibdir=$${prefix}/lib\nincludedir=$${prefix}/include\n\nName: Impakt\nDescription: dynamic contact by the Schwarz alternating method\nVersion: $(version)\nCflags: -I$${includedir} $(pc_cflags)\nLibs: -L$${libdir} -Wl,-rpath,$${libdir} -limpakt $(pc_libs)\n
-$(BUILD)/impakt.pc: force
-	@mkdir -p $(@D); printf '$(text)' >$@
 
 $(units): %: %.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)

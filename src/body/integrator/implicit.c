@@ -44,12 +44,8 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 
 static PetscErrorCode SetDefaults(Body body)
 {
-  TSAdapt adapt;
-
   PetscFunctionBegin;
   PetscCall(TSAlpha2SetParams(body->time.ts, ALPHA_M, ALPHA_F, GAMMA, BETA));
-  PetscCall(TSGetAdapt(body->time.ts, &adapt));
-  PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

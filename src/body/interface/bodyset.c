@@ -5,7 +5,7 @@
 /* What is set here has to be known before the mesh is numbered and the elements are made */
 #define CheckNotNumbered(body)                                                                                                             \
   PetscCheck(                                                                                                                              \
-      !(body)->mesh.positions, PetscObjectComm((PetscObject)(body)), PETSC_ERR_ARG_WRONGSTATE,                                                  \
+      !(body)->mesh.positions, PetscObjectComm((PetscObject)(body)), PETSC_ERR_ARG_WRONGSTATE,                                             \
       "Body '%s': its elements have been made; call %s() after BodyCreate(), before BodySetFromOptions(), BodySetUp() and functions "      \
       "that look at the mesh",                                                                                                             \
       (body)->hdr.name, PETSC_FUNCTION_NAME)

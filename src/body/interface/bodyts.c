@@ -25,6 +25,7 @@
 PetscErrorCode BodySetTSType(Body body, TSType type)
 {
   PetscBool same = PETSC_FALSE;
+  TSAdapt   adapt;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -33,14 +34,15 @@ PetscErrorCode BodySetTSType(Body body, TSType type)
              body->hdr.name);
   if (body->time.ts) PetscCall(PetscObjectTypeCompare((PetscObject)body->time.ts, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIntegratorCreate(body, type));
   if (!body->time.ts) {
     PetscCall(TSCreate(PetscObjectComm((PetscObject)body), &body->time.ts));
     PetscCall(TSSetOptionsPrefix(body->time.ts, ((PetscObject)body)->prefix));
   }
   if (body->mesh.dm) PetscCall(TSSetDM(body->time.ts, body->mesh.dm));
-  PetscCall(BodyIntegratorDestroy(body));
-  PetscCall(BodyIntegratorCreate(body, type));
   PetscCall(TSSetType(body->time.ts, type));
+  PetscCall(TSGetAdapt(body->time.ts, &adapt));
+  PetscCall(TSAdaptSetType(adapt, TSADAPTNONE)); /* substeps stay as they are */
   if (body->integrator->ops.setdefaults) PetscCall((*body->integrator->ops.setdefaults)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,10 +164,7 @@ PetscErrorCode BodySetUpIntegrator(Body body)
   PetscCall(BodyGetTS(body, &ts));
   PetscCall(TSGetType(ts, &type));
   PetscCall(PetscStrcmp(type, body->integrator->type, &same));
-  if (!same) {
-    PetscCall(BodyIntegratorDestroy(body));
-    PetscCall(BodyIntegratorCreate(body, type));
-  }
+  if (!same) PetscCall(BodyIntegratorCreate(body, type));
   PetscCall(TSGetDM(ts, &dm));
   if (dm != body->mesh.dm) PetscCall(TSSetDM(ts, body->mesh.dm));
   if (body->integrator->ops.getparameters) PetscCall((*body->integrator->ops.getparameters)(body));
