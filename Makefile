@@ -5,6 +5,7 @@
 #   PETSC_DIR, PETSC_ARCH   your own PETSc, 3.21 or newer, instead of the private build
 #   DEBUG=1                 unoptimised, in build/debug          ASAN=1   address and undefined-behaviour checks, in build/asan
 #   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
+#   PREFIX=/usr/local       where `make install` puts program, library and headers; DESTDIR=stage puts them under a stage
 
 cores := $(shell nproc)
 
@@ -51,12 +52,14 @@ endif
 
 WARNINGS := -Wall -Wextra -Werror
 CFLAGS   := -std=c11 -fopenmp-simd $(WARNINGS) $(OPTIMISE)
+# One set of objects serves the program and the shared library, which shows nothing but what is PETSC_EXTERN
+SHARED   := -fPIC -fvisibility=hidden -fno-semantic-interposition
 # Other people's headers are system headers: their warnings are not ours to mend.
 CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(PETSC_CC_INCLUDES) $(shell pkg-config --cflags jansson muparser netcdf-mpi))) \
             -isystem $(shell pkg-config --variable=prefix netcdf-mpi)/include # Debian's netcdf-mpi.pc does not name it
 LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lm
 
-members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c'))))
+members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c' -not -path '*/tutorials/*'))))
 units     := $(patsubst %.c,$(BUILD)/%,$(filter-out tests/scaling/% tests/library/%,$(sort $(shell find tests -name '*.c'))))
 c_files    = $(shell find src include tests -name '*.[ch]')
 sh_files  := .setup/common .setup/debian .setup/petsc .setup/python .ci/run
@@ -77,11 +80,37 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg
 
-.PHONY: all run paper test test-all bench docs format lint force
+# The version is written once, in include/impakt/version.h
+version_of = $(shell sed -n 's/^\#define IMPAKT_VERSION_$(1) *\([0-9]*\)$$/\1/p' include/impakt/version.h)
+interface := $(call version_of,MAJOR).$(call version_of,MINOR)
+version   := $(interface).$(call version_of,SUBMINOR)
+PREFIX    ?= /usr/local
+prefix    := $(abspath $(PREFIX))
+stage      = $(DESTDIR)$(prefix)
+# What a plain C compiler has to be told of PETSc, and of MPI where PETSc's own compiler is a wrapper that knows it
+mpi_flags  = $(shell $(CC) -show 2>/dev/null)
+pc_cflags  = $(filter-out -I/usr/include,$(PETSC_CC_INCLUDES)) $(filter -I%,$(mpi_flags))
+pc_libs    = -Wl,-rpath,$(PETSC_ROOT)/lib -L$(PETSC_ROOT)/lib -lpetsc $(filter -L% -l% -Wl%,$(mpi_flags)) -lm
+
+.PHONY: all run paper test test-all bench docs format lint install force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units))
 
 all: $(BUILD)/impakt ## the program, build/impakt (the default)
+
+install: $(BUILD)/impakt $(BUILD)/libimpakt.so ## program, shared library, headers and impakt.pc, below PREFIX
+	@mkdir -p $(stage)/bin $(stage)/lib/pkgconfig $(stage)/include/impakt/private
+	install -m 755 $(BUILD)/impakt $(stage)/bin
+	install -m 755 $(BUILD)/libimpakt.so $(stage)/lib/libimpakt.so.$(version)
+	ln -sf libimpakt.so.$(version) $(stage)/lib/libimpakt.so.$(interface)
+	ln -sf libimpakt.so.$(interface) $(stage)/lib/libimpakt.so
+	install -m 644 include/impakt.h $(stage)/include
+	install -m 644 $(wildcard include/impakt/*.h) $(stage)/include/impakt
+	install -m 644 $(wildcard include/impakt/private/*.h) $(stage)/include/impakt/private
+	@echo "impakt.pc to $(stage)/lib/pkgconfig"
+	@printf '%s\n' 'prefix=$(prefix)' 'libdir=$${prefix}/lib' 'includedir=$${prefix}/include' '' 'Name: Impakt' \
+	  'Description: dynamic contact by the Schwarz alternating method' 'Version: $(version)' 'Cflags: -I$${includedir} $(pc_cflags)' \
+	  'Libs: -L$${libdir} -Wl,-rpath,$${libdir} -limpakt $(pc_libs)' >$(stage)/lib/pkgconfig/impakt.pc
 
 run: $(BUILD)/impakt ## the paper's high-speed impact: results table, history, summary and plot in out/
 	@mkdir -p out
@@ -125,11 +154,17 @@ $(BUILD)/libimpakt.a: $(members) $(BUILD)/members
 	@rm -f $@
 	$(call say,AR) ar rcs $@ $(members)
 
+# PETSc goes into the library by name alone: a static one would be there twice, in the library and in the programs that use it
+$(BUILD)/libimpakt.so: $(members) $(BUILD)/members
+	@ls $(PETSC_ROOT)/lib/libpetsc.* | grep -q '\.\(so\|dylib\)' || { echo "make install needs a shared PETSc; $(PETSC_ROOT) has a static one" >&2; exit 1; }
+	$(call say,LINK) $(CC) $(CFLAGS) $(SHARED) -shared -Wl,-soname,libimpakt.so.$(interface) -Wl,-z,defs -o $@ $(members) $(LIBS)
+
 $(units): %: %.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
 
-$(addsuffix .o,$(units)): CPPFLAGS += -Itests/support
-$(BUILD)/src/sys/help.o: CPPFLAGS += -DIMPAKT_OPTIMISATION='"$(OPTIMISE)"' # -version tells
+$(addsuffix .o,$(units)): private CPPFLAGS += -Itests/support
+$(BUILD)/src/sys/help.o: private CPPFLAGS += -DIMPAKT_OPTIMISATION='"$(OPTIMISE)"' # -version tells
+$(members): private CFLAGS += $(SHARED)
 
 $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
 	@mkdir -p $(@D)
@@ -144,7 +179,7 @@ $(BUILD)/yardstick_hex8: tests/scaling/yardstick_hex8.c
 	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
 
 # What the objects and the library were made with: rewritten only when that changes
-$(BUILD)/flags: text = $(CC) $(CPPFLAGS) $(CFLAGS) $(LIBS)
+$(BUILD)/flags: text = $(CC) $(CPPFLAGS) $(CFLAGS) $(LIBS), $(SHARED)
 $(BUILD)/members: text = $(members)
 $(BUILD)/flags $(BUILD)/members: force
 	@mkdir -p $(@D); echo '$(text)' | cmp -s - $@ || echo '$(text)' >$@

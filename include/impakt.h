@@ -3,6 +3,7 @@
 #include <impakt/body.h>
 #include <impakt/contact.h>
 #include <impakt/controller.h>
+#include <impakt/element.h>
 #include <impakt/exact.h>
 #include <impakt/expression.h>
 #include <impakt/io.h>
@@ -12,12 +13,14 @@
 #include <impakt/trace.h>
 #include <impakt/transfer.h>
 #include <impakt/tssecondorder.h>
-
-#define IMPAKT_VERSION "0.1.0"
+#include <impakt/version.h>
 
 PETSC_EXTERN PetscErrorCode ImpaktInitialize(int *, char ***);
+PETSC_EXTERN PetscErrorCode ImpaktInitialized(PetscBool *);
 PETSC_EXTERN PetscErrorCode ImpaktFinalize(void);
 PETSC_EXTERN PetscErrorCode ImpaktRegisterAll(void);
+PETSC_EXTERN PetscErrorCode ImpaktGetVersion(char[], size_t);
+PETSC_EXTERN PetscErrorCode ImpaktGetVersionNumber(PetscInt *, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ImpaktCheckOptions(PetscInt, const char *const[]);
 PETSC_EXTERN PetscErrorCode ImpaktPrintOptions(void);
 PETSC_EXTERN int            ImpaktExit(PetscErrorCode);

@@ -11,8 +11,9 @@ import pytest
 from cases import DEFAULTS
 from conftest import IMPAKT, MPIEXEC, ROOT
 
-# Beside `make`: what is not run here, and not looked up either, as it needs a network or root
-ELSEWHERE = ("git clone ", "apt ", "apt-get ", "sudo apt", "cd ")
+# Beside `make`: what is not run here, and not looked up either, as it needs a network, root, or the installed library, with which
+# tests/library makes and runs programs
+ELSEWHERE = ("git clone ", "apt ", "apt-get ", "sudo apt", "cd ", "cc ", "./")
 READMES = [path.relative_to(ROOT) for path in sorted(ROOT.rglob("README.md")) if path.relative_to(ROOT).parts[0] not in ("build", "out", ".git")]
 TEXT = {str(path): (ROOT / path).read_text() for path in READMES}
 PLACEHOLDERS = ("file.h5", "file.json")  # in the table of options

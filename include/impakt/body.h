@@ -1,6 +1,7 @@
 /* One subdomain: a second-order TS on a DMPlex, with its material, mass and state. */
 #pragma once
 #include <impakt/expression.h>
+#include <impakt/element.h>
 #include <impakt/material.h>
 #include <petscts.h>
 #include <petscdmplex.h>
@@ -52,13 +53,32 @@ typedef struct {
   PetscBool loaded;              /* whether forces from outside, held displacements or obstacles act at all */
 } BodyMeasures;
 
-PETSC_EXTERN PetscErrorCode BodyRegisterAll(void);
+PETSC_EXTERN PetscErrorCode BodyInitializePackage(void);
 PETSC_EXTERN PetscErrorCode BodyFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode BodyCreate(MPI_Comm, const char[], Body *);
+PETSC_EXTERN PetscErrorCode BodySetDM(Body, DM);
+PETSC_EXTERN PetscErrorCode BodySetMaterial(Body, Material);
+PETSC_EXTERN PetscErrorCode BodySetCrossSection(Body, PetscReal);
+PETSC_EXTERN PetscErrorCode BodySetThickness(Body, PetscReal);
+PETSC_EXTERN PetscErrorCode BodySetPlaneStress(Body, PetscBool);
+PETSC_EXTERN PetscErrorCode BodySetTSType(Body, TSType);
+PETSC_EXTERN PetscErrorCode BodySetTimeStep(Body, PetscReal);
+PETSC_EXTERN PetscErrorCode BodySetMassType(Body, BodyMassType);
+PETSC_EXTERN PetscErrorCode BodyGetMassType(Body, BodyMassType *);
+PETSC_EXTERN PetscErrorCode BodySetMassRedistribute(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodySetFromOptions(Body);
+PETSC_EXTERN PetscErrorCode BodySetUpDiscretization(Body);
 PETSC_EXTERN PetscErrorCode BodySetUp(Body);
 PETSC_EXTERN PetscErrorCode BodyView(Body, PetscViewer);
+PETSC_EXTERN PetscErrorCode BodyViewFromOptions(Body, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode BodyDestroy(Body *);
+
+PETSC_EXTERN PetscErrorCode BodyAddDisplacement(Body, const char[], const char[]);
+PETSC_EXTERN PetscErrorCode BodyAddTraction(Body, const char[], const char[]);
+PETSC_EXTERN PetscErrorCode BodyAddBodyForce(Body, const char[]);
+PETSC_EXTERN PetscErrorCode BodySetGravity(Body, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodySetInitialDisplacement(Body, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodySetInitialVelocity(Body, const PetscReal[]);
 
 PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *),

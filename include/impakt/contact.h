@@ -41,7 +41,7 @@ typedef const char *ContactType;
 
    Level: beginner
 
-.seealso: `ContactSetFromOptions()`
+.seealso: `ContactSetLaw()`
 E*/
 typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
@@ -59,7 +59,7 @@ PETSC_EXTERN const char *const ContactLaws[];
    Note:
    The condition on the rate is the persistency condition of Laursen and Chawla 1997.
 
-.seealso: `ContactSetFromOptions()`
+.seealso: `ContactSetConstraint()`
 E*/
 typedef enum { CONTACT_CONSTRAINT_GAP, CONTACT_CONSTRAINT_GAP_RATE, CONTACT_CONSTRAINT_BOTH } ContactConstraint;
 PETSC_EXTERN const char *const ContactConstraints[];
@@ -74,7 +74,7 @@ PETSC_EXTERN const char *const ContactConstraints[];
 
    Level: intermediate
 
-.seealso: `ContactSetFromOptions()`
+.seealso: `ContactSetStabilization()`
 E*/
 typedef enum { CONTACT_STABILIZATION_NONE, CONTACT_STABILIZATION_NAIVE, CONTACT_STABILIZATION_CONTACT_STABILIZED } ContactStabilization;
 PETSC_EXTERN const char *const ContactStabilizations[];
@@ -134,20 +134,35 @@ typedef struct {
 S*/
 typedef struct _n_ContactFields *ContactFields;
 
-PETSC_EXTERN PetscErrorCode ContactRegisterAll(void);
+PETSC_EXTERN PetscErrorCode ContactInitializePackage(void);
 PETSC_EXTERN PetscErrorCode ContactFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ContactRegister(const char[], PetscErrorCode (*)(Contact));
+PETSC_EXTERN PetscErrorCode ContactRegisterAll(void);
 PETSC_EXTERN PetscErrorCode ContactCreate(MPI_Comm, Contact *);
 PETSC_EXTERN PetscErrorCode ContactSetBodies(Contact, PetscInt, const Body[]);
+PETSC_EXTERN PetscErrorCode ContactAddObstacle(Contact, Obstacle);
 PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
 PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
+PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, ContactLaw);
+PETSC_EXTERN PetscErrorCode ContactGetLaw(Contact, ContactLaw *);
+PETSC_EXTERN PetscErrorCode ContactSetConstraint(Contact, ContactConstraint);
+PETSC_EXTERN PetscErrorCode ContactGetConstraint(Contact, ContactConstraint *);
+PETSC_EXTERN PetscErrorCode ContactSetStabilization(Contact, ContactStabilization);
+PETSC_EXTERN PetscErrorCode ContactGetStabilization(Contact, ContactStabilization *);
+PETSC_EXTERN PetscErrorCode ContactSetFacing(Contact, PetscBool);
+PETSC_EXTERN PetscErrorCode ContactGetFacing(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactSetBounds(Contact, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGetBounds(Contact, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
 PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
 PETSC_EXTERN PetscErrorCode ContactStep(Contact);
 PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
+PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
 
 PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);

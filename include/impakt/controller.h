@@ -38,13 +38,17 @@ typedef struct {
 
 typedef PetscErrorCode ControllerMonitorFn(Controller, const ControllerFrame *, void *);
 
-PETSC_EXTERN PetscErrorCode ControllerRegisterAll(void);
+PETSC_EXTERN PetscErrorCode ControllerInitializePackage(void);
+PETSC_EXTERN PetscErrorCode ControllerFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ControllerCreate(MPI_Comm, Controller *);
+PETSC_EXTERN PetscErrorCode ControllerAddBody(Controller, Body);
+PETSC_EXTERN PetscErrorCode ControllerSetTimes(Controller, PetscReal, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode ControllerSetFromOptions(Controller);
 PETSC_EXTERN PetscErrorCode ControllerSetUp(Controller);
 PETSC_EXTERN PetscErrorCode ControllerMonitorSet(Controller, ControllerMonitorFn *, void *, PetscErrorCode (*)(void **));
 PETSC_EXTERN PetscErrorCode ControllerSolve(Controller);
 PETSC_EXTERN PetscErrorCode ControllerView(Controller, PetscViewer);
+PETSC_EXTERN PetscErrorCode ControllerViewFromOptions(Controller, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ControllerDestroy(Controller *);
 PETSC_EXTERN PetscErrorCode ControllerGetBodies(Controller, PetscInt *, const Body *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetContact(Controller, Contact *);

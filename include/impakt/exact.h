@@ -13,7 +13,9 @@
 
 .seealso: `ExactCreate()`, `ExactEvaluate()`, `ExactMonitor()`, `ExactType`
 S*/
-typedef struct _n_Exact *Exact;
+typedef struct _p_Exact *Exact;
+
+PETSC_EXTERN PetscClassId EXACT_CLASSID;
 
 /*J
    ExactType - kind of exact solution
@@ -77,7 +79,10 @@ typedef struct {
   ExactBodyErrors bodies[2]; /* on the Dirichlet side, and its partner */
 } ExactErrors;
 
+PETSC_EXTERN PetscErrorCode      ExactInitializePackage(void);
+PETSC_EXTERN PetscErrorCode      ExactFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode      ExactCreate(Controller, ExactType, Exact *);
+PETSC_EXTERN PetscErrorCode      ExactGetType(Exact, ExactType *);
 PETSC_EXTERN PetscErrorCode      ExactEvaluate(Exact, PetscInt, PetscReal, ExactSolution *);
 PETSC_EXTERN PetscErrorCode      ExactGetTimes(Exact, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode      ExactGetForce(Exact, PetscReal *);
@@ -85,4 +90,6 @@ PETSC_EXTERN PetscErrorCode      ExactGetImpulse(Exact, PetscReal *);
 PETSC_EXTERN PetscErrorCode      ExactGetBodies(Exact, const char *[]);
 PETSC_EXTERN ControllerMonitorFn ExactMonitor;
 PETSC_EXTERN PetscErrorCode      ExactGetErrors(Exact, ExactErrors *);
+PETSC_EXTERN PetscErrorCode      ExactView(Exact, PetscViewer);
+PETSC_EXTERN PetscErrorCode      ExactViewFromOptions(Exact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode      ExactDestroy(Exact *);

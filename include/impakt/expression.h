@@ -1,6 +1,6 @@
 /* Functions of place and time that users write in options. */
 #pragma once
-#include <petscsys.h>
+#include <petscviewer.h>
 
 /*S
    Expression - a formula in x, y, z, t (and, on surfaces, the outward unit normal nx, ny, nz), or a table in t
@@ -9,7 +9,9 @@
 
 .seealso: `ExpressionCreate()`, `ExpressionEvaluate()`
 S*/
-typedef struct _n_Expression *Expression;
+typedef struct _p_Expression *Expression;
+
+PETSC_EXTERN PetscClassId EXPRESSION_CLASSID;
 
 /* What a formula may refer to */
 typedef struct {
@@ -18,6 +20,8 @@ typedef struct {
   PetscReal t;    /* s */
 } ExpressionPoint;
 
+PETSC_EXTERN PetscErrorCode ExpressionInitializePackage(void);
+PETSC_EXTERN PetscErrorCode ExpressionFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ExpressionCreate(MPI_Comm, const char[], const char[], Expression *);
 PETSC_EXTERN PetscErrorCode ExpressionEvaluate(Expression, const ExpressionPoint *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ExpressionEvaluateRates(Expression, const ExpressionPoint *, PetscReal, PetscReal, PetscReal[]);
@@ -25,6 +29,9 @@ PETSC_EXTERN PetscErrorCode ExpressionIsConstant(Expression, PetscBool *, PetscR
 PETSC_EXTERN PetscErrorCode ExpressionIsSteady(Expression, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionIsUniform(Expression, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionUsesNormal(Expression, PetscBool *);
+PETSC_EXTERN PetscErrorCode ExpressionGetText(Expression, const char *[]);
+PETSC_EXTERN PetscErrorCode ExpressionView(Expression, PetscViewer);
+PETSC_EXTERN PetscErrorCode ExpressionViewFromOptions(Expression, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ExpressionDestroy(Expression *);
 PETSC_EXTERN PetscErrorCode ExpressionListCreate(MPI_Comm, const char[], const char[], PetscInt, PetscBool, Expression[]);
 PETSC_EXTERN PetscErrorCode ExpressionListCount(const char[], PetscInt *);

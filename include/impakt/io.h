@@ -1,6 +1,6 @@
 /* What a run leaves behind: history, summary, results table. */
 #pragma once
-#include <impakt/controller.h>
+#include <impakt/exact.h>
 
 /*S
    Output - the files that a run writes and the table that it prints
@@ -12,9 +12,35 @@
 
 .seealso: `OutputCreate()`, `OutputSetFromOptions()`, `OutputReport()`
 S*/
-typedef struct _n_Output *Output;
+typedef struct _p_Output *Output;
 
+PETSC_EXTERN PetscClassId OUTPUT_CLASSID;
+
+/*E
+   OutputPrecision - of the numbers in a file of fields
+
+   Values:
++ `OUTPUT_SINGLE` - 4 bytes, about 7 digits
+- `OUTPUT_DOUBLE` - 8 bytes, about 16 digits
+
+   Level: intermediate
+
+.seealso: `OutputSetFields()`
+E*/
+typedef enum { OUTPUT_SINGLE, OUTPUT_DOUBLE } OutputPrecision;
+PETSC_EXTERN const char *const OutputPrecisions[];
+
+PETSC_EXTERN PetscErrorCode OutputInitializePackage(void);
+PETSC_EXTERN PetscErrorCode OutputFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode OutputCreate(Controller, Output *);
+PETSC_EXTERN PetscErrorCode OutputSetExact(Output, ExactType);
+PETSC_EXTERN PetscErrorCode OutputGetExact(Output, Exact *);
+PETSC_EXTERN PetscErrorCode OutputSetExactDisplacement(Output, Body, const char[]);
+PETSC_EXTERN PetscErrorCode OutputSetSummary(Output, const char[]);
+PETSC_EXTERN PetscErrorCode OutputSetHistory(Output, const char[]);
+PETSC_EXTERN PetscErrorCode OutputSetFields(Output, const char[], PetscInt, OutputPrecision);
 PETSC_EXTERN PetscErrorCode OutputSetFromOptions(Output);
 PETSC_EXTERN PetscErrorCode OutputReport(Output);
+PETSC_EXTERN PetscErrorCode OutputView(Output, PetscViewer);
+PETSC_EXTERN PetscErrorCode OutputViewFromOptions(Output, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode OutputDestroy(Output *);

@@ -55,17 +55,27 @@ typedef struct {
 
 PETSC_EXTERN PetscClassId MATERIAL_CLASSID;
 
+PETSC_EXTERN PetscErrorCode MaterialInitializePackage(void);
+PETSC_EXTERN PetscErrorCode MaterialFinalizePackage(void);
+PETSC_EXTERN PetscErrorCode MaterialRegister(const char[], PetscErrorCode (*)(Material));
+PETSC_EXTERN PetscErrorCode MaterialRegisterAll(void);
+
 PETSC_EXTERN PetscErrorCode MaterialCreate(MPI_Comm, Material *);
 PETSC_EXTERN PetscErrorCode MaterialSetOptionsPrefix(Material, const char[]);
 PETSC_EXTERN PetscErrorCode MaterialSetType(Material, MaterialType);
-PETSC_EXTERN PetscErrorCode MaterialSetFromOptions(Material);
-PETSC_EXTERN PetscErrorCode MaterialView(Material, PetscViewer);
-PETSC_EXTERN PetscErrorCode MaterialDestroy(Material *);
-PETSC_EXTERN PetscErrorCode MaterialRegister(const char[], PetscErrorCode (*)(Material));
-PETSC_EXTERN PetscErrorCode MaterialRegisterAll(void);
-PETSC_EXTERN PetscErrorCode MaterialFinalizePackage(void);
-
+PETSC_EXTERN PetscErrorCode MaterialGetType(Material, MaterialType *);
+PETSC_EXTERN PetscErrorCode MaterialSetDensity(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialGetDensity(Material, PetscReal *);
+PETSC_EXTERN PetscErrorCode MaterialSetYoungsModulus(Material, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialGetYoungsModulus(Material, PetscReal *);
+PETSC_EXTERN PetscErrorCode MaterialSetPoissonsRatio(Material, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialGetPoissonsRatio(Material, PetscReal *);
+PETSC_EXTERN PetscErrorCode MaterialSetFromOptions(Material);
+PETSC_EXTERN PetscErrorCode MaterialSetUp(Material);
+PETSC_EXTERN PetscErrorCode MaterialView(Material, PetscViewer);
+PETSC_EXTERN PetscErrorCode MaterialViewFromOptions(Material, PetscObject, const char[]);
+PETSC_EXTERN PetscErrorCode MaterialDestroy(Material *);
+
 PETSC_EXTERN PetscErrorCode MaterialGetUniaxialModulus(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialIsLinear(Material, PetscBool *);
 PETSC_EXTERN PetscErrorCode MaterialGetWaveModulus(Material, PetscReal *);

@@ -1,15 +1,17 @@
 /* A rigid thing without a mesh that bodies may touch. */
 #pragma once
-#include <petscsys.h>
+#include <petscviewer.h>
 
 /*S
    Obstacle - a rigid plane, sphere or cylinder that does not move
 
    Level: beginner
 
-.seealso: `ObstacleCreateFromOptions()`, `ObstacleGetGap()`
+.seealso: `ObstacleCreate()`, `ObstacleSetPlane()`, `ObstacleGetGap()`, `ContactAddObstacle()`
 S*/
-typedef struct _n_Obstacle *Obstacle;
+typedef struct _p_Obstacle *Obstacle;
+
+PETSC_EXTERN PetscClassId OBSTACLE_CLASSID;
 
 /*E
    ObstacleType - shape of an obstacle
@@ -26,7 +28,18 @@ E*/
 typedef enum { OBSTACLE_PLANE, OBSTACLE_SPHERE, OBSTACLE_CYLINDER } ObstacleType;
 PETSC_EXTERN const char *const ObstacleTypes[];
 
+PETSC_EXTERN PetscErrorCode ObstacleInitializePackage(void);
+PETSC_EXTERN PetscErrorCode ObstacleFinalizePackage(void);
+PETSC_EXTERN PetscErrorCode ObstacleCreate(MPI_Comm, const char[], Obstacle *);
 PETSC_EXTERN PetscErrorCode ObstacleCreateFromOptions(MPI_Comm, const char[], Obstacle *);
+PETSC_EXTERN PetscErrorCode ObstacleSetPlane(Obstacle, const PetscReal[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode ObstacleSetSphere(Obstacle, const PetscReal[], PetscReal);
+PETSC_EXTERN PetscErrorCode ObstacleSetCylinder(Obstacle, const PetscReal[], const PetscReal[], PetscReal);
+PETSC_EXTERN PetscErrorCode ObstacleSetFromOptions(Obstacle);
+PETSC_EXTERN PetscErrorCode ObstacleSetUp(Obstacle);
+PETSC_EXTERN PetscErrorCode ObstacleGetType(Obstacle, ObstacleType *);
 PETSC_EXTERN PetscErrorCode ObstacleGetGap(Obstacle, const PetscReal[], PetscReal *, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetName(Obstacle, const char *[]);
+PETSC_EXTERN PetscErrorCode ObstacleView(Obstacle, PetscViewer);
+PETSC_EXTERN PetscErrorCode ObstacleViewFromOptions(Obstacle, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ObstacleDestroy(Obstacle *);

@@ -10,7 +10,9 @@
 
 .seealso: `SurfaceCreate()`, `SurfaceUpdate()`, `Transfer`
 S*/
-typedef struct _n_Surface *Surface;
+typedef struct _p_Surface *Surface;
+
+PETSC_EXTERN PetscClassId SURFACE_CLASSID;
 
 /*S
    SurfaceData - what a rank has of a surface; arrays are owned by the `Surface` and are not to be changed
@@ -40,9 +42,13 @@ typedef struct {
   PetscReal *face_areas;                /* per face [m^2, m or 1] */
 } SurfaceData;
 
+PETSC_EXTERN PetscErrorCode SurfaceInitializePackage(void);
+PETSC_EXTERN PetscErrorCode SurfaceFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscBool, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
+PETSC_EXTERN PetscErrorCode SurfaceView(Surface, PetscViewer);
+PETSC_EXTERN PetscErrorCode SurfaceViewFromOptions(Surface, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode SurfaceDestroy(Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceGetData(Surface, const SurfaceData **);
 PETSC_EXTERN PetscErrorCode SurfaceGetVertices(Surface, PetscInt *, const PetscInt *[]);

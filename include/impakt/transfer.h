@@ -15,7 +15,9 @@
 
 .seealso: `TransferCreate()`, `TransferUpdate()`, `TransferGetRows()`, `TransferSetValues()`
 S*/
-typedef struct _n_Transfer *Transfer;
+typedef struct _p_Transfer *Transfer;
+
+PETSC_EXTERN PetscClassId TRANSFER_CLASSID;
 
 /*S
    TransferRows - the rows of the Dirichlet nodes that this rank owns; arrays are owned by the `Transfer`, and valid until it is
@@ -55,6 +57,8 @@ typedef struct {
   PetscInt64 segments;   /* pairs of faces that lie opposite, in the last build */
 } TransferCounts;
 
+PETSC_EXTERN PetscErrorCode TransferInitializePackage(void);
+PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
@@ -63,4 +67,6 @@ PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, PetscInt, PetscInt, Mat, Mat);
 PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);
 PETSC_EXTERN PetscErrorCode TransferGetCounts(Transfer, TransferCounts *);
+PETSC_EXTERN PetscErrorCode TransferView(Transfer, PetscViewer);
+PETSC_EXTERN PetscErrorCode TransferViewFromOptions(Transfer, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode TransferDestroy(Transfer *);

@@ -9,5 +9,7 @@ typedef PetscErrorCode TSCentralDifferenceFn(TS, PetscReal, Vec, Vec, Vec, void 
 
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, void *);
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS, Vec);
+PETSC_EXTERN PetscErrorCode TSSecondOrderInitializePackage(void);
+PETSC_EXTERN PetscErrorCode TSSecondOrderFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderRegisterAll(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderSetState(TS, PetscReal, PetscReal, PetscInt);

@@ -1,28 +1,9 @@
 /* The class and its time loop. */
 #include "controllerimpl.h"
-#include <sys/names.h>
 #include <sys/resource.h>
 
-PetscClassId CONTROLLER_CLASSID = 0;
-
 /*@
-  ControllerRegisterAll - registers the class
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `Controller`, `ImpaktInitialize()`
-@*/
-PetscErrorCode ControllerRegisterAll(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscClassIdRegister("Controller", &CONTROLLER_CLASSID));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerCreate - creates a simulation, whose times, bodies and contact come from options
+  ControllerCreate - creates a simulation without bodies
 
   Collective
 
@@ -34,94 +15,16 @@ PetscErrorCode ControllerRegisterAll(void)
 
   Level: beginner
 
-.seealso: `Controller`, `ControllerSetFromOptions()`, `ControllerSetUp()`, `ControllerSolve()`
+.seealso: `Controller`, `ControllerAddBody()`, `ControllerSetTimes()`, `ControllerSetFromOptions()`, `ControllerSetUp()`,
+          `ControllerSolve()`
 @*/
 PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
 {
   PetscFunctionBegin;
+  PetscAssertPointer(controller, 2);
+  PetscCall(ControllerInitializePackage());
   PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm,
                               ControllerDestroy, ControllerView));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateBodies(Controller controller)
-{
-  MPI_Comm  comm = PetscObjectComm((PetscObject)controller);
-  char    **names;
-  PetscInt  n;
-  PetscBool set, same;
-
-  PetscFunctionBegin;
-  PetscCall(NamesRead(NULL, "-bodies", &n, &names, &set));
-  PetscCheck(
-      set && n, comm, PETSC_ERR_USER_INPUT,
-      "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
-  controller->n_bodies = n;
-  PetscCall(PetscCalloc1(n, &controller->bodies));
-  for (PetscInt b = 0; b < n; b++) PetscCall(BodyCreate(comm, names[b], &controller->bodies[b]));
-  PetscCall(NamesDestroy(n, &names));
-  for (PetscInt b = 0; b < n; b++) {
-    for (PetscInt other = 0; other < b; other++) {
-      PetscCall(PetscStrcmp(((PetscObject)controller->bodies[b])->name, ((PetscObject)controller->bodies[other])->name, &same));
-      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-bodies names '%s' twice", ((PetscObject)controller->bodies[b])->name);
-    }
-    PetscCall(BodySetFromOptions(controller->bodies[b]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerSetFromOptions - reads times, bodies and contact from the options
-
-  Collective
-
-  Input Parameter:
-. controller - the `Controller`
-
-  Options Database Keys:
-+ -bodies a,b         - names of the bodies; options of body a begin with -a_
-. -time_start t       - [s], default 0
-. -time_end t         - [s]; the run ends with the first controller step that reaches it
-. -time_step dt       - controller step, at whose ends all bodies are synchronised [s]
-. -monitor_interval n - a line on the terminal every n controller steps, 0 (default) for none
-- -progress           - a progress bar on standard error, default where that is a terminal
-
-  Level: beginner
-
-.seealso: `Controller`, `BodySetFromOptions()`, `ContactSetFromOptions()`
-@*/
-PetscErrorCode ControllerSetFromOptions(Controller controller)
-{
-  MPI_Comm       comm = PetscObjectComm((PetscObject)controller);
-  PetscBool      set_end, set_step;
-  PetscReal      quotient;
-  PetscLogDouble begin, end;
-
-  PetscFunctionBegin;
-  PetscCall(PetscTime(&begin));
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscObjectOptionsBegin((PetscObject)controller);
-  PetscCall(PetscOptionsReal("-time_start", "Start time [s]", "", controller->time_start, &controller->time_start, NULL));
-  PetscCall(PetscOptionsReal("-time_end", "End time [s]", "", controller->time_end, &controller->time_end, &set_end));
-  PetscCall(PetscOptionsReal("-time_step", "Controller step [s]", "", controller->time_step, &controller->time_step, &set_step));
-  PetscOptionsEnd();
-  PetscCall(ControllerSetUpTerminal(controller));
-  PetscCall(CreateBodies(controller));
-  PetscCheck(set_end && set_step, comm, PETSC_ERR_USER_INPUT, "-time_end and -time_step are needed, in s");
-  PetscCheck(controller->time_step > 0, comm, PETSC_ERR_USER_INPUT, "-time_step %g s must be positive", (double)controller->time_step);
-  PetscCheck(controller->time_end > controller->time_start, comm, PETSC_ERR_USER_INPUT,
-             "-time_end %g s must be later than -time_start %g s", (double)controller->time_end, (double)controller->time_start);
-  quotient = (controller->time_end - controller->time_start) / controller->time_step;
-  PetscCheck(quotient < MOST_STEPS, comm, PETSC_ERR_USER_INPUT, "-time_step %g s is too small for %g s of simulated time",
-             (double)controller->time_step, (double)(controller->time_end - controller->time_start));
-  controller->steps = (PetscInt)PetscCeilReal(quotient * (1 - STEPS_ROUND_OFF) - STEPS_FLOOR);
-  for (PetscInt b = 0; b < controller->n_bodies; b++)
-    PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
-  PetscCall(ContactCreate(comm, &controller->contact));
-  PetscCall(ContactSetBodies(controller->contact, controller->n_bodies, controller->bodies));
-  PetscCall(ContactSetFromOptions(controller->contact));
-  PetscCall(PetscTime(&end));
-  controller->setup_seconds = end - begin;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,16 +42,21 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
 @*/
 PetscErrorCode ControllerSetUp(Controller controller)
 {
+  MPI_Comm       comm = PetscObjectComm((PetscObject)controller);
   PetscLogDouble begin, end;
   PetscInt       n_pairs, n = controller->n_bodies;
+  Contact        contact;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   if (controller->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(controller->contact, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE,
-             "Call ControllerSetFromOptions() first");
+  PetscCheck(n, comm, PETSC_ERR_ARG_WRONGSTATE, "There are no bodies: call ControllerAddBody() or ControllerSetFromOptions() first");
+  PetscCheck(controller->time_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE,
+             "There are no times: call ControllerSetTimes() or ControllerSetFromOptions() first");
   PetscCall(PetscTime(&begin));
-  PetscCall(ContactSetUp(controller->contact));
+  for (PetscInt b = 0; b < n; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ContactSetUp(contact));
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
   PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
                          &controller->contact_velocities, n_pairs, &controller->pair_states));
@@ -162,6 +70,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(PetscTime(&end));
   controller->setup_seconds += end - begin;
   controller->setup = PETSC_TRUE;
+  PetscCall(ControllerViewFromOptions(controller, NULL, "-controller_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -214,21 +123,53 @@ PetscErrorCode ControllerSolve(Controller controller)
 
   Input Parameters:
 + controller - the `Controller`, set up
-- viewer     - an ASCII viewer
+- viewer     - an ASCII viewer, `NULL` for standard output
 
   Level: beginner
 
-.seealso: `Controller`
+.seealso: `Controller`, `ControllerViewFromOptions()`
 @*/
 PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
 {
+  PetscBool ascii;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)controller), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(controller->setup, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE, "Call ControllerSetUp() first");
   PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g s, %" PetscInt_FMT " controller steps of %g s\n", (double)controller->time_start,
                                    (double)(controller->time_start + controller->steps * controller->time_step), controller->steps,
                                    (double)controller->time_step));
   for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodyView(controller->bodies[b], viewer));
   PetscCall(ContactView(controller->contact, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerViewFromOptions - prints times, bodies and contact where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ controller - the `Controller`, set up
+. object     - has the prefix of the option, `NULL` for the controller
+- name       - the option
+
+  Options Database Key:
+. -controller_view - print them at the end of the set-up
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode ControllerViewFromOptions(Controller controller, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)controller, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,81 +203,6 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree5(c->measures, c->has_obstacle, c->contact_positions, c->contact_velocities, c->pair_states));
   PetscCall(PetscHeaderDestroy(controller));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-  ControllerGetBodies - the bodies
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`
-
-  Output Parameters:
-+ n      - their number
-- bodies - the bodies, owned by the controller
-
-  Level: intermediate
-
-.seealso: `Controller`
-@*/
-PetscErrorCode ControllerGetBodies(Controller controller, PetscInt *n, const Body *bodies[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  if (n) *n = controller->n_bodies;
-  if (bodies) *bodies = controller->bodies;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerGetContact - the contact problem
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`
-
-  Output Parameter:
-. contact - the `Contact`, owned by the controller
-
-  Level: intermediate
-
-.seealso: `Controller`
-@*/
-PetscErrorCode ControllerGetContact(Controller controller, Contact *contact)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  *contact = controller->contact;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerGetTimes - start, controller step and number of steps
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`
-
-  Output Parameters:
-+ start - start time [s], or `NULL`
-. step  - controller step [s], or `NULL`
-- steps - number of controller steps, or `NULL`
-
-  Level: intermediate
-
-.seealso: `Controller`
-@*/
-PetscErrorCode ControllerGetTimes(Controller controller, PetscReal *start, PetscReal *step, PetscInt *steps)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  if (start) *start = controller->time_start;
-  if (step) *step = controller->time_step;
-  if (steps) *steps = controller->steps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

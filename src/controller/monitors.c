@@ -20,6 +20,7 @@ PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCheck(monitor, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_NULL, "The monitor is no function");
   PetscCheck(controller->n_monitors < MAX_MONITORS, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
              "Too many monitors, at most %d", MAX_MONITORS);
   controller->monitor[controller->n_monitors]           = monitor;

@@ -1,9 +1,8 @@
 /* Two-node bar along a line: linear displacement, uniaxial stress. */
 #include <impakt/private/elementimpl.h>
-#include <sys/simd.h>
+#include <impakt/private/simd.h>
 
 typedef struct {
-  PetscReal        cross_section; /* m^2 */
   PetscBool        linear;
   const PetscReal *coordinates;    /* of the rank's nodes; owned by the body */
   PetscReal       *inverse_length; /* of the coordinate of the second node less that of the first, so it may be negative [1/m] */
@@ -14,24 +13,18 @@ typedef struct {
 /* Shape functions at the two Gauss points, (1 +- 1 / sqrt 3) / 2 */
 static const PetscReal shape[4] = {0.78867513459481288225, 0.21132486540518711775, 0.21132486540518711775, 0.78867513459481288225};
 
-static PetscErrorCode ElementSetFromOptions_Bar2(Element element, MPI_Comm comm, const char prefix[])
+static PetscErrorCode ElementSetFromOptions_Bar2(Element element)
 {
-  Bar2 *bar = (Bar2 *)element->data;
+  PetscReal area = element->cross_section;
+  PetscBool set;
 
   PetscFunctionBegin;
-  PetscOptionsBegin(comm, prefix, "Bar element", "Element");
-  PetscCall(PetscOptionsReal("-cross_section", "Cross-sectional area [m^2]", "", bar->cross_section, &bar->cross_section, NULL));
+  PetscObjectOptionsBegin((PetscObject)element);
+  PetscCall(PetscOptionsReal("-cross_section", "Cross-sectional area [m^2]", "ElementSetCrossSection", area, &area, &set));
   PetscOptionsEnd();
-  PetscCheck(bar->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive", prefix,
-             (double)bar->cross_section);
-  element->cross_section = bar->cross_section;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementCopyOptions_Bar2(Element element, Element other)
-{
-  PetscFunctionBegin;
-  ((Bar2 *)other->data)->cross_section = ((const Bar2 *)element->data)->cross_section;
+  PetscCheck(area > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area);
+  if (set) PetscCall(ElementSetCrossSection(element, area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -49,7 +42,7 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
     const PetscReal length = coordinates[node[1]] - coordinates[node[0]];
 
     bar->inverse_length[e] = 1 / length;
-    bar->pull_area[e]      = length > 0 ? bar->cross_section : -bar->cross_section;
+    bar->pull_area[e]      = length > 0 ? element->cross_section : -element->cross_section;
     PetscCheck(length != 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "A bar element at x = %g has no length", (double)coordinates[node[0]]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,7 +94,7 @@ static PetscErrorCode ElementEnergy_Bar2(Element element, const PetscScalar u[],
   for (PetscInt e = 0; e < element->count; e++) strain[e] = GetStrain(bar, element->connectivity, e, u);
   PetscCall(MaterialComputeUniaxialEnergy(element->material, element->count, strain, density));
   *energy = 0;
-  for (PetscInt e = 0; e < element->count; e++) *energy += bar->cross_section / PetscAbsReal(bar->inverse_length[e]) * density[e];
+  for (PetscInt e = 0; e < element->count; e++) *energy += element->cross_section / PetscAbsReal(bar->inverse_length[e]) * density[e];
   NoteInverted(element, strain, density);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -114,7 +107,7 @@ static PetscErrorCode ElementStiffness_Bar2(Element element, PetscInt e, const P
 
   PetscFunctionBegin;
   PetscCall(MaterialComputeUniaxialTangent(element->material, 1, &strain, &modulus));
-  k    = modulus * bar->cross_section * PetscAbsReal(bar->inverse_length[e]);
+  k    = modulus * element->cross_section * PetscAbsReal(bar->inverse_length[e]);
   K[0] = K[3] = k;
   K[1] = K[2] = -k;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -167,7 +160,7 @@ static PetscErrorCode ElementPoints_Bar2(Element element, PetscInt e, PetscReal 
   PetscFunctionBegin;
   for (PetscInt g = 0; g < 2; g++) {
     positions[g] = shape[2 * g] * bar->coordinates[nodes[0]] + shape[2 * g + 1] * bar->coordinates[nodes[1]];
-    weights[g]   = 0.5 * bar->cross_section / PetscAbsReal(bar->inverse_length[e]);
+    weights[g]   = 0.5 * element->cross_section / PetscAbsReal(bar->inverse_length[e]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -179,7 +172,7 @@ static PetscErrorCode ElementMass_Bar2(Element element, PetscInt e, PetscScalar 
 
   PetscFunctionBegin;
   PetscCall(MaterialGetDensity(element->material, &density));
-  mass = density * bar->cross_section / PetscAbsReal(bar->inverse_length[e]);
+  mass = density * element->cross_section / PetscAbsReal(bar->inverse_length[e]);
   M[0] = M[3] = mass / 3;
   M[1] = M[2] = mass / 6;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -201,21 +194,19 @@ PetscErrorCode ElementCreate_Bar2(Element element)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&bar));
-  bar->cross_section          = 1;
-  element->data               = bar;
-  element->dim                = 1;
-  element->nodes              = 2;
-  element->n_points           = 2;
-  element->shape              = shape;
-  element->ops.setfromoptions = ElementSetFromOptions_Bar2;
-  element->ops.copyoptions    = ElementCopyOptions_Bar2;
-  element->ops.setup          = ElementSetUp_Bar2;
-  element->ops.internalforce  = ElementInternalForce_Bar2;
-  element->ops.energy         = ElementEnergy_Bar2;
-  element->ops.stress         = ElementStress_Bar2;
-  element->ops.points         = ElementPoints_Bar2;
-  element->ops.stiffness      = ElementStiffness_Bar2;
-  element->ops.mass           = ElementMass_Bar2;
-  element->ops.destroy        = ElementDestroy_Bar2;
+  element->data                = bar;
+  element->dim                 = 1;
+  element->nodes               = 2;
+  element->n_points            = 2;
+  element->shape               = shape;
+  element->ops->setfromoptions = ElementSetFromOptions_Bar2;
+  element->ops->setup          = ElementSetUp_Bar2;
+  element->ops->internalforce  = ElementInternalForce_Bar2;
+  element->ops->energy         = ElementEnergy_Bar2;
+  element->ops->stress         = ElementStress_Bar2;
+  element->ops->points         = ElementPoints_Bar2;
+  element->ops->stiffness      = ElementStiffness_Bar2;
+  element->ops->mass           = ElementMass_Bar2;
+  element->ops->destroy        = ElementDestroy_Bar2;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

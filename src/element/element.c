@@ -1,87 +1,347 @@
+/* The class: creation, shape, material, options, set-up, view, destruction. */
 #include <impakt/private/elementimpl.h>
+#include <sys/names.h>
 
-static PetscFunctionList ElementList = NULL;
+/*@
+  ElementCreate - creates elements without a shape
 
-/* Elements are found by the shape of a mesh cell. */
-PetscErrorCode ElementRegister(DMPolytopeType cell, PetscErrorCode (*create)(Element))
+  Collective
+
+  Input Parameter:
+. comm - communicator
+
+  Output Parameter:
+. element - the `Element`
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetCellType()`, `ElementSetMaterial()`, `ElementSetFromOptions()`, `ElementSetUp()`
+@*/
+PetscErrorCode ElementCreate(MPI_Comm comm, Element *element)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFunctionListAdd(&ElementList, DMPolytopeTypes[cell], create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ElementRegisterAll(void)
-{
-  PetscFunctionBegin;
-  PetscCall(ElementRegister(DM_POLYTOPE_SEGMENT, ElementCreate_Bar2));
-  PetscCall(ElementRegister(DM_POLYTOPE_TRIANGLE, ElementCreate_Tri3));
-  PetscCall(ElementRegister(DM_POLYTOPE_QUADRILATERAL, ElementCreate_Quad4));
-  PetscCall(ElementRegister(DM_POLYTOPE_TETRAHEDRON, ElementCreate_Tet4));
-  PetscCall(ElementRegister(DM_POLYTOPE_HEXAHEDRON, ElementCreate_Hex8));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ElementFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFunctionListDestroy(&ElementList));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Create(PetscErrorCode (*create)(Element), Material material, Element *element)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscNew(element));
-  (*element)->create        = create;
-  (*element)->material      = material;
+  PetscAssertPointer(element, 2);
+  PetscCall(ElementInitializePackage());
+  PetscCall(PetscHeaderCreate(*element, ELEMENT_CLASSID, "Element", "Finite elements", "Element", comm, ElementDestroy, ElementView));
+  (*element)->cell_type     = DM_POLYTOPE_UNKNOWN;
   (*element)->cross_section = 1;
   (*element)->inverted      = -1;
-  PetscCall((*create)(*element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The element for a shape of cell, with its own options (prefix of the body) read. */
-PetscErrorCode ElementCreate(MPI_Comm comm, const char prefix[], DMPolytopeType cell, Material material, Element *element)
+/*@
+  ElementSetOptionsPrefix - sets the prefix of the elements' options
+
+  Logically Collective
+
+  Input Parameters:
++ element - the `Element`
+- prefix  - the prefix, for example `left_`
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetFromOptions()`
+@*/
+PetscErrorCode ElementSetOptionsPrefix(Element element, const char prefix[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)element, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const char *Prefix(Element element)
+{
+  return ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "";
+}
+
+/*@
+  ElementSetCellType - chooses the element by the shape of the mesh cells
+
+  Collective
+
+  Input Parameters:
++ element   - the `Element`
+- cell_type - shape of all cells
+
+  Level: developer
+
+.seealso: `Element`, `ElementRegister()`
+@*/
+PetscErrorCode ElementSetCellType(Element element, DMPolytopeType cell_type)
 {
   PetscErrorCode (*create)(Element);
 
   PetscFunctionBegin;
-  PetscCall(PetscFunctionListFind(ElementList, DMPolytopeTypes[cell], &create));
-  PetscCheck(create, comm, PETSC_ERR_SUP,
-             "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: segment (2-node bar), triangle (3 "
-             "nodes), quad (4 nodes), tetrahedron (4 nodes), hexahedron (8 nodes)",
-             prefix, DMPolytopeTypes[cell]);
-  PetscCall(Create(create, material, element));
-  if ((*element)->ops.setfromoptions) PetscCall((*(*element)->ops.setfromoptions)(*element, comm, prefix));
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscValidLogicalCollectiveEnum(element, cell_type, 2);
+  PetscCheck(!element->setup, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE, "Call before ElementSetUp()");
+  if (element->cell_type == cell_type) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFunctionListFind(ElementList, DMPolytopeTypes[cell_type], &create));
+  if (!create) {
+    char known[1024];
+
+    PetscCall(NamesOfRegistry(ElementList, sizeof(known), known));
+    SETERRQ(PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
+            "The mesh of body -%s has cells of shape '%s', for which there is no element yet; known: %s", Prefix(element),
+            DMPolytopeTypes[cell_type], known);
+  }
+  PetscTryTypeMethod(element, destroy);
+  PetscCall(PetscMemzero(element->ops, sizeof(*element->ops)));
+  element->data      = NULL;
+  element->cell_type = cell_type;
+  PetscCall((*create)(element));
+  PetscCall(PetscObjectChangeTypeName((PetscObject)element, DMPolytopeTypes[cell_type]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One of the same shape with the same options, for other cells or another material; not set up */
-PetscErrorCode ElementCreateLike(Element element, Material material, Element *other)
+/*@
+  ElementGetCellType - the shape of the mesh cells
+
+  Not Collective
+
+  Input Parameter:
+. element - the `Element`
+
+  Output Parameter:
+. cell_type - `DM_POLYTOPE_UNKNOWN` until `ElementSetCellType()`
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetCellType()`
+@*/
+PetscErrorCode ElementGetCellType(Element element, DMPolytopeType *cell_type)
 {
   PetscFunctionBegin;
-  PetscCall(Create(element->create, material, other));
-  (*other)->cross_section = element->cross_section;
-  if (element->ops.copyoptions) PetscCall((*element->ops.copyoptions)(element, *other));
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscAssertPointer(cell_type, 2);
+  *cell_type = element->cell_type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the element its cells (count x nodes local node numbers, in the usual order: VTK's) and the coordinates of the rank's nodes; both
-   are kept by reference. */
+/*@
+  ElementSetMaterial - sets the material of all elements
+
+  Logically Collective
+
+  Input Parameters:
++ element  - the `Element`
+- material - its `Material`, complete
+
+  Level: developer
+
+.seealso: `Element`, `Material`
+@*/
+PetscErrorCode ElementSetMaterial(Element element, Material material)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 2);
+  PetscCheck(!element->setup, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE, "Call before ElementSetUp()");
+  PetscCall(PetscObjectReference((PetscObject)material));
+  PetscCall(MaterialDestroy(&element->material));
+  element->material = material;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementGetMaterial - the material of all elements
+
+  Not Collective
+
+  Input Parameter:
+. element - the `Element`
+
+  Output Parameter:
+. material - its `Material`, owned by the element; `NULL` until there is one
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetMaterial()`
+@*/
+PetscErrorCode ElementGetMaterial(Element element, Material *material)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscAssertPointer(material, 2);
+  *material = element->material;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementSetFromOptions - reads what the elements of a shape take from the options
+
+  Collective
+
+  Input Parameter:
+. element - the `Element`, after `ElementSetCellType()`
+
+  Options Database Keys:
++ -<body>_cross_section A           - of bars [m^2], default 1
+. -<body>_thickness h               - of plane elements [m], default 1
+- -<body>_plane_stress (true|false) - of plane elements, default false
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetThickness()`, `ElementSetPlaneStress()`
+@*/
+PetscErrorCode ElementSetFromOptions(Element element)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscCheck(element->cell_type != DM_POLYTOPE_UNKNOWN, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE,
+             "Call ElementSetCellType() first");
+  PetscTryTypeMethod(element, setfromoptions);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementSetUp - gives the elements their cells
+
+  Not Collective
+
+  Input Parameters:
++ element      - the `Element`, with shape and material
+. count        - number of cells of this rank
+. connectivity - numbers of their nodes among the rank's, in the usual order (VTK's), `count` times the nodes of one cell; kept by
+                 reference
+- coordinates  - of the rank's nodes, as many for each as there are dimensions [m]; kept by reference
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetCellType()`, `ElementSetMaterial()`
+@*/
 PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt connectivity[], const PetscReal coordinates[])
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscCheck(!element->setup, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "The elements have their cells already");
+  PetscCheck(element->cell_type != DM_POLYTOPE_UNKNOWN && element->material, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE,
+             "Call ElementSetCellType() and ElementSetMaterial() first");
+  PetscCheck(!element->cross_section_dim || element->cross_section_dim == element->dim, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
+             "Elements in %" PetscInt_FMT " dimensions have no %s, which has been set to %g", element->dim,
+             element->cross_section_dim == 1 ? "cross-section" : "thickness", (double)element->cross_section);
+  PetscCheck(!element->plane_stress || element->dim == 2, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
+             "Elements in %" PetscInt_FMT " dimensions are not in plane stress", element->dim);
   element->count        = count;
   element->connectivity = connectivity;
-  PetscCall((*element->ops.setup)(element, coordinates));
+  PetscUseTypeMethod(element, setup, coordinates);
+  element->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ElementDuplicate - elements of the same shape and with the same settings, for other cells or another material; not set up
+
+  Not Collective
+
+  Input Parameters:
++ element  - the `Element`
+- material - of the new ones; `NULL`: the same
+
+  Output Parameter:
+. duplicate - the new `Element`, on this rank alone
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetUp()`
+@*/
+PetscErrorCode ElementDuplicate(Element element, Material material, Element *duplicate)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscAssertPointer(duplicate, 3);
+  PetscCall(ElementCreate(PETSC_COMM_SELF, duplicate));
+  PetscCall(ElementSetOptionsPrefix(*duplicate, ((PetscObject)element)->prefix));
+  PetscCall(ElementSetCellType(*duplicate, element->cell_type));
+  PetscCall(ElementSetMaterial(*duplicate, material ? material : element->material));
+  (*duplicate)->cross_section     = element->cross_section;
+  (*duplicate)->cross_section_dim = element->cross_section_dim;
+  (*duplicate)->plane_stress      = element->plane_stress;
+  PetscTryTypeMethod(element, copy, *duplicate);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementView - prints the elements
+
+  Collective
+
+  Input Parameters:
++ element - the `Element`
+- viewer  - an ASCII viewer, `NULL` for standard output
+
+  Level: developer
+
+.seealso: `Element`, `ElementViewFromOptions()`
+@*/
+PetscErrorCode ElementView(Element element, PetscViewer viewer)
+{
+  PetscBool ascii;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)element), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)element, viewer));
+  if (element->dim == 1) PetscCall(PetscViewerASCIIPrintf(viewer, "  cross-section %g m^2\n", (double)element->cross_section));
+  if (element->dim == 2)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  thickness %g m, %s\n", (double)element->cross_section,
+                                     element->plane_stress ? "plane stress" : "plane strain"));
+  PetscTryTypeMethod(element, view, viewer);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementViewFromOptions - prints the elements where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ element - the `Element`
+. object  - has the prefix of the option, `NULL` for the element
+- name    - the option
+
+  Options Database Key:
+. -<body>_element_view - print the elements of a body at its set-up
+
+  Level: developer
+
+.seealso: `Element`, `ElementView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode ElementViewFromOptions(Element element, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)element, object, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementDestroy - frees the elements
+
+  Collective
+
+  Input Parameter:
+. element - the `Element`, set to `NULL`
+
+  Level: developer
+
+.seealso: `Element`, `ElementCreate()`
+@*/
 PetscErrorCode ElementDestroy(Element *element)
 {
   PetscFunctionBegin;
   if (!*element) PetscFunctionReturn(PETSC_SUCCESS);
-  if ((*element)->ops.destroy) PetscCall((*(*element)->ops.destroy)(*element));
-  PetscCall(PetscFree(*element));
+  PetscValidHeaderSpecific(*element, ELEMENT_CLASSID, 1);
+  if (--((PetscObject)*element)->refct > 0) {
+    *element = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscTryTypeMethod(*element, destroy);
+  PetscCall(MaterialDestroy(&(*element)->material));
+  PetscCall(PetscHeaderDestroy(element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,5 @@
 /* Eight-node hexahedron, trilinear, 2 x 2 x 2 Gauss points. Vertices: the lower four counterclockwise seen from above, then the upper. */
-#include "solid.h"
+#include <impakt/private/solid.h>
 
 #define DIM    3
 #define NODES  8
@@ -65,7 +65,7 @@ SIMD_INLINE void ModesOfGradient(const SimdVector d[DIM], const PetscReal xi[DIM
   m[6] += xi[1] * xi[2] * d[0] + xi[2] * xi[0] * d[1] + xi[0] * xi[1] * d[2];
 }
 
-#include "solidloops.h"
+#include <impakt/private/solidloops.h>
 
 static void Shape(const PetscReal xi[], PetscReal N[], PetscReal dN[])
 {

@@ -1,5 +1,5 @@
 /* Four-node quadrilateral, bilinear, 2 x 2 Gauss points. Vertices counterclockwise. */
-#include "solid.h"
+#include <impakt/private/solid.h>
 
 #define DIM    2
 #define NODES  4
@@ -43,7 +43,7 @@ SIMD_INLINE void ModesOfGradient(const SimdVector d[DIM], const PetscReal xi[DIM
   m[2] += xi[1] * d[0] + xi[0] * d[1];
 }
 
-#include "solidloops.h"
+#include <impakt/private/solidloops.h>
 
 static void Shape(const PetscReal xi[], PetscReal N[], PetscReal dN[])
 {

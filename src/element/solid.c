@@ -1,5 +1,5 @@
 /* Solid elements: set-up, and what is found of one element at a time. */
-#include "solid.h"
+#include <impakt/private/solid.h>
 
 /* Below this, times the largest extent of an element to the power of the dimension, a determinant is round-off */
 #define DEGENERATE 1e-14
@@ -111,28 +111,22 @@ static PetscErrorCode CheckElements(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementSetFromOptions_Solid(Element element, MPI_Comm comm, const char prefix[])
+static PetscErrorCode ElementSetFromOptions_Solid(Element element)
 {
-  PetscBool plane_stress = PETSC_FALSE;
+  PetscReal thickness    = element->cross_section;
+  PetscBool plane_stress = element->plane_stress, set;
 
   PetscFunctionBegin;
   if (element->dim == 3) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscOptionsBegin(comm, prefix, "Plane elements", "Element");
-  PetscCall(PetscOptionsReal("-thickness", "Thickness of a plane body [m]", "", element->cross_section, &element->cross_section, NULL));
+  PetscObjectOptionsBegin((PetscObject)element);
+  PetscCall(PetscOptionsReal("-thickness", "Thickness of a plane body [m]", "ElementSetThickness", thickness, &thickness, &set));
   PetscCall(
-      PetscOptionsBool("-plane_stress", "Plane stress, else plane strain", "MaterialSetPlaneStress", plane_stress, &plane_stress, NULL));
+      PetscOptionsBool("-plane_stress", "Plane stress, else plane strain", "ElementSetPlaneStress", plane_stress, &plane_stress, NULL));
   PetscOptionsEnd();
-  PetscCheck(element->cross_section > 0, comm, PETSC_ERR_USER_INPUT, "-%sthickness is %g m; it must be positive", prefix,
-             (double)element->cross_section);
-  PetscCall(MaterialSetPlaneStress(element->material, plane_stress));
-  ((Solid *)element->data)->plane_stress = plane_stress;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementCopyOptions_Solid(Element element, Element other)
-{
-  PetscFunctionBegin;
-  ((Solid *)other->data)->plane_stress = ((const Solid *)element->data)->plane_stress;
+  PetscCheck(thickness > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%sthickness is %g m; it must be positive",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)thickness);
+  if (set) PetscCall(ElementSetThickness(element, thickness));
+  PetscCall(ElementSetPlaneStress(element, plane_stress));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,7 +135,8 @@ static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordi
   Solid *solid = (Solid *)element->data;
 
   PetscFunctionBegin;
-  solid->coordinates = coordinates;
+  solid->coordinates  = coordinates;
+  solid->plane_stress = element->plane_stress;
   PetscCall(MaterialIsLinear(element->material, &solid->linear));
   PetscCall(MaterialSetPlaneStress(element->material, PETSC_FALSE));
   PetscCall(MaterialGetKernels(element->material, &solid->unconstrained));
@@ -273,17 +268,16 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   solid->shape = shape;
   for (PetscInt g = 0; g < shape->n_load_points; g++)
     (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, gradient);
-  element->data               = solid;
-  element->dim                = shape->dim;
-  element->nodes              = shape->nodes;
-  element->n_points           = shape->n_load_points;
-  element->shape              = solid->load_shape;
-  element->ops.setfromoptions = ElementSetFromOptions_Solid;
-  element->ops.copyoptions    = ElementCopyOptions_Solid;
-  element->ops.setup          = ElementSetUp_Solid;
-  element->ops.stiffness      = ElementStiffness_Solid;
-  element->ops.mass           = ElementMass_Solid;
-  element->ops.points         = ElementPoints_Solid;
-  element->ops.destroy        = ElementDestroy_Solid;
+  element->data                = solid;
+  element->dim                 = shape->dim;
+  element->nodes               = shape->nodes;
+  element->n_points            = shape->n_load_points;
+  element->shape               = solid->load_shape;
+  element->ops->setfromoptions = ElementSetFromOptions_Solid;
+  element->ops->setup          = ElementSetUp_Solid;
+  element->ops->stiffness      = ElementStiffness_Solid;
+  element->ops->mass           = ElementMass_Solid;
+  element->ops->points         = ElementPoints_Solid;
+  element->ops->destroy        = ElementDestroy_Solid;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

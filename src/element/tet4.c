@@ -1,5 +1,5 @@
 /* Four-node tetrahedron, linear, one point. Vertices: the first three counterclockwise seen from the fourth. */
-#include "solid.h"
+#include <impakt/private/solid.h>
 
 #define DIM    3
 #define NODES  4
@@ -45,7 +45,7 @@ SIMD_INLINE void ModesOfGradient(const SimdVector d[DIM], const PetscReal xi[DIM
   m[2] += d[2];
 }
 
-#include "solidloops.h"
+#include <impakt/private/solidloops.h>
 
 static void Shape(const PetscReal xi[], PetscReal N[], PetscReal dN[])
 {

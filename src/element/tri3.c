@@ -1,5 +1,5 @@
 /* Three-node triangle, linear, one point. Vertices counterclockwise. */
-#include "solid.h"
+#include <impakt/private/solid.h>
 
 #define DIM    2
 #define NODES  3
@@ -39,7 +39,7 @@ SIMD_INLINE void ModesOfGradient(const SimdVector d[DIM], const PetscReal xi[DIM
   m[1] += d[1];
 }
 
-#include "solidloops.h"
+#include <impakt/private/solidloops.h>
 
 static void Shape(const PetscReal xi[], PetscReal N[], PetscReal dN[])
 {

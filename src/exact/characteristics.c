@@ -258,7 +258,6 @@ PetscErrorCode ExactCreate_Characteristics(Controller controller, Exact exact)
   const ExactBar  *bars = exact->bars;
   MPI_Comm         comm = PetscObjectComm((PetscObject)controller);
   Characteristics *c;
-  PetscErrorCode   error;
   PetscReal        step, length = PetscMax(bars[0].length, bars[1].length);
   PetscInt         steps;
 
@@ -271,16 +270,14 @@ PetscErrorCode ExactCreate_Characteristics(Controller controller, Exact exact)
     c->period[side]    = 2 * bars[side].length * PetscSqrtReal(bars[side].density / bars[side].modulus);
     c->before[side]    = 0.5 * bars[side].velocity;
   }
-  c->end              = exact->start + steps * step;
-  c->time_scale       = PetscMax(PetscAbsReal(exact->start), c->end - exact->start);
-  c->velocity_scale   = bars[0].velocity - bars[1].velocity;
-  c->length_scale     = length + PetscMax(PetscAbsReal(bars[0].upper), PetscAbsReal(bars[1].lower));
-  exact->data         = c;
-  exact->ops.evaluate = ExactEvaluate_Characteristics;
-  exact->ops.destroy  = ExactDestroy_Characteristics;
-  error               = FindEvents(comm, c, bars, exact->start);
-  if (error) PetscCall(ExactDestroy_Characteristics(exact));
-  PetscCall(error);
+  c->end               = exact->start + steps * step;
+  c->time_scale        = PetscMax(PetscAbsReal(exact->start), c->end - exact->start);
+  c->velocity_scale    = bars[0].velocity - bars[1].velocity;
+  c->length_scale      = length + PetscMax(PetscAbsReal(bars[0].upper), PetscAbsReal(bars[1].lower));
+  exact->data          = c;
+  exact->ops->evaluate = ExactEvaluate_Characteristics;
+  exact->ops->destroy  = ExactDestroy_Characteristics;
+  PetscCall(FindEvents(comm, c, bars, exact->start));
   SummariseContact(exact, c);
   PetscCall(FindPeak(exact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -100,6 +100,8 @@ PetscErrorCode ExactGetErrors(Exact exact, ExactErrors *errors)
   const ExactDistance *distance = exact->distance[0];
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(errors, 2);
   errors->contact_position = RelativeNorm(&distance[CONTACT_POSITION]);
   errors->contact_velocity = RelativeNorm(&distance[CONTACT_VELOCITY]);
   errors->contact_force    = RelativeNorm(&distance[CONTACT_FORCE]);

@@ -1,6 +1,11 @@
-/* The class: creation, what all types of solution tell, destruction. */
+/* The class: package, creation, what all types of solution tell, view, destruction. */
 #include "exactimpl.h"
+#include <sys/package.h>
 #include <math.h>
+
+PetscClassId EXACT_CLASSID = 0;
+
+static PetscBool ExactPackageInitialized = PETSC_FALSE;
 
 static const struct {
   ExactType type;
@@ -9,6 +14,41 @@ static const struct {
     {EXACT_IMPACT, ExactCreate_Impact},
     {EXACT_CHARACTERISTICS, ExactCreate_Characteristics},
 };
+
+/*@
+  ExactInitializePackage - registers the class; `ExactCreate()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ExactFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode ExactInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (ExactPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  ExactPackageInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Exact", &EXACT_CLASSID));
+  PetscCall(ImpaktFinishPackage("exact", EXACT_CLASSID, ExactFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExactFinalizePackage - ends the package; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ExactInitializePackage()`
+@*/
+PetscErrorCode ExactFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  ExactPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   ExactCreate - an exact solution for the bodies of a controller, in their initial state
@@ -35,11 +75,16 @@ static const struct {
 @*/
 PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
 {
-  struct _n_Exact e          = {0}; /* on the stack, so that nothing is left to be freed after an error */
-  char            known[256] = "none";
-  PetscInt        found      = -1;
+  MPI_Comm       comm       = PetscObjectComm((PetscObject)controller);
+  char           known[256] = "none";
+  PetscInt       found      = -1;
+  PetscErrorCode error;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(type, 2);
+  PetscAssertPointer(exact, 3);
+  PetscCall(ExactInitializePackage());
   for (PetscInt i = 0; i < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(Types); i++) {
     PetscBool same;
 
@@ -48,14 +93,42 @@ PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
     PetscCall(PetscStrlcat(known, " ", sizeof(known)));
     PetscCall(PetscStrlcat(known, Types[i].type, sizeof(known)));
   }
-  PetscCheck(found >= 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT, "Unknown -exact '%s'; known: %s", type, known);
-  e.type         = Types[found].type;
-  e.last_contact = NAN;
-  PetscCall(ExactSetUpBars(&e, controller));
-  e.last_time = e.start;
-  PetscCall((*Types[found].create)(controller, &e));
-  PetscCall(PetscNew(exact));
-  **exact = e;
+  PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT, "Unknown -exact '%s'; known: %s", type, known);
+  PetscCall(PetscHeaderCreate(*exact, EXACT_CLASSID, "Exact", "Exact solution", "Exact", comm, ExactDestroy, ExactView));
+  PetscCall(PetscObjectChangeTypeName((PetscObject)*exact, Types[found].type));
+  (*exact)->type         = Types[found].type;
+  (*exact)->last_contact = NAN;
+  error                  = ExactSetUpBars(*exact, controller);
+  if (!error) {
+    (*exact)->last_time = (*exact)->start;
+    error               = (*Types[found].create)(controller, *exact);
+  }
+  if (error) (void)ExactDestroy(exact); /* nothing is left to be freed by the caller */
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExactGetType - the kind of exact solution
+
+  Not Collective
+
+  Input Parameter:
+. exact - the `Exact`
+
+  Output Parameter:
+. type - its name
+
+  Level: intermediate
+
+.seealso: `Exact`, `ExactType`
+@*/
+PetscErrorCode ExactGetType(Exact exact, ExactType *type)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(type, 2);
+  *type = exact->type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,7 +152,9 @@ PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
 PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSolution *solution)
 {
   PetscFunctionBegin;
-  PetscCall((*exact->ops.evaluate)(exact, side, time, solution));
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(solution, 4);
+  PetscUseTypeMethod(exact, evaluate, side, time, solution);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,6 +177,9 @@ PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSo
 PetscErrorCode ExactGetTimes(Exact exact, PetscReal *impact, PetscReal *release)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(impact, 2);
+  PetscAssertPointer(release, 3);
   *impact  = exact->impact;
   *release = exact->release;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -125,6 +203,8 @@ PetscErrorCode ExactGetTimes(Exact exact, PetscReal *impact, PetscReal *release)
 PetscErrorCode ExactGetForce(Exact exact, PetscReal *force)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(force, 2);
   *force = exact->force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -147,6 +227,8 @@ PetscErrorCode ExactGetForce(Exact exact, PetscReal *force)
 PetscErrorCode ExactGetImpulse(Exact exact, PetscReal *impulse)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(impulse, 2);
   *impulse = exact->impulse;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,14 +251,70 @@ PetscErrorCode ExactGetImpulse(Exact exact, PetscReal *impulse)
 PetscErrorCode ExactGetBodies(Exact exact, const char *names[])
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(names, 2);
   for (PetscInt side = 0; side < 2; side++) names[side] = exact->bars[side].name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExactView - prints the exact solution in short
+
+  Collective
+
+  Input Parameters:
++ exact  - the `Exact`
+- viewer - an ASCII viewer, `NULL` for standard output
+
+  Level: intermediate
+
+.seealso: `Exact`, `ExactViewFromOptions()`
+@*/
+PetscErrorCode ExactView(Exact exact, PetscViewer viewer)
+{
+  PetscBool ascii;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)exact), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "exact solution (%s): contact of %s and %s from %g to %g s, mean force %g N, impulse %g N s\n",
+                                   exact->type, exact->bars[0].name, exact->bars[1].name, (double)exact->impact, (double)exact->release,
+                                   (double)exact->force, (double)exact->impulse));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExactViewFromOptions - prints the exact solution where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ exact  - the `Exact`
+. object - has the prefix of the option, `NULL` for the solution
+- name   - the option
+
+  Options Database Key:
+. -exact_view - print the solution that a run is compared with
+
+  Level: intermediate
+
+.seealso: `Exact`, `ExactView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode ExactViewFromOptions(Exact exact, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)exact, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
   ExactDestroy - frees the solution
 
-  Not Collective
+  Collective
 
   Input Parameter:
 . exact - the `Exact`, set to `NULL`
@@ -189,7 +327,12 @@ PetscErrorCode ExactDestroy(Exact *exact)
 {
   PetscFunctionBegin;
   if (!*exact) PetscFunctionReturn(PETSC_SUCCESS);
-  if ((*exact)->ops.destroy) PetscCall((*(*exact)->ops.destroy)(*exact));
-  PetscCall(PetscFree(*exact));
+  PetscValidHeaderSpecific(*exact, EXACT_CLASSID, 1);
+  if (--((PetscObject)*exact)->refct > 0) {
+    *exact = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscTryTypeMethod(*exact, destroy);
+  PetscCall(PetscHeaderDestroy(exact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,13 +1,14 @@
 /* What the exact solutions share. Private to src/exact. */
 #pragma once
 #include <impakt/exact.h>
+#include <petsc/private/petscimpl.h>
 
 #define EXACT_QUANTITIES 6 /* members of ExactSolution */
 
-typedef struct {
+struct _ExactOps {
   PetscErrorCode (*evaluate)(Exact, PetscInt, PetscReal, ExactSolution *);
   PetscErrorCode (*destroy)(Exact);
-} ExactOps;
+};
 
 /* A bar in its initial state, along the contact normal */
 typedef struct {
@@ -24,9 +25,9 @@ typedef struct {
   PetscReal error_square, worst; /* the same of the errors */
 } ExactDistance;
 
-struct _n_Exact {
+struct _p_Exact {
+  PETSCHEADER(struct _ExactOps);
   ExactType type;
-  ExactOps  ops;
   void     *data; /* what the type keeps */
   /* the problem */
   PetscInt  body[2];         /* the bars on the Dirichlet and the Neumann side, among the controller's bodies */

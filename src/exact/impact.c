@@ -71,12 +71,12 @@ PetscErrorCode ExactCreate_Impact(Controller controller, Exact exact)
   PetscCall(CheckEqual(comm, bars, "uniaxial modulus", "Pa", bars[0].modulus, bars[1].modulus));
   PetscCall(CheckEqual(comm, bars, "length", "m", bars[0].length, bars[1].length));
   PetscCall(CheckEqual(comm, bars, "mass", "kg", bars[0].mass, bars[1].mass));
-  area                = bars[0].mass / (bars[0].density * bars[0].length);
-  exact->turn         = exact->impact + bars[0].length * PetscSqrtReal(bars[0].density / bars[0].modulus);
-  exact->release      = exact->turn + (exact->turn - exact->impact);
-  exact->peak         = 0.5 * bars[0].mass * PetscSqr(Speed(exact));
-  exact->force        = Speed(exact) * PetscSqrtReal(bars[0].modulus * bars[0].density) * area;
-  exact->impulse      = exact->force * (exact->release - exact->impact);
-  exact->ops.evaluate = ExactEvaluate_Impact;
+  area                 = bars[0].mass / (bars[0].density * bars[0].length);
+  exact->turn          = exact->impact + bars[0].length * PetscSqrtReal(bars[0].density / bars[0].modulus);
+  exact->release       = exact->turn + (exact->turn - exact->impact);
+  exact->peak          = 0.5 * bars[0].mass * PetscSqr(Speed(exact));
+  exact->force         = Speed(exact) * PetscSqrtReal(bars[0].modulus * bars[0].density) * area;
+  exact->impulse       = exact->force * (exact->release - exact->impact);
+  exact->ops->evaluate = ExactEvaluate_Impact;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

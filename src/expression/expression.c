@@ -1,5 +1,45 @@
-/* The class: a formula, a table or a number, and what it depends on. */
+/* The class: a formula, a table or a number, and what it depends on; and the package of the class. */
 #include "expressionimpl.h"
+#include <sys/package.h>
+
+PetscClassId EXPRESSION_CLASSID = 0;
+
+static PetscBool ExpressionPackageInitialized = PETSC_FALSE;
+
+/*@
+  ExpressionInitializePackage - registers the class; `ExpressionCreate()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ExpressionFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode ExpressionInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (ExpressionPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  ExpressionPackageInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Expression", &EXPRESSION_CLASSID));
+  PetscCall(ImpaktFinishPackage("expression", EXPRESSION_CLASSID, ExpressionFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExpressionFinalizePackage - ends the package; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ExpressionInitializePackage()`
+@*/
+PetscErrorCode ExpressionFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  ExpressionPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* Finds out what the text of an expression is, and reads or parses it */
 static PetscErrorCode Fill(Expression expression, MPI_Comm comm)
@@ -55,7 +95,12 @@ PetscErrorCode ExpressionCreate(MPI_Comm comm, const char option[], const char t
   PetscErrorCode error;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(expression));
+  PetscAssertPointer(option, 2);
+  PetscAssertPointer(text, 3);
+  PetscAssertPointer(expression, 4);
+  PetscCall(ExpressionInitializePackage());
+  PetscCall(PetscHeaderCreate(*expression, EXPRESSION_CLASSID, "Expression", "Formula or table", "Expression", comm, ExpressionDestroy,
+                              ExpressionView));
   PetscCall(PetscStrallocpy(option, &(*expression)->option));
   PetscCall(PetscStrallocpy(text, &(*expression)->text));
   error = Fill(*expression, comm);
@@ -83,6 +128,9 @@ PetscErrorCode ExpressionCreate(MPI_Comm comm, const char option[], const char t
 PetscErrorCode ExpressionEvaluate(Expression expression, const ExpressionPoint *point, PetscReal *value)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscAssertPointer(point, 2);
+  PetscAssertPointer(value, 3);
   if (expression->parser) {
     expression->point = *point;
     PetscCall(ExpressionEvaluateFormula(expression, value));
@@ -113,6 +161,8 @@ PetscErrorCode ExpressionEvaluate(Expression expression, const ExpressionPoint *
 PetscErrorCode ExpressionIsConstant(Expression expression, PetscBool *constant, PetscReal *value)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscAssertPointer(constant, 2);
   *constant = (PetscBool) !(expression->uses_position || expression->uses_normal || expression->uses_time);
   if (*constant && value) *value = expression->constant;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,6 +186,8 @@ PetscErrorCode ExpressionIsConstant(Expression expression, PetscBool *constant, 
 PetscErrorCode ExpressionIsSteady(Expression expression, PetscBool *steady)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscAssertPointer(steady, 2);
   *steady = (PetscBool)!expression->uses_time;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,6 +210,8 @@ PetscErrorCode ExpressionIsSteady(Expression expression, PetscBool *steady)
 PetscErrorCode ExpressionIsUniform(Expression expression, PetscBool *uniform)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscAssertPointer(uniform, 2);
   *uniform = (PetscBool) !(expression->uses_position || expression->uses_normal);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -180,7 +234,81 @@ PetscErrorCode ExpressionIsUniform(Expression expression, PetscBool *uniform)
 PetscErrorCode ExpressionUsesNormal(Expression expression, PetscBool *normal)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscAssertPointer(normal, 2);
   *normal = expression->uses_normal;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ExpressionGetText - what the user has written
+
+  Not Collective
+
+  Input Parameter:
+. expression - the `Expression`
+
+  Output Parameter:
+. text - a formula, or `table:` and the name of a file; owned by the expression
+
+  Level: intermediate
+
+.seealso: `Expression`, `ExpressionCreate()`
+@*/
+PetscErrorCode ExpressionGetText(Expression expression, const char *text[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscAssertPointer(text, 2);
+  *text = expression->text;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExpressionView - prints an expression
+
+  Collective
+
+  Input Parameters:
++ expression - the `Expression`
+- viewer     - an ASCII viewer, `NULL` for standard output
+
+  Level: developer
+
+.seealso: `Expression`, `ExpressionViewFromOptions()`
+@*/
+PetscErrorCode ExpressionView(Expression expression, PetscViewer viewer)
+{
+  PetscBool ascii;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)expression), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (ascii) PetscCall(PetscViewerASCIIPrintf(viewer, "%s: %s\n", expression->option, expression->text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExpressionViewFromOptions - prints an expression where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ expression - the `Expression`
+. object     - has the prefix of the option, `NULL` for none
+- name       - the option
+
+  Level: developer
+
+.seealso: `Expression`, `ExpressionView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode ExpressionViewFromOptions(Expression expression, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)expression, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,10 +328,15 @@ PetscErrorCode ExpressionDestroy(Expression *expression)
 {
   PetscFunctionBegin;
   if (!*expression) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*expression, EXPRESSION_CLASSID, 1);
+  if (--((PetscObject)*expression)->refct > 0) {
+    *expression = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ExpressionDestroyParser(*expression));
   PetscCall(TableDestroy(&(*expression)->table));
   PetscCall(PetscFree((*expression)->option));
   PetscCall(PetscFree((*expression)->text));
-  PetscCall(PetscFree(*expression));
+  PetscCall(PetscHeaderDestroy(expression));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,10 +1,12 @@
 /* What formulas and tables share. Private to src/expression. */
 #pragma once
 #include <impakt/expression.h>
+#include <petsc/private/petscimpl.h>
 
 typedef struct _n_Table *Table;
 
-struct _n_Expression {
+struct _p_Expression {
+  PETSCHEADER(int);
   char           *option, *text;
   PetscBool       uses_position, uses_normal, uses_time;
   PetscReal       constant; /* the value, if it uses none of these */

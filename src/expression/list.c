@@ -88,6 +88,9 @@ PetscErrorCode ExpressionListCreate(MPI_Comm comm, const char option[], const ch
   PetscInt found;
 
   PetscFunctionBegin;
+  PetscAssertPointer(option, 2);
+  PetscAssertPointer(text, 3);
+  PetscAssertPointer(list, 6);
   PetscCall(ExpressionListCount(text, &found));
   for (PetscInt i = 0; i < n; i++) list[i] = NULL;
   PetscCheck(found == n, comm, PETSC_ERR_USER_INPUT,

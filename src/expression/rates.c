@@ -65,6 +65,7 @@ PetscErrorCode ExpressionEvaluateRates(Expression expression, const ExpressionPo
   PetscReal       offset = RATE_POINTS / 2, weights[3][RATE_POINTS];
 
   PetscFunctionBegin;
+  PetscAssertPointer(values, 5);
   PetscCall(ExpressionEvaluate(expression, point, &values[0]));
   values[1] = values[2] = 0;
   if (!expression->uses_time) PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,13 +1,15 @@
 /* Private to src/interface. */
 #pragma once
 #include <petscsf.h>
+#include <petsc/private/petscimpl.h>
 #include <impakt/transfer.h>
 
 /* Two faces count as facing each other if the cosine of the angle between their outward normals is below this, which means an angle of more
    than 96 degrees: faces at right angles cannot push each other */
 #define OPPOSED -0.1
 
-struct _n_Surface {
+struct _p_Surface {
+  PETSCHEADER(int);
   DM           dm;
   SurfaceData  data;
   PetscInt    *points;      /* per face: point of the DMPLEX, ascending */
@@ -62,7 +64,8 @@ typedef struct {
   PetscSF    vectors;              /* from their owners to these nodes, three numbers for each */
 } RowSet;
 
-struct _n_Transfer {
+struct _p_Transfer {
+  PETSCHEADER(int);
   MPI_Comm       comm;
   Surface        dirichlet, neumann; /* neumann NULL: an obstacle */
   Obstacle       obstacle;

@@ -1,14 +1,14 @@
-/* Rigid obstacles: their shape by the options, and how far a point is from them. */
+/* Rigid obstacles: the class, its shapes, and how far a point is from one. */
 #include <impakt/obstacle.h>
-#include <petscoptions.h>
-#include <petscviewer.h>
+#include <petsc/private/petscimpl.h>
 
 /* An axis whose first component is above this is crossed with the second unit vector, not the first, which it may be parallel to */
 #define NEARLY_PARALLEL 0.9
 
-struct _n_Obstacle {
-  char        *name;
+struct _p_Obstacle {
+  PETSCHEADER(int);
   ObstacleType type;
+  PetscBool    complete;     /* it has a shape and a place */
   PetscReal    point[3];     /* of the plane or axis, or the centre [m] */
   PetscReal    direction[3]; /* outward normal of the plane, or axis of the cylinder; zero for a sphere */
   PetscReal    radius;       /* of the sphere or the cylinder [m] */
@@ -16,90 +16,195 @@ struct _n_Obstacle {
 
 const char *const ObstacleTypes[] = {"plane", "sphere", "cylinder", "ObstacleType", "OBSTACLE_", NULL};
 
-/* Three numbers, or as many as there are dimensions; the rest is 0 */
-static PetscErrorCode GetVector(MPI_Comm comm, const char prefix[], const char option[], const char meaning[], PetscReal values[],
-                                PetscBool *set)
-{
-  PetscInt n = 3;
-
-  PetscFunctionBegin;
-  for (PetscInt d = 0; d < 3; d++) values[d] = 0;
-  PetscCall(PetscOptionsGetRealArray(NULL, prefix, option, values, &n, set));
-  PetscCheck(*set, comm, PETSC_ERR_USER_INPUT, "-%s%s is missing: %s, as x,y,z", prefix, option + 1, meaning);
-  for (PetscInt d = 0; d < n; d++)
-    PetscCheck(PetscIsNormalReal(values[d]) || values[d] == 0, comm, PETSC_ERR_USER_INPUT, "-%s%s: %g is no number for %s", prefix,
-               option + 1, (double)values[d], meaning);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode GetUnitVector(MPI_Comm comm, const char prefix[], const char option[], const char meaning[], PetscReal values[])
-{
-  PetscReal length = 0;
-  PetscBool set;
-
-  PetscFunctionBegin;
-  PetscCall(GetVector(comm, prefix, option, meaning, values, &set));
-  for (PetscInt d = 0; d < 3; d++) length += values[d] * values[d];
-  PetscCheck(length > 0, comm, PETSC_ERR_USER_INPUT, "-%s%s is the zero vector; it must have a direction", prefix, option + 1);
-  for (PetscInt d = 0; d < 3; d++) values[d] /= PetscSqrtReal(length);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-  ObstacleCreateFromOptions - a rigid obstacle as the options describe it
+/*@
+  ObstacleCreate - creates an obstacle without a shape
 
   Collective
 
   Input Parameters:
 + comm - communicator
-- name - its name, which is the prefix of its options
+- name - its name; options begin with `-<name>_`
 
   Output Parameter:
 . obstacle - the `Obstacle`
 
+  Level: beginner
+
+.seealso: `Obstacle`, `ObstacleSetPlane()`, `ObstacleSetSphere()`, `ObstacleSetCylinder()`, `ObstacleSetFromOptions()`,
+          `ContactAddObstacle()`
+@*/
+PetscErrorCode ObstacleCreate(MPI_Comm comm, const char name[], Obstacle *obstacle)
+{
+  char prefix[256];
+
+  PetscFunctionBegin;
+  PetscAssertPointer(name, 2);
+  PetscAssertPointer(obstacle, 3);
+  PetscCall(ObstacleInitializePackage());
+  PetscCall(PetscHeaderCreate(*obstacle, OBSTACLE_CLASSID, "Obstacle", "Rigid obstacle", "Obstacle", comm, ObstacleDestroy, ObstacleView));
+  PetscCall(PetscObjectSetName((PetscObject)*obstacle, name));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*obstacle, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* `direction` and `radius` may be missing */
+static PetscErrorCode SetShape(Obstacle obstacle, ObstacleType type, const PetscReal point[], const PetscReal direction[], PetscReal radius)
+{
+  PetscReal length = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 3; d++) {
+    obstacle->point[d]     = point[d];
+    obstacle->direction[d] = direction ? direction[d] : 0;
+    length += PetscSqr(obstacle->direction[d]);
+  }
+  PetscCheck(!direction || (length > 0 && length < PETSC_MAX_REAL), PetscObjectComm((PetscObject)obstacle), PETSC_ERR_ARG_OUTOFRANGE,
+             "Obstacle '%s': a vector of length %g has no direction", ((PetscObject)obstacle)->name, (double)PetscSqrtReal(length));
+  PetscCheck(type == OBSTACLE_PLANE || (radius > 0 && radius < PETSC_MAX_REAL), PetscObjectComm((PetscObject)obstacle),
+             PETSC_ERR_ARG_OUTOFRANGE, "Obstacle '%s': a radius of %g m must be positive", ((PetscObject)obstacle)->name, (double)radius);
+  for (PetscInt d = 0; d < 3 && direction; d++) obstacle->direction[d] /= PetscSqrtReal(length);
+  obstacle->type     = type;
+  obstacle->radius   = radius;
+  obstacle->complete = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ObstacleSetPlane - makes an obstacle everything behind a plane
+
+  Logically Collective
+
+  Input Parameters:
++ obstacle - the `Obstacle`
+. point    - a point of the plane, 3 numbers [m]
+- normal   - away from what is solid, 3 numbers, of any length
+
   Options Database Keys:
-+ -<name>_obstacle_type (plane|sphere|cylinder) - its shape
-. -<name>_point x,y,z                           - a point of the plane or of the cylinder's axis, or the centre of the sphere [m]
-. -<name>_normal x,y,z                          - of the plane, away from what is solid
-. -<name>_axis x,y,z                            - of the cylinder; across the plane (0,0,1) by default, a disc in two dimensions
-- -<name>_radius r                              - of the sphere or cylinder [m]
++ -<obstacle>_obstacle_type plane - the shape
+. -<obstacle>_point x,y,z         - the point
+- -<obstacle>_normal x,y,z        - the normal
+
+  Level: beginner
+
+.seealso: `Obstacle`, `ObstacleSetSphere()`, `ObstacleSetCylinder()`
+@*/
+PetscErrorCode ObstacleSetPlane(Obstacle obstacle, const PetscReal point[], const PetscReal normal[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscAssertPointer(point, 2);
+  PetscAssertPointer(normal, 3);
+  PetscCall(SetShape(obstacle, OBSTACLE_PLANE, point, normal, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ObstacleSetSphere - makes an obstacle a solid sphere
+
+  Logically Collective
+
+  Input Parameters:
++ obstacle - the `Obstacle`
+. centre   - 3 numbers [m]
+- radius   - [m]
+
+  Options Database Keys:
++ -<obstacle>_obstacle_type sphere - the shape
+. -<obstacle>_point x,y,z          - the centre
+- -<obstacle>_radius r             - the radius
+
+  Level: beginner
+
+.seealso: `Obstacle`, `ObstacleSetPlane()`, `ObstacleSetCylinder()`
+@*/
+PetscErrorCode ObstacleSetSphere(Obstacle obstacle, const PetscReal centre[], PetscReal radius)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscAssertPointer(centre, 2);
+  PetscValidLogicalCollectiveReal(obstacle, radius, 3);
+  PetscCall(SetShape(obstacle, OBSTACLE_SPHERE, centre, NULL, radius));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ObstacleSetCylinder - makes an obstacle a solid cylinder without ends; a disc in two dimensions, where its axis is across the plane
+
+  Logically Collective
+
+  Input Parameters:
++ obstacle - the `Obstacle`
+. point    - a point of the axis, 3 numbers [m]
+. axis     - 3 numbers, of any length; `NULL` for 0,0,1
+- radius   - [m]
+
+  Options Database Keys:
++ -<obstacle>_obstacle_type cylinder - the shape
+. -<obstacle>_point x,y,z            - the point
+. -<obstacle>_axis x,y,z             - the axis
+- -<obstacle>_radius r               - the radius
+
+  Level: beginner
+
+.seealso: `Obstacle`, `ObstacleSetPlane()`, `ObstacleSetSphere()`
+@*/
+PetscErrorCode ObstacleSetCylinder(Obstacle obstacle, const PetscReal point[], const PetscReal axis[], PetscReal radius)
+{
+  const PetscReal across[3] = {0, 0, 1};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscAssertPointer(point, 2);
+  PetscValidLogicalCollectiveReal(obstacle, radius, 4);
+  PetscCall(SetShape(obstacle, OBSTACLE_CYLINDER, point, axis ? axis : across, radius));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ObstacleSetUp - makes sure that an obstacle has a shape
+
+  Logically Collective
+
+  Input Parameter:
+. obstacle - the `Obstacle`
+
+  Level: developer
+
+.seealso: `Obstacle`, `ContactAddObstacle()`
+@*/
+PetscErrorCode ObstacleSetUp(Obstacle obstacle)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscCheck(obstacle->complete, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_ARG_WRONGSTATE,
+             "Obstacle '%s' has no shape: call ObstacleSetPlane(), ObstacleSetSphere(), ObstacleSetCylinder() or ObstacleSetFromOptions()",
+             ((PetscObject)obstacle)->name);
+  PetscCall(ObstacleViewFromOptions(obstacle, NULL, "-obstacle_view"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ObstacleGetType - the shape of an obstacle
+
+  Not Collective
+
+  Input Parameter:
+. obstacle - the `Obstacle`
+
+  Output Parameter:
+. type - the `ObstacleType`
 
   Level: intermediate
 
-.seealso: `Obstacle`, `ObstacleGetGap()`
+.seealso: `Obstacle`
 @*/
-PetscErrorCode ObstacleCreateFromOptions(MPI_Comm comm, const char name[], Obstacle *obstacle)
+PetscErrorCode ObstacleGetType(Obstacle obstacle, ObstacleType *type)
 {
-  char      prefix[256];
-  PetscEnum type = 0;
-  PetscBool set;
-  Obstacle  o;
-
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
-  PetscCall(PetscNew(obstacle));
-  o = *obstacle;
-  PetscCall(PetscStrallocpy(name, &o->name));
-  PetscCall(PetscOptionsGetEnum(NULL, prefix, "-obstacle_type", ObstacleTypes, &type, &set));
-  PetscCheck(set, comm, PETSC_ERR_USER_INPUT, "-%sobstacle_type is missing: obstacle '%s' is a plane, a sphere or a cylinder", prefix,
-             name);
-  o->type = (ObstacleType)type;
-  PetscCall(GetVector(comm, prefix, "-point",
-                      o->type == OBSTACLE_SPHERE  ? "the centre of the sphere"
-                      : o->type == OBSTACLE_PLANE ? "a point of the plane"
-                                                  : "a point of the axis",
-                      o->point, &set));
-  if (o->type == OBSTACLE_PLANE) {
-    PetscCall(GetUnitVector(comm, prefix, "-normal", "the outward normal of the plane", o->direction));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscOptionsGetReal(NULL, prefix, "-radius", &o->radius, &set));
-  PetscCheck(set && o->radius > 0 && o->radius < PETSC_MAX_REAL, comm, PETSC_ERR_USER_INPUT,
-             "-%sradius %g m: obstacle '%s' needs a positive radius", prefix, (double)o->radius, name);
-  if (o->type == OBSTACLE_SPHERE) PetscFunctionReturn(PETSC_SUCCESS);
-  o->direction[2] = 1;
-  PetscCall(PetscOptionsHasName(NULL, prefix, "-axis", &set));
-  if (set) PetscCall(GetUnitVector(comm, prefix, "-axis", "the direction of the cylinder", o->direction));
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscAssertPointer(type, 2);
+  *type = obstacle->type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,6 +233,10 @@ PetscErrorCode ObstacleGetGap(Obstacle obstacle, const PetscReal point[], PetscR
   PetscReal along = 0, length = 0;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscAssertPointer(point, 2);
+  PetscAssertPointer(distance, 3);
+  PetscAssertPointer(normal, 4);
   for (PetscInt d = 0; d < 3; d++)
     along += (point[d] - obstacle->point[d]) * obstacle->direction[d]; /* 0 for a sphere, which has no direction */
   if (obstacle->type == OBSTACLE_PLANE) {
@@ -173,27 +282,93 @@ PetscErrorCode ObstacleGetGap(Obstacle obstacle, const PetscReal point[], PetscR
 PetscErrorCode ObstacleGetName(Obstacle obstacle, const char *name[])
 {
   PetscFunctionBegin;
-  *name = obstacle->name;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscAssertPointer(name, 2);
+  *name = ((PetscObject)obstacle)->name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ObstacleView - prints an obstacle
+
+  Collective
+
+  Input Parameters:
++ obstacle - the `Obstacle`
+- viewer   - an ASCII viewer, `NULL` for standard output
+
+  Level: intermediate
+
+.seealso: `Obstacle`, `ObstacleViewFromOptions()`
+@*/
+PetscErrorCode ObstacleView(Obstacle obstacle, PetscViewer viewer)
+{
+  const PetscReal *p = obstacle->point, *n = obstacle->direction;
+  PetscBool        ascii;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)obstacle), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "obstacle %s: %s at (%g, %g, %g) m", ((PetscObject)obstacle)->name,
+                                   obstacle->complete ? ObstacleTypes[obstacle->type] : "no shape", (double)p[0], (double)p[1],
+                                   (double)p[2]));
+  if (obstacle->type != OBSTACLE_SPHERE)
+    PetscCall(PetscViewerASCIIPrintf(viewer, ", %s (%g, %g, %g)", obstacle->type == OBSTACLE_PLANE ? "normal" : "axis", (double)n[0],
+                                     (double)n[1], (double)n[2]));
+  if (obstacle->type != OBSTACLE_PLANE) PetscCall(PetscViewerASCIIPrintf(viewer, ", radius %g m", (double)obstacle->radius));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ObstacleViewFromOptions - prints an obstacle where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ obstacle - the `Obstacle`
+. object   - has the prefix of the option, `NULL` for the obstacle
+- name     - the option
+
+  Options Database Key:
+. -<obstacle>_obstacle_view - print the obstacle when it is added to a contact problem
+
+  Level: intermediate
+
+.seealso: `Obstacle`, `ObstacleView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode ObstacleViewFromOptions(Obstacle obstacle, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)obstacle, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
   ObstacleDestroy - frees an obstacle
 
-  Not Collective
+  Collective
 
   Input Parameter:
 . obstacle - the `Obstacle`, set to `NULL`
 
-  Level: developer
+  Level: beginner
 
-.seealso: `Obstacle`
+.seealso: `Obstacle`, `ObstacleCreate()`
 @*/
 PetscErrorCode ObstacleDestroy(Obstacle *obstacle)
 {
   PetscFunctionBegin;
   if (!*obstacle) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree((*obstacle)->name));
-  PetscCall(PetscFree(*obstacle));
+  PetscValidHeaderSpecific(*obstacle, OBSTACLE_CLASSID, 1);
+  if (--((PetscObject)*obstacle)->refct > 0) {
+    *obstacle = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscHeaderDestroy(obstacle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -258,9 +258,18 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
 {
   PetscSection section;
   PetscBool    all = PETSC_FALSE;
+  const char  *body;
+  char         full[256];
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(surface));
+  PetscValidHeaderSpecific(dm, DM_CLASSID, 1);
+  PetscAssertPointer(surface, 3);
+  PetscCall(SurfaceInitializePackage());
+  PetscCall(PetscHeaderCreate(*surface, SURFACE_CLASSID, "Surface", "Contact surface", "Interface", PetscObjectComm((PetscObject)dm),
+                              SurfaceDestroy, SurfaceView));
+  PetscCall(PetscObjectGetName((PetscObject)dm, &body));
+  PetscCall(PetscSNPrintf(full, sizeof(full), "%s.%s", body, name && name[0] ? name : "all"));
+  PetscCall(PetscObjectSetName((PetscObject)*surface, full));
   PetscCall(PetscObjectReference((PetscObject)dm));
   (*surface)->dm = dm;
   PetscCall(DMGetCoordinateDim(dm, &(*surface)->data.dim));
@@ -287,10 +296,15 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
 {
   PetscFunctionBegin;
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*surface, SURFACE_CLASSID, 1);
+  if (--((PetscObject)*surface)->refct > 0) {
+    *surface = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(SurfaceClearNodes(*surface));
   PetscCall(PetscFree((*surface)->points));
   PetscCall(DMDestroy(&(*surface)->dm));
-  PetscCall(PetscFree(*surface));
+  PetscCall(PetscHeaderDestroy(surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -312,6 +326,8 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
 PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
+  PetscAssertPointer(data, 2);
   *data = &surface->data;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -335,6 +351,9 @@ PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
 PetscErrorCode SurfaceGetVertices(Surface surface, PetscInt *n, const PetscInt *vertices[])
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
+  PetscAssertPointer(n, 2);
+  PetscAssertPointer(vertices, 3);
   *n        = surface->data.n_nodes;
   *vertices = surface->data.vertices;
   PetscFunctionReturn(PETSC_SUCCESS);

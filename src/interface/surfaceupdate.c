@@ -67,6 +67,8 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
   PetscSF      sf = surface->sf, vectors = surface->vectors;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
+  if (u) PetscValidHeaderSpecific(u, VEC_CLASSID, 2);
   PetscCall(UpdatePositions(surface, u));
   PetscCall(PetscArrayzero(data->normals, 3 * data->n_nodes));
   PetscCall(PetscArrayzero(data->areas, data->n_nodes));

@@ -1,5 +1,6 @@
 /* The rows of a transfer as others see them: creation, settings, values for matrices. */
 #include "interfaceimpl.h"
+#include <sys/citations.h>
 
 /* Bounds beyond which rows are built again, unless TransferSetBounds() is called: with this slip bound a half disc that is led round
    another one has a normal force steady to 0.2 % */
@@ -29,7 +30,13 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   Transfer t;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(transfer));
+  PetscValidHeaderSpecific(dirichlet, SURFACE_CLASSID, 2);
+  if (neumann) PetscValidHeaderSpecific(neumann, SURFACE_CLASSID, 3);
+  if (obstacle) PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 4);
+  PetscAssertPointer(transfer, 5);
+  PetscCall(TransferInitializePackage());
+  PetscCall(PetscHeaderCreate(*transfer, TRANSFER_CLASSID, "Transfer", "Rows between contact surfaces", "Interface", comm, TransferDestroy,
+                              TransferView));
   PetscCheck(!neumann != !obstacle, comm, PETSC_ERR_ARG_WRONG, "A transfer is between a surface and either another surface or an obstacle");
   t              = *transfer;
   t->comm        = comm;
@@ -41,6 +48,10 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->slip_bound  = SLIP_BOUND;
   t->angle_bound = ANGLE_BOUND;
   t->guards      = PETSC_TRUE;
+  if (neumann && t->dim > 1) {
+    PetscCall(ImpaktCite(CITE_DUAL_MORTAR));
+    PetscCall(ImpaktCite(CITE_SEGMENTS));
+  }
   if (neumann)
     PetscCheck(t->dim == neumann->data.dim, comm, PETSC_ERR_USER_INPUT,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
@@ -65,10 +76,15 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
 {
   PetscFunctionBegin;
   if (!*transfer) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*transfer, TRANSFER_CLASSID, 1);
+  if (--((PetscObject)*transfer)->refct > 0) {
+    *transfer = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree((*transfer)->column_x));
-  PetscCall(PetscFree(*transfer));
+  PetscCall(PetscHeaderDestroy(transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,6 +105,9 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
 PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal angle)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(transfer, slip, 2);
+  PetscValidLogicalCollectiveReal(transfer, angle, 3);
   PetscCheck(slip >= 0 && angle >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "The bounds of slip, %g, and angle, %g, must not be negative", (double)slip, (double)angle);
   transfer->slip_bound  = slip;
@@ -119,6 +138,8 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
 PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(transfer, guards, 2);
   PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
   transfer->guards = guards;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,6 +165,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   const RowSet *set = &transfer->rows;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   rows->n        = transfer->n;
   rows->dofs     = transfer->dirichlet->data.dofs;
@@ -187,6 +209,7 @@ PetscErrorCode TransferSetValues(Transfer transfer, PetscInt row_begin, PetscInt
   const PetscInt dim = transfer->dim;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   PetscCheck(components == 1 || components == dim, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "A row has 1 or %" PetscInt_FMT " components, not %" PetscInt_FMT, dim, components);
@@ -235,6 +258,7 @@ PetscErrorCode TransferSetNeighbours(Transfer transfer, PetscInt row_begin, Pets
   PetscReal         *gap;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   PetscCall(PetscMalloc2(data->n_nodes, &first, data->n_nodes, &gap));
   for (PetscInt i = 0; i < data->n_owned; i++) {
@@ -279,6 +303,8 @@ PetscErrorCode TransferSetNeighbours(Transfer transfer, PetscInt row_begin, Pets
 PetscErrorCode TransferGetCounts(Transfer transfer, TransferCounts *counts)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscAssertPointer(counts, 2);
   *counts = transfer->counts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* How far bodies are from displacements that the user gives as formulas. */
 #include "deviation.h"
+#include <petsc/private/petscimpl.h>
 #include <math.h>
 
 struct _n_Deviation {
@@ -8,43 +9,44 @@ struct _n_Deviation {
   Expression *exact;  /* three for each body; NULL if none is given */
 };
 
-/*
-  DeviationCreate - reads the exact displacements of bodies from the options
-
-  Collective
-
-  Input Parameter:
-. controller - the `Controller`, set up
-
-  Output Parameter:
-. deviation - the `Deviation`
-
-  Options Database Key:
-. -<body>_exact_displacement ux[,uy,uz] - a function of x, y, z, t for each component [m]
-*/
+/* DeviationCreate - prepares to compare the bodies of a controller, set up; nothing to compare with is given yet. Collective */
 PetscErrorCode DeviationCreate(Controller controller, Deviation *deviation)
 {
-  MPI_Comm  comm = PetscObjectComm((PetscObject)controller);
   Deviation d;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&d));
+  *deviation = d;
   PetscCall(ControllerGetBodies(controller, &d->n_bodies, &d->bodies));
   PetscCall(PetscCalloc1(3 * d->n_bodies, &d->exact));
-  *deviation = d;
-  for (PetscInt b = 0; b < d->n_bodies; b++) {
-    char        text[2048], option[256];
-    const char *prefix;
-    PetscBool   set;
-    PetscInt    dim;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    PetscCall(PetscObjectGetOptionsPrefix((PetscObject)d->bodies[b], &prefix));
-    PetscCall(PetscOptionsGetString(NULL, prefix, "-exact_displacement", text, sizeof(text), &set));
-    if (!set) continue;
-    PetscCall(BodyGetDimension(d->bodies[b], &dim));
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%sexact_displacement", prefix));
-    PetscCall(ExpressionListCreate(comm, option, text, dim, PETSC_FALSE, d->exact + 3 * b));
-  }
+/*
+  DeviationSet - the exact displacement of a body
+
+  Collective
+
+  Input Parameters:
++ deviation - the `Deviation`
+. body      - one of its bodies
+- text      - a function of x, y, z, t for each component, with commas between them [m]
+*/
+PetscErrorCode DeviationSet(Deviation deviation, Body body, const char text[])
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
+  char        option[256];
+  const char *prefix;
+  PetscInt    dim, b = 0;
+
+  PetscFunctionBegin;
+  while (b < deviation->n_bodies && deviation->bodies[b] != body) b++;
+  PetscCheck(b < deviation->n_bodies, comm, PETSC_ERR_ARG_WRONG, "Body '%s' is none of the controller's", ((PetscObject)body)->name);
+  PetscCall(PetscObjectGetOptionsPrefix((PetscObject)body, &prefix));
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%sexact_displacement", prefix));
+  PetscCall(BodyGetDimension(body, &dim));
+  for (PetscInt d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&deviation->exact[3 * b + d]));
+  PetscCall(ExpressionListCreate(comm, option, text, dim, PETSC_FALSE, deviation->exact + 3 * b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,5 +5,6 @@
 typedef struct _n_Deviation *Deviation;
 
 PETSC_INTERN PetscErrorCode DeviationCreate(Controller, Deviation *);
+PETSC_INTERN PetscErrorCode DeviationSet(Deviation, Body, const char[]);
 PETSC_INTERN PetscErrorCode DeviationCompute(Deviation, PetscReal[]);
 PETSC_INTERN PetscErrorCode DeviationDestroy(Deviation *);

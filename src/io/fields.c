@@ -20,7 +20,7 @@ struct _n_Fields {
   MPI_Comm        comm;
   PetscBool       first_rank;
   char            path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], xdmf[PETSC_MAX_PATH_LEN];
-  FieldsPrecision precision;
+  OutputPrecision precision;
   PetscInt        interval, n_frames; /* controller steps from frame to frame; frames of the whole run */
   FieldsMesh      mesh;
   PetscInt        n_fields;                 /* fields of each frame */
@@ -87,7 +87,7 @@ static PetscErrorCode CreateBuffers(Fields fields)
   for (PetscInt i = 0; i < fields->n_fields; i++)
     length = PetscMax(length,
                       (size_t)fields_of_a_frame[i].components * (size_t)(fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).local);
-  PetscCall(PetscMalloc(PetscMax(1, length * (fields->precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float))), &fields->buffer));
+  PetscCall(PetscMalloc(PetscMax(1, length * (fields->precision == OUTPUT_DOUBLE ? sizeof(double) : sizeof(float))), &fields->buffer));
   PetscCall(PetscMalloc1((size_t)mesh->cells.local * 6, &fields->stress));
   if (fields->contact) PetscCall(PetscMalloc1((size_t)mesh->nodes.local * CONTACT_FIELDS_SIZE, &fields->nodal));
   PetscCall(PetscMalloc1(fields->n_frames, &fields->times));
@@ -108,7 +108,7 @@ static PetscErrorCode CreateBuffers(Fields fields)
   Output Parameter:
 . fields - the `Fields`; FieldsMonitor() must be called with it after every step
 */
-PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, FieldsPrecision precision, Fields *fields)
+PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, OutputPrecision precision, Fields *fields)
 {
   const Body *bodies;
   Contact     contact;
@@ -193,7 +193,7 @@ static PetscErrorCode WriteMesh(Fields fields)
 /* Puts number i of a field into the buffer */
 static inline void Store(Fields fields, size_t i, PetscReal value)
 {
-  if (fields->precision == FIELDS_DOUBLE) ((double *)fields->buffer)[i] = value;
+  if (fields->precision == OUTPUT_DOUBLE) ((double *)fields->buffer)[i] = value;
   else ((float *)fields->buffer)[i] = (float)value;
 }
 
@@ -206,7 +206,7 @@ static PetscErrorCode WriteField(Fields fields, FieldsKind kind)
   PetscFunctionBegin;
   PetscCall(FieldsFileGetDataset(kind, fields->written, sizeof(name), name));
   PetscCall(FieldsFileWrite(fields->comm, fields->file, name, field->on_cells ? &fields->mesh.cells : &fields->mesh.nodes,
-                            field->components, fields->precision == FIELDS_DOUBLE ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, fields->buffer));
+                            field->components, fields->precision == OUTPUT_DOUBLE ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, fields->buffer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,7 +5,7 @@
 
 typedef struct _n_Fields *Fields;
 
-PETSC_INTERN PetscErrorCode      FieldsCreate(Controller, const char[], PetscInt, FieldsPrecision, Fields *);
+PETSC_INTERN PetscErrorCode      FieldsCreate(Controller, const char[], PetscInt, OutputPrecision, Fields *);
 PETSC_INTERN ControllerMonitorFn FieldsMonitor;
 PETSC_INTERN PetscErrorCode      FieldsFinish(Fields);
 PETSC_INTERN PetscErrorCode      FieldsGetPaths(Fields, const char *[], const char *[]);

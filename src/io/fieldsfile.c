@@ -19,7 +19,7 @@ const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
     {"contact_active", "1", 1, "Scalar", PETSC_FALSE},
 };
 
-const char *const FieldsPrecisions[] = {"single", "double", "FieldsPrecision", "FIELDS_", NULL};
+const char *const OutputPrecisions[] = {"single", "double", "OutputPrecision", "OUTPUT_", NULL};
 
 /*
   FieldsFileGetSize - bytes of all frames and of the mesh, without HDF5's own few
@@ -32,13 +32,13 @@ const char *const FieldsPrecisions[] = {"single", "double", "FieldsPrecision", "
 . n_frames  - number of frames
 - precision - of their numbers
 */
-PetscInt64 FieldsFileGetSize(const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, FieldsPrecision precision)
+PetscInt64 FieldsFileGetSize(const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, OutputPrecision precision)
 {
   hsize_t numbers = 0;
 
   for (PetscInt i = 0; i < n_fields; i++)
     numbers += (hsize_t)fields_of_a_frame[i].components * (fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).total;
-  return (PetscInt64)(numbers * (hsize_t)n_frames * (precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float)) +
+  return (PetscInt64)(numbers * (hsize_t)n_frames * (precision == OUTPUT_DOUBLE ? sizeof(double) : sizeof(float)) +
                       mesh->nodes.total * 3 * sizeof(double) +
                       (mesh->topology.total * (hsize_t)mesh->cell_nodes + 2 * mesh->cells.total) * sizeof(int));
 }
@@ -160,10 +160,10 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char 
 . precision - of their numbers
 - options   - all options of the run, as `PetscOptionsGetAll()` gives them: they become attributes of the root, beside `version`
 */
-PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, FieldsPrecision precision,
+PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, OutputPrecision precision,
                                 const char options[])
 {
-  const hid_t type = precision == FIELDS_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  const hid_t type = precision == OUTPUT_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
   char        name[64];
   hid_t       file;
 

@@ -1,5 +1,6 @@
 /* An HDF5 file of fields, written by all ranks. */
 #pragma once
+#include <impakt/io.h>
 #include "fieldsmesh.h"
 
 /* The names of frames have four digits, and all datasets of a run are made before its first frame */
@@ -30,11 +31,8 @@ typedef struct {
 
 PETSC_INTERN const FieldsField fields_of_a_frame[FIELDS_PER_FRAME];
 
-typedef enum { FIELDS_SINGLE, FIELDS_DOUBLE } FieldsPrecision;
-PETSC_INTERN const char *const FieldsPrecisions[];
-
-PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, PetscInt, FieldsPrecision);
-PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, PetscInt, PetscInt, FieldsPrecision, const char[]);
+PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, PetscInt, OutputPrecision);
+PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, PetscInt, PetscInt, OutputPrecision, const char[]);
 PETSC_INTERN PetscErrorCode FieldsFileOpen(MPI_Comm, const char[], hid_t *);
 PETSC_INTERN PetscErrorCode FieldsFileWrite(MPI_Comm, hid_t, const char[], const FieldsRows *, PetscInt, hid_t, const void *);
 PETSC_INTERN PetscErrorCode FieldsFileGetDataset(FieldsKind, PetscInt, size_t, char[]);

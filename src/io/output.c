@@ -1,23 +1,47 @@
-/* What a run writes and prints, from its options. */
-#include <impakt/io.h>
-#include <impakt/exact.h>
-#include "deviation.h"
-#include "fields.h"
-#include "history.h"
-#include "outputfile.h"
+/* What a run writes and prints: the class, its options, report and end. */
+#include "outputimpl.h"
 #include "report.h"
 #include "summary.h"
-#include "xdmf.h"
+#include <sys/package.h>
 
-struct _n_Output {
-  Controller controller; /* borrowed */
-  Statistics statistics;
-  History    history;
-  Fields     fields;
-  Exact      exact;
-  Deviation  deviation;
-  char       summary[PETSC_MAX_PATH_LEN]; /* path of the summary; empty if none is written */
-};
+PetscClassId OUTPUT_CLASSID = 0;
+
+static PetscBool OutputPackageInitialized = PETSC_FALSE;
+
+/*@
+  OutputInitializePackage - registers the class; `OutputCreate()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `OutputFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode OutputInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (OutputPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  OutputPackageInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Output", &OUTPUT_CLASSID));
+  PetscCall(ImpaktFinishPackage("output", OUTPUT_CLASSID, OutputFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OutputFinalizePackage - ends the package; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `OutputInitializePackage()`
+@*/
+PetscErrorCode OutputFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  OutputPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   OutputCreate - observes a controller and gathers the figures of its run
@@ -32,59 +56,41 @@ struct _n_Output {
 
   Level: beginner
 
-.seealso: `Output`, `OutputSetFromOptions()`, `OutputReport()`, `OutputDestroy()`
+.seealso: `Output`, `OutputSetHistory()`, `OutputSetFromOptions()`, `OutputReport()`, `OutputDestroy()`
 @*/
 PetscErrorCode OutputCreate(Controller controller, Output *output)
 {
   PetscFunctionBegin;
-  PetscCall(PetscNew(output));
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(output, 2);
+  PetscCall(OutputInitializePackage());
+  PetscCall(PetscHeaderCreate(*output, OUTPUT_CLASSID, "Output", "Files and table of a run", "Output",
+                              PetscObjectComm((PetscObject)controller), OutputDestroy, OutputView));
   (*output)->controller = controller;
   PetscCall(StatisticsCreate(controller, &(*output)->statistics));
   PetscCall(ControllerMonitorSet(controller, StatisticsMonitor, (*output)->statistics, NULL));
+  PetscCall(DeviationCreate(controller, &(*output)->deviation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error if two files have the same path */
-static PetscErrorCode CheckDistinct(MPI_Comm comm, PetscInt n, const char *const options[], const char *const paths[])
+/* The exact displacements of bodies */
+static PetscErrorCode ReadExactDisplacements(Output output)
 {
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = i + 1; j < n; j++) {
-      PetscBool same = PETSC_FALSE;
-
-      if (paths[i][0]) PetscCall(PetscStrcmp(paths[i], paths[j], &same));
-      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s and %s are the same file, %s; give each its own", options[i], options[j], paths[i]);
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateFields(Output output, const char path[])
-{
-  MPI_Comm        comm      = PetscObjectComm((PetscObject)output->controller);
-  PetscInt        interval  = 0;
-  FieldsPrecision precision = FIELDS_SINGLE;
+  const Body *bodies;
+  PetscInt    n;
 
   PetscFunctionBegin;
-  PetscOptionsBegin(comm, NULL, "Output", "Output");
-  PetscCall(PetscOptionsInt("-output_fields_interval", "A frame every n controller steps; 0: at most 100 frames", "OutputSetFromOptions",
-                            interval, &interval, NULL));
-  PetscCall(PetscOptionsEnum("-output_fields_precision", "Of the numbers in the frames", "OutputSetFromOptions", FieldsPrecisions,
-                             (PetscEnum)precision, (PetscEnum *)&precision, NULL));
-  PetscOptionsEnd();
-  PetscCall(FieldsCreate(output->controller, path, interval, precision, &output->fields));
-  PetscCall(ControllerMonitorSet(output->controller, FieldsMonitor, output->fields, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  PetscCall(ControllerGetBodies(output->controller, &n, &bodies));
+  for (PetscInt b = 0; b < n; b++) {
+    char      text[2048];
+    PetscBool set;
 
-static PetscErrorCode CreateExact(Output output, const char type[])
-{
-  PetscBool none;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrcmp(type, "none", &none));
-  if (none) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ExactCreate(output->controller, type, &output->exact));
-  PetscCall(ControllerMonitorSet(output->controller, ExactMonitor, output->exact, NULL));
+    PetscObjectOptionsBegin((PetscObject)bodies[b]);
+    PetscCall(PetscOptionsString("-exact_displacement", "Formulas to compare with at the end [m]", "OutputSetExactDisplacement", "", text,
+                                 sizeof(text), &set));
+    PetscOptionsEnd();
+    if (set) PetscCall(OutputSetExactDisplacement(output, bodies[b], text));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,37 +116,41 @@ static PetscErrorCode CreateExact(Output output, const char type[])
   Note:
   Missing directories of the paths are made. A file that is there already stays until its successor is whole.
 
-.seealso: `Output`, `OutputReport()`, `ExactCreate()`
+.seealso: `Output`, `OutputSetExact()`, `OutputSetSummary()`, `OutputSetHistory()`, `OutputSetFields()`, `OutputReport()`
 @*/
 PetscErrorCode OutputSetFromOptions(Output output)
 {
-  MPI_Comm  comm      = PetscObjectComm((PetscObject)output->controller);
-  char      exact[64] = "none", history[PETSC_MAX_PATH_LEN] = "", fields[PETSC_MAX_PATH_LEN] = "", xdmf[PETSC_MAX_PATH_LEN] = "";
-  PetscBool has_history, has_summary, has_fields;
+  char            exact[64] = "none", history[PETSC_MAX_PATH_LEN] = "", summary[PETSC_MAX_PATH_LEN] = "", fields[PETSC_MAX_PATH_LEN] = "";
+  PetscInt        interval  = 0;
+  OutputPrecision precision = OUTPUT_SINGLE;
+  PetscBool       has_history, has_summary, has_fields, none;
 
   PetscFunctionBegin;
-  PetscOptionsBegin(comm, NULL, "Output", "Output");
-  PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact|characteristics)", "ExactCreate", exact, exact,
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  PetscObjectOptionsBegin((PetscObject)output);
+  PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact|characteristics)", "OutputSetExact", exact, exact,
                                sizeof(exact), NULL));
-  PetscCall(PetscOptionsString("-output_history", "HDF5 file with every controller step", "OutputSetFromOptions", history, history,
+  PetscCall(PetscOptionsString("-output_history", "HDF5 file with every controller step", "OutputSetHistory", history, history,
                                sizeof(history), &has_history));
-  PetscCall(PetscOptionsString("-output_summary", "JSON file with the figures of the run", "OutputSetFromOptions", output->summary,
-                               output->summary, sizeof(output->summary), &has_summary));
-  PetscCall(PetscOptionsString("-output_fields", "HDF5 file with fields of all bodies over time, an XDMF file beside it",
-                               "OutputSetFromOptions", fields, fields, sizeof(fields), &has_fields));
-  PetscOptionsEnd();
-  if (fields[0]) PetscCall(XdmfGetPath(fields, sizeof(xdmf), xdmf));
-  PetscCall(CheckDistinct(comm, 4,
-                          (const char *const[]){"-output_history", "-output_summary", "-output_fields", "the XDMF file of -output_fields"},
-                          (const char *const[]){history, output->summary, fields, xdmf}));
-  PetscCall(CreateExact(output, exact));
-  PetscCall(DeviationCreate(output->controller, &output->deviation));
-  if (has_summary) PetscCall(OutputFileCheck(comm, "-output_summary", output->summary));
-  if (has_history) {
-    PetscCall(HistoryCreate(output->controller, history, &output->history));
-    PetscCall(ControllerMonitorSet(output->controller, HistoryMonitor, output->history, NULL));
+  PetscCall(PetscOptionsString("-output_summary", "JSON file with the figures of the run", "OutputSetSummary", summary, summary,
+                               sizeof(summary), &has_summary));
+  PetscCall(PetscOptionsString("-output_fields", "HDF5 file with fields of all bodies over time, an XDMF file beside it", "OutputSetFields",
+                               fields, fields, sizeof(fields), &has_fields));
+  if (has_fields) {
+    PetscCall(PetscOptionsInt("-output_fields_interval", "A frame every n controller steps; 0: at most 100 frames", "OutputSetFields",
+                              interval, &interval, NULL));
+    PetscCall(PetscOptionsEnum("-output_fields_precision", "Of the numbers in the frames", "OutputSetFields", OutputPrecisions,
+                               (PetscEnum)precision, (PetscEnum *)&precision, NULL));
   }
-  if (has_fields) PetscCall(CreateFields(output, fields));
+  PetscOptionsEnd();
+  PetscCall(OutputCheckPaths(PetscObjectComm((PetscObject)output), summary, history, fields));
+  PetscCall(PetscStrcmp(exact, "none", &none));
+  if (!none) PetscCall(OutputSetExact(output, exact));
+  PetscCall(ReadExactDisplacements(output));
+  if (has_summary) PetscCall(OutputSetSummary(output, summary));
+  if (has_history) PetscCall(OutputSetHistory(output, history));
+  if (has_fields) PetscCall(OutputSetFields(output, fields, interval, precision));
+  PetscCall(OutputViewFromOptions(output, NULL, "-output_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,26 +170,79 @@ PetscErrorCode OutputReport(Output output)
 {
   const StatisticsResults *results;
   PetscViewer              viewer;
-  const char              *history, *fields;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   PetscCall(StatisticsGetResults(output->statistics, &results));
-  if (output->deviation) PetscCall(StatisticsSetDeviation(output->statistics, output->deviation));
+  PetscCall(StatisticsSetDeviation(output->statistics, output->deviation));
   if (output->history) PetscCall(HistoryFlush(output->history));
   if (output->fields) PetscCall(FieldsFinish(output->fields));
-  if (output->summary[0]) PetscCall(SummaryWrite(output->controller, results, output->exact, output->summary));
-  PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)output->controller), &viewer));
+  if (output->summary_path[0]) PetscCall(SummaryWrite(output->controller, results, output->exact, output->summary_path));
+  PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)output), &viewer));
   PetscCall(ReportView(output->controller, results, output->exact, viewer));
-  if (output->history || output->summary[0] || output->fields) PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
+  PetscCall(OutputView(output, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OutputView - prints which files are written
+
+  Collective
+
+  Input Parameters:
++ output - the `Output`
+- viewer - an ASCII viewer, `NULL` for standard output
+
+  Level: intermediate
+
+.seealso: `Output`, `OutputViewFromOptions()`, `OutputReport()`
+@*/
+PetscErrorCode OutputView(Output output, PetscViewer viewer)
+{
+  const char *path;
+  PetscBool   ascii;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)output), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
+  if (output->history || output->summary_path[0] || output->fields) PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
   if (output->history) {
-    PetscCall(HistoryGetPath(output->history, &history));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", history));
+    PetscCall(HistoryGetPath(output->history, &path));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", path));
   }
-  if (output->summary[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "summary", output->summary));
+  if (output->summary_path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "summary", output->summary_path));
   if (output->fields) {
-    PetscCall(FieldsGetPaths(output->fields, NULL, &fields));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", fields));
+    PetscCall(FieldsGetPaths(output->fields, NULL, &path));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", path));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OutputViewFromOptions - prints which files are written where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ output - the `Output`
+. object - has the prefix of the option, `NULL` for the output
+- name   - the option
+
+  Options Database Key:
+. -output_view - print them when the options have been read
+
+  Level: intermediate
+
+.seealso: `Output`, `OutputView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode OutputViewFromOptions(Output output, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)output, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,11 +262,16 @@ PetscErrorCode OutputDestroy(Output *output)
 {
   PetscFunctionBegin;
   if (!*output) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*output, OUTPUT_CLASSID, 1);
+  if (--((PetscObject)*output)->refct > 0) {
+    *output = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(StatisticsDestroy(&(*output)->statistics));
   PetscCall(HistoryDestroy(&(*output)->history));
   PetscCall(FieldsDestroy(&(*output)->fields));
   PetscCall(ExactDestroy(&(*output)->exact));
   PetscCall(DeviationDestroy(&(*output)->deviation));
-  PetscCall(PetscFree(*output));
+  PetscCall(PetscHeaderDestroy(output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

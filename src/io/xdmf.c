@@ -86,7 +86,7 @@ static void BeginAttribute(FILE *out, const char name[], const char type[], Pets
   fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", name, type, on_cells ? "Cell" : "Node");
 }
 
-static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt frame,
+static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_fields, OutputPrecision precision, PetscInt frame,
                                  PetscReal time, const char file[])
 {
   static const char *const fixed[] = {"body", "rank"};
@@ -100,7 +100,7 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
 
     PetscCall(FieldsFileGetDataset(i, frame, sizeof(dataset), dataset));
     BeginAttribute(out, field->name, field->attribute_type, field->on_cells);
-    WriteItem(out, "Float", precision == FIELDS_DOUBLE ? sizeof(double) : sizeof(float),
+    WriteItem(out, "Float", precision == OUTPUT_DOUBLE ? sizeof(double) : sizeof(float),
               (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, file, dataset);
     fprintf(out, "</Attribute>\n");
   }
@@ -127,7 +127,7 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
 . n_frames  - how many frames to list
 - times     - their times [s]
 */
-PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, FieldsPrecision precision, PetscInt n_frames,
+PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, OutputPrecision precision, PetscInt n_frames,
                          const PetscReal times[])
 {
   char  path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];

@@ -1,28 +1,83 @@
 /* Constants of isotropic models, by which they agree with linear elasticity at small strain. */
-#include "isotropic.h"
+#include <impakt/private/isotropic.h>
+
+/* What the constants mean as Lame's; nothing as long as there is no Young's modulus */
+static void FindLamesConstants(Isotropic *constants)
+{
+  const PetscReal E = constants->youngs_modulus, nu = constants->poissons_ratio;
+
+  constants->lambda       = E * nu / ((1 + nu) * (1 - 2 * nu));
+  constants->mu           = E / (2 * (1 + nu));
+  constants->plane_lambda = E * nu / ((1 + nu) * (1 - nu));
+}
+
+static PetscErrorCode MaterialSetYoungsModulus_Isotropic(Material material, PetscReal modulus)
+{
+  Isotropic *constants = (Isotropic *)material->data;
+
+  PetscFunctionBegin;
+  PetscCheck(modulus > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "Young's modulus is %g Pa; it must be positive",
+             (double)modulus);
+  constants->youngs_modulus = modulus;
+  FindLamesConstants(constants);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MaterialSetPoissonsRatio_Isotropic(Material material, PetscReal ratio)
+{
+  Isotropic *constants = (Isotropic *)material->data;
+
+  PetscFunctionBegin;
+  PetscCheck(ratio > -1 && ratio < 0.5, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE,
+             "Poisson's ratio is %g; it must lie between -1 and 0.5", (double)ratio);
+  constants->poissons_ratio = ratio;
+  FindLamesConstants(constants);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MaterialGetYoungsModulus_Isotropic(Material material, PetscReal *modulus)
+{
+  PetscFunctionBegin;
+  *modulus = ((const Isotropic *)material->data)->youngs_modulus;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MaterialGetPoissonsRatio_Isotropic(Material material, PetscReal *ratio)
+{
+  PetscFunctionBegin;
+  *ratio = ((const Isotropic *)material->data)->poissons_ratio;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode MaterialSetFromOptions_Isotropic(Material material)
 {
   Isotropic  *constants = (Isotropic *)material->data;
   const char *prefix    = ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "";
   MPI_Comm    comm      = PetscObjectComm((PetscObject)material);
-  PetscReal   E, nu;
+  PetscReal   E = constants->youngs_modulus, nu = constants->poissons_ratio;
   PetscBool   set;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)material);
-  PetscCall(PetscOptionsReal("-youngs_modulus", "Young's modulus [Pa]", "", constants->youngs_modulus, &constants->youngs_modulus, &set));
-  PetscCall(PetscOptionsReal("-poissons_ratio", "Poisson's ratio", "", constants->poissons_ratio, &constants->poissons_ratio, NULL));
+  PetscCall(PetscOptionsReal("-youngs_modulus", "Young's modulus [Pa]", "MaterialSetYoungsModulus", E, &E, &set));
+  PetscCall(PetscOptionsReal("-poissons_ratio", "Poisson's ratio", "MaterialSetPoissonsRatio", nu, &nu, NULL));
   PetscOptionsEnd();
-  E  = constants->youngs_modulus;
-  nu = constants->poissons_ratio;
-  PetscCheck(set, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus in Pa", prefix);
+  PetscCheck(set || E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus in Pa", prefix);
   PetscCheck(E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is %g Pa; it must be positive", prefix, (double)E);
   PetscCheck(nu > -1 && nu < 0.5, comm, PETSC_ERR_USER_INPUT, "-%spoissons_ratio is %g; it must lie between -1 and 0.5", prefix,
              (double)nu);
-  constants->lambda       = E * nu / ((1 + nu) * (1 - 2 * nu));
-  constants->mu           = E / (2 * (1 + nu));
-  constants->plane_lambda = E * nu / ((1 + nu) * (1 - nu));
+  constants->youngs_modulus = E;
+  constants->poissons_ratio = nu;
+  FindLamesConstants(constants);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MaterialSetUp_Isotropic(Material material)
+{
+  PetscFunctionBegin;
+  PetscCheck(((const Isotropic *)material->data)->youngs_modulus > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_WRONGSTATE,
+             "The material of type %s has no Young's modulus: call MaterialSetYoungsModulus() or MaterialSetFromOptions()",
+             ((PetscObject)material)->type_name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -39,6 +94,10 @@ static PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer view
 static PetscErrorCode MaterialDestroy_Isotropic(Material material)
 {
   PetscFunctionBegin;
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetYoungsModulus_C", NULL));
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetYoungsModulus_C", NULL));
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetPoissonsRatio_C", NULL));
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetPoissonsRatio_C", NULL));
   PetscCall(PetscFree(material->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -59,6 +118,105 @@ static PetscErrorCode MaterialWaveModulus_Isotropic(Material material, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  MaterialSetYoungsModulus - sets Young's modulus of an isotropic model
+
+  Logically Collective
+
+  Input Parameters:
++ material - the `Material`, of a type that has it
+- modulus  - at zero strain [Pa]
+
+  Options Database Key:
+. -<body>_youngs_modulus E - the modulus
+
+  Level: beginner
+
+.seealso: `Material`, `MaterialSetPoissonsRatio()`, `MaterialGetYoungsModulus()`, `MaterialSetType()`
+@*/
+PetscErrorCode MaterialSetYoungsModulus(Material material, PetscReal modulus)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(material, modulus, 2);
+  PetscUseMethod(material, "MaterialSetYoungsModulus_C", (Material, PetscReal), (material, modulus));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialGetYoungsModulus - Young's modulus of an isotropic model
+
+  Not Collective
+
+  Input Parameter:
+. material - the `Material`, of a type that has it
+
+  Output Parameter:
+. modulus - at zero strain [Pa]; 0 until it is set
+
+  Level: beginner
+
+.seealso: `Material`, `MaterialSetYoungsModulus()`
+@*/
+PetscErrorCode MaterialGetYoungsModulus(Material material, PetscReal *modulus)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(modulus, 2);
+  PetscUseMethod(material, "MaterialGetYoungsModulus_C", (Material, PetscReal *), (material, modulus));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialSetPoissonsRatio - sets Poisson's ratio of an isotropic model
+
+  Logically Collective
+
+  Input Parameters:
++ material - the `Material`, of a type that has it
+- ratio    - at zero strain, between -1 and 0.5; 0 by default
+
+  Options Database Key:
+. -<body>_poissons_ratio nu - the ratio
+
+  Level: beginner
+
+.seealso: `Material`, `MaterialSetYoungsModulus()`, `MaterialGetPoissonsRatio()`, `MaterialSetType()`
+@*/
+PetscErrorCode MaterialSetPoissonsRatio(Material material, PetscReal ratio)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(material, ratio, 2);
+  PetscUseMethod(material, "MaterialSetPoissonsRatio_C", (Material, PetscReal), (material, ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialGetPoissonsRatio - Poisson's ratio of an isotropic model
+
+  Not Collective
+
+  Input Parameter:
+. material - the `Material`, of a type that has it
+
+  Output Parameter:
+. ratio - at zero strain
+
+  Level: beginner
+
+.seealso: `Material`, `MaterialSetPoissonsRatio()`
+@*/
+PetscErrorCode MaterialGetPoissonsRatio(Material material, PetscReal *ratio)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(ratio, 2);
+  PetscUseMethod(material, "MaterialGetPoissonsRatio_C", (Material, PetscReal *), (material, ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first thing that the constructor of an isotropic model does: constants with their options, moduli at zero strain */
 PetscErrorCode MaterialCreate_Isotropic(Material material)
 {
   Isotropic *constants;
@@ -67,9 +225,14 @@ PetscErrorCode MaterialCreate_Isotropic(Material material)
   PetscCall(PetscNew(&constants));
   material->data                 = constants;
   material->ops->setfromoptions  = MaterialSetFromOptions_Isotropic;
+  material->ops->setup           = MaterialSetUp_Isotropic;
   material->ops->view            = MaterialView_Isotropic;
   material->ops->destroy         = MaterialDestroy_Isotropic;
   material->ops->uniaxialmodulus = MaterialUniaxialModulus_Isotropic;
   material->ops->wavemodulus     = MaterialWaveModulus_Isotropic;
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetYoungsModulus_C", MaterialSetYoungsModulus_Isotropic));
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetYoungsModulus_C", MaterialGetYoungsModulus_Isotropic));
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetPoissonsRatio_C", MaterialSetPoissonsRatio_Isotropic));
+  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetPoissonsRatio_C", MaterialGetPoissonsRatio_Isotropic));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

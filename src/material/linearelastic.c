@@ -1,6 +1,6 @@
 /* Linear elasticity: P = lambda tr(H) I + mu (H + H^T), with no regard to rotations; defined for every H. */
-#include "isotropic.h"
-#include "tensor.h"
+#include <impakt/private/isotropic.h>
+#include <impakt/private/tensor.h>
 
 SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
 {

@@ -1,5 +1,5 @@
 /* The linear elastic material that another one is at zero strain. */
-#include "isotropic.h"
+#include <impakt/private/isotropic.h>
 
 /*@
   MaterialLinearize - makes the linear elastic material with the density and the elastic constants of an isotropic one at zero strain
@@ -28,6 +28,7 @@ PetscErrorCode MaterialLinearize(Material material, Material *linearized)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(linearized, 2);
   PetscUseTypeMethod(material, kernels, PETSC_FALSE, &kernels);
   (*kernels.tangent)(kernels.data, undeformed, tangent);
   lambda = tangent[4];     /* dP_xx / dH_yy */

@@ -1,63 +1,6 @@
+/* The class: creation, type, options, view, destruction. */
 #include <impakt/private/materialimpl.h>
-
-PetscClassId MATERIAL_CLASSID = 0;
-
-static PetscFunctionList MaterialList = NULL;
-
-/*@C
-  MaterialRegister - adds a constitutive model to the registry
-
-  Not Collective
-
-  Input Parameters:
-+ name   - its name for `-<body>_material_type`
-- create - function that sets up the type-specific part of a `Material`
-
-  Level: developer
-
-.seealso: `Material`, `MaterialSetType()`
-@*/
-PetscErrorCode MaterialRegister(const char name[], PetscErrorCode (*create)(Material))
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFunctionListAdd(&MaterialList, name, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialRegisterAll - registers the class and all models that Impakt brings
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `MaterialRegister()`, `ImpaktInitialize()`
-@*/
-PetscErrorCode MaterialRegisterAll(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscClassIdRegister("Material", &MATERIAL_CLASSID));
-  PetscCall(MaterialRegister(MATERIAL_LINEAR_ELASTIC, MaterialCreate_LinearElastic));
-  PetscCall(MaterialRegister(MATERIAL_SAINT_VENANT_KIRCHHOFF, MaterialCreate_SaintVenantKirchhoff));
-  PetscCall(MaterialRegister(MATERIAL_NEO_HOOKEAN, MaterialCreate_NeoHookean));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialFinalizePackage - empties the registry
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `MaterialRegisterAll()`
-@*/
-PetscErrorCode MaterialFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFunctionListDestroy(&MaterialList));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include <sys/names.h>
 
 /*@
   MaterialCreate - creates a material without a type
@@ -77,6 +20,8 @@ PetscErrorCode MaterialFinalizePackage(void)
 PetscErrorCode MaterialCreate(MPI_Comm comm, Material *material)
 {
   PetscFunctionBegin;
+  PetscAssertPointer(material, 2);
+  PetscCall(MaterialInitializePackage());
   PetscCall(
       PetscHeaderCreate(*material, MATERIAL_CLASSID, "Material", "Constitutive model", "Material", comm, MaterialDestroy, MaterialView));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -103,28 +48,6 @@ PetscErrorCode MaterialSetOptionsPrefix(Material material, const char prefix[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The names in the registry, in alphabetical order */
-static PetscErrorCode GetKnownTypes(size_t size, char known[])
-{
-  const char **names;
-  PetscInt    *order;
-  int          n;
-
-  PetscFunctionBegin;
-  PetscCall(PetscFunctionListGet(MaterialList, &names, &n));
-  PetscCall(PetscMalloc1(n, &order));
-  for (int i = 0; i < n; i++) order[i] = i;
-  PetscCall(PetscSortStrWithPermutation(n, names, order));
-  known[0] = '\0';
-  for (int i = 0; i < n; i++) {
-    if (i) PetscCall(PetscStrlcat(known, ", ", size));
-    PetscCall(PetscStrlcat(known, names[order[i]], size));
-  }
-  PetscCall(PetscFree(order));
-  PetscCall(PetscFree(names));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   MaterialSetType - chooses the constitutive model
 
@@ -148,13 +71,14 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(type, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)material, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFunctionListFind(MaterialList, type, &create));
   if (!create) {
     char known[1024];
 
-    PetscCall(GetKnownTypes(sizeof(known), known));
+    PetscCall(NamesOfRegistry(MaterialList, sizeof(known), known));
     SETERRQ(PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -%smaterial_type '%s'; known: %s",
             ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", type, known);
   }
@@ -164,6 +88,30 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
   material->linear = PETSC_FALSE;
   PetscCall((*create)(material));
   PetscCall(PetscObjectChangeTypeName((PetscObject)material, type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialGetType - the constitutive model
+
+  Not Collective
+
+  Input Parameter:
+. material - the `Material`
+
+  Output Parameter:
+. type - its name; `NULL` until it has been chosen
+
+  Level: beginner
+
+.seealso: `Material`, `MaterialSetType()`
+@*/
+PetscErrorCode MaterialGetType(Material material, MaterialType *type)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(type, 2);
+  *type = ((PetscObject)material)->type_name;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,26 +131,61 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
 
   Level: beginner
 
-.seealso: `Material`, `MaterialSetType()`
+  Note:
+  What the program has set before need not be in the options; what is in the options takes its place.
+
+.seealso: `Material`, `MaterialSetType()`, `MaterialSetDensity()`, `MaterialSetYoungsModulus()`, `MaterialSetPoissonsRatio()`
 @*/
 PetscErrorCode MaterialSetFromOptions(Material material)
 {
-  char        type[64] = MATERIAL_LINEAR_ELASTIC;
-  const char *prefix   = ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "";
+  const char *prefix  = ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", *chosen;
+  PetscReal   density = material->density;
+  char        type[64];
   PetscBool   set;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  chosen = ((PetscObject)material)->type_name;
+  PetscCall(PetscStrncpy(type, chosen ? chosen : MATERIAL_LINEAR_ELASTIC, sizeof(type)));
   PetscObjectOptionsBegin((PetscObject)material);
   PetscCall(PetscOptionsFList("-material_type", "Constitutive model", "MaterialSetType", MaterialList, type, type, sizeof(type), NULL));
-  PetscCall(PetscOptionsReal("-density", "Mass density [kg/m^3]", "MaterialGetDensity", material->density, &material->density, &set));
+  PetscCall(PetscOptionsReal("-density", "Mass density [kg/m^3]", "MaterialSetDensity", density, &density, &set));
   PetscOptionsEnd();
   PetscCall(MaterialSetType(material, type));
-  PetscCheck(set, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT, "-%sdensity is missing; give the mass density in kg/m^3",
-             prefix);
-  PetscCheck(material->density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%sdensity is %g kg/m^3; a density must be positive", prefix, (double)material->density);
+  PetscCheck(set || density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
+             "-%sdensity is missing; give the mass density in kg/m^3", prefix);
+  PetscCheck(density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
+             "-%sdensity is %g kg/m^3; a density must be positive", prefix, (double)density);
+  PetscCall(MaterialSetDensity(material, density));
   PetscTryTypeMethod(material, setfromoptions);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialSetUp - makes sure that a material has all that it needs
+
+  Logically Collective
+
+  Input Parameter:
+. material - the `Material`
+
+  Level: developer
+
+  Note:
+  A body calls this for its material; an error names what is missing.
+
+.seealso: `Material`, `MaterialSetType()`, `MaterialSetDensity()`, `MaterialSetFromOptions()`
+@*/
+PetscErrorCode MaterialSetUp(Material material)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscCheck(((PetscObject)material)->type_name, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_WRONGSTATE,
+             "The material has no type: call MaterialSetType() or MaterialSetFromOptions()");
+  PetscCheck(material->density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_WRONGSTATE,
+             "The material of type %s has no density: call MaterialSetDensity() or MaterialSetFromOptions()",
+             ((PetscObject)material)->type_name);
+  PetscTryTypeMethod(material, setup);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,20 +196,51 @@ PetscErrorCode MaterialSetFromOptions(Material material)
 
   Input Parameters:
 + material - the `Material`
-- viewer   - an ASCII viewer
+- viewer   - an ASCII viewer, `NULL` for standard output
 
   Level: beginner
 
-.seealso: `Material`
+.seealso: `Material`, `MaterialViewFromOptions()`
 @*/
 PetscErrorCode MaterialView(Material material, PetscViewer viewer)
 {
+  PetscBool ascii;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)material), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)material, viewer));
   PetscCall(
       PetscViewerASCIIPrintf(viewer, "  density %g kg/m^3%s\n", (double)material->density, material->plane_stress ? ", plane stress" : ""));
   PetscTryTypeMethod(material, view, viewer);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialViewFromOptions - prints a material where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ material - the `Material`
+. object   - has the prefix of the option, `NULL` for the material
+- name     - the option
+
+  Options Database Key:
+. -<body>_material_view - print the material of a body at its set-up
+
+  Level: intermediate
+
+.seealso: `Material`, `MaterialView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode MaterialViewFromOptions(Material material, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)material, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -257,6 +271,33 @@ PetscErrorCode MaterialDestroy(Material *material)
 }
 
 /*@
+  MaterialSetDensity - sets the mass density in the reference configuration
+
+  Logically Collective
+
+  Input Parameters:
++ material - the `Material`
+- density  - [kg/m^3]
+
+  Options Database Key:
+. -<body>_density rho - the density
+
+  Level: beginner
+
+.seealso: `Material`, `MaterialGetDensity()`
+@*/
+PetscErrorCode MaterialSetDensity(Material material, PetscReal density)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(material, density, 2);
+  PetscCheck(density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "A density of %g kg/m^3 must be positive",
+             (double)density);
+  material->density = density;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   MaterialGetDensity - the mass density in the reference configuration
 
   Not Collective
@@ -269,12 +310,13 @@ PetscErrorCode MaterialDestroy(Material *material)
 
   Level: beginner
 
-.seealso: `Material`
+.seealso: `Material`, `MaterialSetDensity()`
 @*/
 PetscErrorCode MaterialGetDensity(Material material, PetscReal *density)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(density, 2);
   *density = material->density;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

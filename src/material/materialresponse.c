@@ -20,6 +20,7 @@ PetscErrorCode MaterialGetUniaxialModulus(Material material, PetscReal *modulus)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(modulus, 2);
   PetscUseTypeMethod(material, uniaxialmodulus, modulus);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -43,6 +44,7 @@ PetscErrorCode MaterialIsLinear(Material material, PetscBool *linear)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(linear, 2);
   *linear = material->linear;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -66,6 +68,7 @@ PetscErrorCode MaterialGetWaveModulus(Material material, PetscReal *modulus)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(modulus, 2);
   PetscUseTypeMethod(material, wavemodulus, material->plane_stress, modulus);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -87,6 +90,7 @@ PetscErrorCode MaterialSetPlaneStress(Material material, PetscBool plane_stress)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(material, plane_stress, 2);
   material->plane_stress = plane_stress;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -113,6 +117,7 @@ PetscErrorCode MaterialGetKernels(Material material, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscAssertPointer(kernels, 2);
   PetscUseTypeMethod(material, kernels, material->plane_stress, kernels);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,8 +4,8 @@
 
    Everything is written in H = F - I, so that small strains keep their digits: with C = cof H and q = tr C + det H,
    J - 1 = tr H + q, cof F = (1 + tr H) I - H^T + C, and J (F - F^-T) = J H + H^T - C + q I. */
-#include "isotropic.h"
-#include "tensor.h"
+#include <impakt/private/isotropic.h>
+#include <impakt/private/tensor.h>
 
 SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
 {

@@ -1,6 +1,6 @@
 /* Plane stress from the kernels of a solid: the stretch across the plane that leaves it free of stress is found first. */
 #include <impakt/private/materialimpl.h>
-#include "tensor.h"
+#include <impakt/private/tensor.h>
 
 #define MAX_ITERATIONS 50
 

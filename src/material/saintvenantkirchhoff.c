@@ -1,8 +1,8 @@
 /* Saint-Venant-Kirchhoff: W = lambda/2 (tr E)^2 + mu E : E, S = lambda tr(E) I + 2 mu E, P = F S, with the Green-Lagrange strain
    E = (H + H^T + H^T H) / 2 (Ciarlet, Mathematical Elasticity I, 1988, section 3.9). The energy is defined for inverted points too,
    and finite at det F = 0: they are refused all the same. */
-#include "isotropic.h"
-#include "tensor.h"
+#include <impakt/private/isotropic.h>
+#include <impakt/private/tensor.h>
 
 SIMD_INLINE Tensor GreenLagrange(Tensor h)
 {

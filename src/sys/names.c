@@ -1,4 +1,5 @@
-/* Lists of names in the options, of any length: PETSc's own call fills an array of the caller's, and leaves away what does not fit. */
+/* Lists of names: in the options, of any length (PETSc's own call fills an array of the caller's, and leaves away what does not fit), and
+   in registries. */
 #include "names.h"
 
 PetscErrorCode NamesDestroy(PetscInt n, char ***names)
@@ -25,5 +26,27 @@ PetscErrorCode NamesRead(const char prefix[], const char option[], PetscInt *n, 
     PetscCall(PetscOptionsGetStringArray(NULL, prefix, option, *names, n, set));
   } while (*n == capacity);
   if (!*n) PetscCall(NamesDestroy(0, names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The names in a registry, in alphabetical order, with commas between them */
+PetscErrorCode NamesOfRegistry(PetscFunctionList registry, size_t size, char known[])
+{
+  const char **names;
+  PetscInt    *order;
+  int          n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListGet(registry, &names, &n));
+  PetscCall(PetscMalloc1(n, &order));
+  for (int i = 0; i < n; i++) order[i] = i;
+  PetscCall(PetscSortStrWithPermutation(n, names, order));
+  known[0] = '\0';
+  for (int i = 0; i < n; i++) {
+    if (i) PetscCall(PetscStrlcat(known, ", ", size));
+    PetscCall(PetscStrlcat(known, names[order[i]], size));
+  }
+  PetscCall(PetscFree(order));
+  PetscCall(PetscFree(names));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,133 +1,211 @@
-/* Start and end of the library: class ids, events, registries; how errors reach the user. */
+/* Start and end of the library: the packages of its classes. */
 #include <impakt.h>
-#include <unistd.h>
+#include "errors.h"
+#include "package.h"
 #include "petsccompat.h"
 
 static const char help[] = "Impakt: dynamic contact by the Schwarz alternating method; `impakt -help` on the command line tells more.\n";
 
+/* Between ImpaktInitialize() and ImpaktFinalize() */
+static struct {
+  PetscInt  depth;       /* calls of ImpaktInitialize() not yet undone by ImpaktFinalize() */
+  PetscBool began_petsc; /* the first of them has started PETSc */
+} library = {0, PETSC_FALSE};
+
+/* The end of every XxxInitializePackage(), after class id, events and registry: `-info` and `-log_exclude` may name the class, and
+   PetscFinalize() calls the counterpart */
+PetscErrorCode ImpaktFinishPackage(const char name[], PetscClassId id, PetscErrorCode (*finalize)(void))
+{
+  char      excluded[256];
+  PetscBool set, listed = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscInfoProcessClass(name, 1, &id));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-log_exclude", excluded, sizeof(excluded), &set));
+  if (set) PetscCall(PetscStrInList(name, excluded, ',', &listed));
+  if (listed) PetscCall(PetscLogEventExcludeClass(id));
+  PetscCall(PetscRegisterFinalize(finalize));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  ImpaktRegisterAll - registers classes, integrators, materials, elements and contact methods
+  ImpaktRegisterAll - registers all classes, integrators, materials, elements and contact methods
 
   Not Collective
 
   Level: developer
 
-.seealso: `ImpaktInitialize()`
+  Note:
+  Every class registers itself when it is first used; `ImpaktInitialize()` calls this so that the order of classes and events, and with
+  it that of `-log_view`, does not hang on what a program does first.
+
+.seealso: `ImpaktInitialize()`, `BodyInitializePackage()`, `ContactInitializePackage()`
 @*/
 PetscErrorCode ImpaktRegisterAll(void)
 {
   PetscFunctionBegin;
-  PetscCall(TSSecondOrderRegisterAll());
-  PetscCall(BodyRegisterAll());
-  PetscCall(ContactRegisterAll());
-  PetscCall(ControllerRegisterAll());
+  PetscCall(TSSecondOrderInitializePackage());
+  PetscCall(BodyInitializePackage());
+  PetscCall(MaterialInitializePackage());
+  PetscCall(ElementInitializePackage());
+  PetscCall(ExpressionInitializePackage());
+  PetscCall(ObstacleInitializePackage());
+  PetscCall(SurfaceInitializePackage());
+  PetscCall(TransferInitializePackage());
+  PetscCall(ContactInitializePackage());
+  PetscCall(ControllerInitializePackage());
+  PetscCall(ExactInitializePackage());
+  PetscCall(OutputInitializePackage());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Errors whose message says all that the user can do about them */
-static PetscBool IsUsersBusiness(PetscErrorCode code)
+/* PetscFinalize() calls this: whoever started PETSc, nothing of Impakt outlives it */
+static PetscErrorCode Forget(void)
 {
-  switch (code) {
-  case PETSC_ERR_USER_INPUT:
-  case PETSC_ERR_ARG_UNKNOWN_TYPE:
-  case PETSC_ERR_NOT_CONVERGED:
-  case PETSC_ERR_FILE_OPEN:
-  case PETSC_ERR_FILE_WRITE:
-  case PETSC_ERR_FP:
-    return PETSC_TRUE;
-  default:
-    return PETSC_FALSE;
-  }
-}
-
-/* One line to the user in place of PETSc's stack trace; for what is not the user's fault, with the place in the source too */
-static PetscErrorCode ReportError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
-                                  const char *message, void *ctx)
-{
-  PetscMPIInt rank = 0, size = 1, initialized = 0;
-
-  (void)ctx;
-  if (type != PETSC_ERROR_INITIAL) return code;
-  MPI_Initialized(&initialized);
-  if (initialized && comm != MPI_COMM_NULL && comm != MPI_COMM_SELF) MPI_Comm_rank(comm, &rank);
-  if (initialized && comm == MPI_COMM_SELF) MPI_Comm_size(MPI_COMM_WORLD, &size);
-  if (rank) return code;
-  if (size > 1) {
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    fprintf(stderr, "impakt: error on rank %d: %s\n", rank, message ? message : "");
-  } else fprintf(stderr, "impakt: error: %s\n", message ? message : "");
-  if (!IsUsersBusiness(code)) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
-  fflush(stderr);
-  return code;
+  PetscFunctionBegin;
+  library.depth       = 0;
+  library.began_petsc = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@C
-  ImpaktInitialize - starts PETSc and Impakt
+  ImpaktInitialize - starts Impakt, and PETSc where it does not run yet
 
   Collective on `PETSC_COMM_WORLD`
 
   Input Parameters:
-+ argc - of main()
-- argv - of main()
++ argc - of main(), or `NULL`
+- argv - of main(), or `NULL`
 
   Level: beginner
 
-.seealso: `ImpaktFinalize()`, `ImpaktExit()`
+  Notes:
+  In a program that has called `PetscInitialize()` itself, PETSc stays as that program has set it up: its options database is used as
+  it is (`argc` and `argv` are not looked at), its error handler stays. Otherwise PETSc is started with the arguments, and errors are
+  printed as one line to the user.
+
+  Calls may be nested: each wants a call of `ImpaktFinalize()`, of which the last one ends what the first call began. After that the
+  library may be started again. (MPI itself cannot: a program that starts and ends PETSc repeatedly has to call `MPI_Init()` first.)
+
+.seealso: `ImpaktFinalize()`, `ImpaktInitialized()`, `ImpaktExit()`
 @*/
 PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
 {
+  PetscBool running, began = PETSC_FALSE;
+
   PetscFunctionBegin;
-  PetscCall(PetscPushErrorHandler(ReportError, NULL)); /* first, for what is wrong with the options file */
-  PetscCall(PetscInitialize(argc, argv, NULL, help));
+  if (library.depth > 0) {
+    library.depth++;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscInitialized(&running));
+  if (!running) {
+    PetscCall(PetscPushErrorHandler(ImpaktReportError, NULL)); /* first, for what is wrong with the options file */
+    PetscCall(PetscInitialize(argc, argv, NULL, help));
+    began = PETSC_TRUE;
+  }
   PetscCall(ImpaktRegisterAll());
+  PetscCall(PetscRegisterFinalize(Forget));
+  library.depth       = 1;
+  library.began_petsc = began;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ImpaktFinalize - ends Impakt and PETSc
+  ImpaktInitialized - whether Impakt has been started, and not ended
+
+  Not Collective
+
+  Output Parameter:
+. initialized - `PETSC_TRUE` between `ImpaktInitialize()` and the `ImpaktFinalize()` that belongs to it
+
+  Level: beginner
+
+.seealso: `ImpaktInitialize()`, `ImpaktFinalize()`
+@*/
+PetscErrorCode ImpaktInitialized(PetscBool *initialized)
+{
+  PetscFunctionBegin;
+  PetscAssertPointer(initialized, 1);
+  *initialized = (PetscBool)(library.depth > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ImpaktFinalize - ends what `ImpaktInitialize()` began
 
   Collective on `PETSC_COMM_WORLD`
 
   Level: beginner
+
+  Notes:
+  `PetscFinalize()` is called only where `ImpaktInitialize()` has called `PetscInitialize()`. A program that has started PETSc itself
+  ends it itself, before or after this call; all memory of Impakt's registries is freed then.
 
 .seealso: `ImpaktInitialize()`
 @*/
 PetscErrorCode ImpaktFinalize(void)
 {
+  PetscBool ended;
+
   PetscFunctionBegin;
-  PetscCall(ContactFinalizePackage());
-  PetscCall(BodyFinalizePackage());
+  if (library.depth == 0) {
+    PetscCall(PetscFinalized(&ended));
+    PetscCheck(ended, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "ImpaktFinalize() without ImpaktInitialize(): call that first");
+    PetscFunctionReturn(PETSC_SUCCESS); /* ended by the program's own PetscFinalize() */
+  }
+  if (--library.depth > 0 || !library.began_petsc) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFinalize());
+  (void)PetscPopErrorHandler();
   /* PetscFunctionReturn() would need PETSc */
   return PETSC_SUCCESS;
 }
 
-/*@
-  ImpaktExit - ends the program with an exit code, on all ranks even where an error came up on one alone
+/*@C
+  ImpaktGetVersion - the version of the library as text
 
   Not Collective
 
   Input Parameter:
-. error - 0, or the error that stopped the program
+. length - room in `version`, 64 are enough
 
-  Level: developer
+  Output Parameter:
+. version - as in "Impakt 0.1.0"
+
+  Level: beginner
 
   Note:
-  The error has been printed when it came up.
+  The macros `IMPAKT_VERSION`, `IMPAKT_VERSION_MAJOR`, `IMPAKT_VERSION_GE()`, ... tell the version of the headers.
 
-.seealso: `ImpaktInitialize()`
+.seealso: `ImpaktGetVersionNumber()`
 @*/
-int ImpaktExit(PetscErrorCode error)
+PetscErrorCode ImpaktGetVersion(char version[], size_t length)
 {
-  PetscMPIInt initialized, size = 1, rank = 0;
+  PetscFunctionBegin;
+  PetscAssertPointer(version, 1);
+  PetscCall(PetscSNPrintf(version, length, "Impakt %s", IMPAKT_VERSION));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-  if (!error) return 0;
-  if (MPI_Initialized(&initialized) || !initialized) return (int)error;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (size == 1) return (int)error;
-  /* an error on all ranks is printed by the first: let it speak before the others end the job */
-  if (rank) sleep(1);
-  MPI_Abort(MPI_COMM_WORLD, (int)error);
-  return (int)error;
+/*@
+  ImpaktGetVersionNumber - the version of the library in numbers
+
+  Not Collective
+
+  Output Parameters:
++ major    - or `NULL`
+. minor    - or `NULL`
+- subminor - or `NULL`
+
+  Level: beginner
+
+.seealso: `ImpaktGetVersion()`
+@*/
+PetscErrorCode ImpaktGetVersionNumber(PetscInt *major, PetscInt *minor, PetscInt *subminor)
+{
+  PetscFunctionBegin;
+  if (major) *major = IMPAKT_VERSION_MAJOR;
+  if (minor) *minor = IMPAKT_VERSION_MINOR;
+  if (subminor) *subminor = IMPAKT_VERSION_SUBMINOR;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

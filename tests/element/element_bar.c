@@ -38,7 +38,7 @@ static void energy_force_and_tangent_agree(void **state)
     for (PetscInt e = 0; e < 3; e++) {
       PetscReal k[4];
 
-      ok((*solid.element->ops.stiffness)(solid.element, e, u, k));
+      ok((*solid.element->ops->stiffness)(solid.element, e, u, k));
       for (PetscInt a = 0; a < 4; a++) K[mesh.connectivity[2 * e + a / 2]][mesh.connectivity[2 * e + a % 2]] += k[a];
     }
     for (PetscInt i = 0; i < 4; i++) {
@@ -73,7 +73,7 @@ static void stress_is_force_over_the_present_cross_section(void **state)
   for (PetscInt m = 0; m < 3; m += 2) {
     create_bars(&mesh, &solid, materials[m]);
     for (PetscInt i = 0; i < 4; i++) u[i] = 0.1 * mesh.x[i];
-    ok((*solid.element->ops.stress)(solid.element, u, stress));
+    ok((*solid.element->ops->stress)(solid.element, u, stress));
     for (PetscInt e = 0; e < 3; e++)
       for (PetscInt k = 0; k < 6; k++) near(stress[6 * e + k], k ? 0 : (m ? neo_hookean : 20), 1e-13 * LAME);
     solid_destroy(&solid);
@@ -118,7 +118,7 @@ static void load_points_integrate_cubic_functions(void **state)
     const PetscReal a = mesh.x[mesh.connectivity[2 * e]], b = mesh.x[mesh.connectivity[2 * e + 1]];
     PetscReal       sum = 0;
 
-    ok((*solid.element->ops.points)(solid.element, e, positions, weights));
+    ok((*solid.element->ops->points)(solid.element, e, positions, weights));
     for (PetscInt g = 0; g < 2; g++) {
       sum += weights[g] * positions[g] * positions[g] * positions[g];
       near(positions[g], solid.element->shape[2 * g] * a + solid.element->shape[2 * g + 1] * b, 1e-15 * 3);

@@ -90,7 +90,7 @@ static void linear_displacement_is_exact_on_distorted_meshes(void **state)
       solid_create(&solid, &mesh, materials[m], "");
       set_linear(&mesh, stretch, u);
       get_cauchy(mesh.dim, m, stretch, exact);
-      ok((*solid.element->ops.stress)(solid.element, u, stress));
+      ok((*solid.element->ops->stress)(solid.element, u, stress));
       for (PetscInt e = 0; e < mesh.count; e++)
         for (PetscInt k = 0; k < 6; k++) near(stress[6 * e + k], exact[k], 1e-12 * largest_of(6, exact));
       get_force(&solid, &mesh, u, f);
@@ -153,7 +153,7 @@ static void tangent_is_symmetric_and_the_derivative_of_the_force(void **state)
       n          = mesh.dim * mesh.nodes;
       solid_create(&solid, &mesh, materials[m], "");
       set_scattered(&mesh, 0.05, u);
-      ok((*solid.element->ops.stiffness)(solid.element, 0, u, K));
+      ok((*solid.element->ops->stiffness)(solid.element, 0, u, K));
       for (PetscInt b = 0; b < n; b++) {
         const PetscInt  dof   = mesh.dim * mesh.connectivity[b / mesh.dim] + b % mesh.dim;
         const PetscReal start = u[dof];
@@ -171,7 +171,7 @@ static void tangent_is_symmetric_and_the_derivative_of_the_force(void **state)
         }
       }
       /* at rest, all materials are the linear one */
-      ok((*solid.element->ops.stiffness)(solid.element, 0, zero, K));
+      ok((*solid.element->ops->stiffness)(solid.element, 0, zero, K));
       if (m == 0) {
         get_force(&solid, &mesh, u, above);
         for (PetscInt a = 0; a < n; a++) {
@@ -225,14 +225,14 @@ static void batches_may_be_of_any_size(void **state)
       for (PetscInt i = 0; i < mesh.dim * mesh.n_nodes; i++) expected[i] = 0;
       for (PetscInt k = 0; k < 6; k++) stress[6 * count + k] = -7;
       solid.element->count = count;
-      ok((*solid.element->ops.stress)(solid.element, u, stress));
+      ok((*solid.element->ops->stress)(solid.element, u, stress));
       get_force(&solid, &mesh, u, f);
       energy               = get_energy(&solid, u);
       solid.element->count = 1;
       for (PetscInt e = 0; e < count; e++) {
         solid.element->connectivity = mesh.connectivity + e * mesh.nodes;
-        ok((*solid.element->ops.internalforce)(solid.element, u, expected));
-        ok((*solid.element->ops.stress)(solid.element, u, expected_stress));
+        ok((*solid.element->ops->internalforce)(solid.element, u, expected));
+        ok((*solid.element->ops->stress)(solid.element, u, expected_stress));
         for (PetscInt k = 0; k < 6; k++) assert_true(stress[6 * e + k] == expected_stress[k]);
         energy -= get_energy(&solid, u);
       }
@@ -264,7 +264,7 @@ static void forces_are_added(void **state)
     set_linear(&mesh, stretch, u);
     get_force(&solid, &mesh, u, once);
     get_force(&solid, &mesh, u, f);
-    ok((*solid.element->ops.internalforce)(solid.element, u, f));
+    ok((*solid.element->ops->internalforce)(solid.element, u, f));
     for (PetscInt i = 0; i < mesh.dim * mesh.n_nodes; i++) assert_true(f[i] == 2 * once[i]);
     solid_destroy(&solid);
   }

@@ -113,7 +113,7 @@ static PetscErrorCode Note(Controller controller, const ControllerFrame *frame, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void CreateRun(Simulation *simulation, PetscInt interval, FieldsPrecision precision, Fields *fields, Record *record)
+static void CreateRun(Simulation *simulation, PetscInt interval, OutputPrecision precision, Fields *fields, Record *record)
 {
   AddCollision(4, 3, 0);
   ok(SimulationCreate(simulation));
@@ -128,9 +128,9 @@ static void CreateRun(Simulation *simulation, PetscInt interval, FieldsPrecision
 
 /* Numbers of the file that are this rank's are those noted, bit for bit in the file's precision; cells have the stress of their
    nodes' displacements (E = 1) wherever they are */
-static void CheckFrame(hid_t file, Simulation *simulation, const Record *record, PetscInt frame, PetscInt step, FieldsPrecision precision)
+static void CheckFrame(hid_t file, Simulation *simulation, const Record *record, PetscInt frame, PetscInt step, OutputPrecision precision)
 {
-  const hid_t type = precision == FIELDS_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  const hid_t type = precision == OUTPUT_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
   double      u[NODES][3], v[NODES][3], stress[CELLS][9], von_mises[CELLS], x[NODES][3];
   int         cells[CELLS][2], ranks[CELLS], bodies[CELLS];
   char        name[64];
@@ -162,8 +162,8 @@ static void CheckFrame(hid_t file, Simulation *simulation, const Record *record,
       const PetscReal ui = record->u[step][b][i - begin], vi = record->v[step][b][i - begin];
 
       near(x[first + i][0], positions[i - begin], 0);
-      near(u[first + i][0], precision == FIELDS_DOUBLE ? ui : (double)(float)ui, 0);
-      near(v[first + i][0], precision == FIELDS_DOUBLE ? vi : (double)(float)vi, 0);
+      near(u[first + i][0], precision == OUTPUT_DOUBLE ? ui : (double)(float)ui, 0);
+      near(v[first + i][0], precision == OUTPUT_DOUBLE ? vi : (double)(float)vi, 0);
       for (PetscInt d = 1; d < 3; d++) assert_true(x[first + i][d] == 0 && u[first + i][d] == 0 && v[first + i][d] == 0);
     }
     ok(VecRestoreArrayRead(reference, &positions));
@@ -176,11 +176,11 @@ static void CheckFrame(hid_t file, Simulation *simulation, const Record *record,
       assert_in_range(q, first, first + n_cells);
       near(PetscAbsReal(x[q][0] - x[p][0]), 0.999 / n_cells, 1e-15); /* neighbours: bars of 1 m less half the gap */
       near(stress[c][0], strain,
-           precision == FIELDS_DOUBLE ? 1e-15 : 1e-8); /* displacements of 0.02 m, rounded to 1e-9 m in single precision, over 1/4 m */
+           precision == OUTPUT_DOUBLE ? 1e-15 : 1e-8); /* displacements of 0.02 m, rounded to 1e-9 m in single precision, over 1/4 m */
       near(von_mises[c], PetscAbsReal(stress[c][0]), 0);
       for (PetscInt i = 1; i < 9; i++) assert_true(stress[c][i] == 0);
       if (ranks[c] != rank) continue;
-      near(stress[c][0], precision == FIELDS_DOUBLE ? record->stress[step][b][6 * mine] : (double)(float)record->stress[step][b][6 * mine],
+      near(stress[c][0], precision == OUTPUT_DOUBLE ? record->stress[step][b][6 * mine] : (double)(float)record->stress[step][b][6 * mine],
            0);
       mine++;
     }
@@ -188,7 +188,7 @@ static void CheckFrame(hid_t file, Simulation *simulation, const Record *record,
 }
 
 /* Frames are steps 0, interval, 2 interval, ..., and the last */
-static void CheckFile(Simulation *simulation, const Record *record, PetscInt interval, FieldsPrecision precision)
+static void CheckFile(Simulation *simulation, const Record *record, PetscInt interval, OutputPrecision precision)
 {
   const PetscInt n    = 1 + (STEPS + interval - 1) / interval;
   hid_t          file = H5Fopen(PATH, H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -207,7 +207,7 @@ static void CheckFile(Simulation *simulation, const Record *record, PetscInt int
   assert_int_equal(CountInXdmf("<Time Value="), n);
 }
 
-static void RunAndCheck(Simulation *simulation, PetscInt interval, FieldsPrecision precision)
+static void RunAndCheck(Simulation *simulation, PetscInt interval, OutputPrecision precision)
 {
   Fields      fields;
   Record      record;
@@ -230,19 +230,19 @@ static void RunAndCheck(Simulation *simulation, PetscInt interval, FieldsPrecisi
 
 static void single_precision_at_every_step(void **state)
 {
-  RunAndCheck((Simulation *)*state, 0, FIELDS_SINGLE);
+  RunAndCheck((Simulation *)*state, 0, OUTPUT_SINGLE);
 }
 
 /* 0, 4, 8, 10 */
 static void double_precision_now_and_then(void **state)
 {
-  RunAndCheck((Simulation *)*state, 4, FIELDS_DOUBLE);
+  RunAndCheck((Simulation *)*state, 4, OUTPUT_DOUBLE);
 }
 
 /* 0 and 10 */
 static void first_and_last_at_least(void **state)
 {
-  RunAndCheck((Simulation *)*state, 1000, FIELDS_DOUBLE);
+  RunAndCheck((Simulation *)*state, 1000, OUTPUT_DOUBLE);
 }
 
 /* The file in the middle of the run, as another program reads it: by a copy, for HDF5 has the file itself open in here */
@@ -284,12 +284,12 @@ static void readable_at_any_time(void **state)
   Fields      fields;
   Record      record;
 
-  CreateRun(simulation, 1, FIELDS_SINGLE, &fields, &record);
+  CreateRun(simulation, 1, OUTPUT_SINGLE, &fields, &record);
   ok(ControllerMonitorSet(simulation->controller, ReadOnTheWay, NULL, NULL));
   ok(ControllerSolve(simulation->controller));
   ok(FieldsFinish(fields));
   ok(FieldsDestroy(&fields));
-  CheckFile(simulation, &record, 1, FIELDS_SINGLE);
+  CheckFile(simulation, &record, 1, OUTPUT_SINGLE);
   Remove();
 }
 
@@ -310,12 +310,12 @@ static void earlier_files_stay(void **state)
     assert_non_null(file);
     fclose(file);
   }
-  CreateRun(simulation, 1, FIELDS_SINGLE, &fields, &record);
+  CreateRun(simulation, 1, OUTPUT_SINGLE, &fields, &record);
   assert_int_equal(CountInXdmf("<Time Value="), 1);
   ok(ControllerSolve(simulation->controller));
   ok(FieldsFinish(fields));
   ok(FieldsDestroy(&fields));
-  CheckFile(simulation, &record, 1, FIELDS_SINGLE);
+  CheckFile(simulation, &record, 1, OUTPUT_SINGLE);
   Remove();
 }
 
@@ -331,7 +331,7 @@ static void what_is_refused(void **state)
 #define refuse(code, words, path, interval)                                                                                                \
   do {                                                                                                                                     \
     fields = NULL;                                                                                                                         \
-    refused(code, words, FieldsCreate(simulation->controller, path, interval, FIELDS_SINGLE, &fields));                                    \
+    refused(code, words, FieldsCreate(simulation->controller, path, interval, OUTPUT_SINGLE, &fields));                                    \
     ok(FieldsDestroy(&fields));                                                                                                            \
   } while (0)
   MPI_Barrier(PETSC_COMM_WORLD);
@@ -344,7 +344,7 @@ static void what_is_refused(void **state)
   refuse(PETSC_ERR_USER_INPUT, "-output_fields_interval 2 makes 10001 frames in this run of 20000 |10000 is the limit; give 3 or more",
          PATH, 2);
   assert_false(Exists(PATH) || Exists(XDMF) || Exists("folder.part"));
-  ok(FieldsCreate(simulation->controller, PATH, 3, FIELDS_SINGLE, &fields)); /* 6668 frames */
+  ok(FieldsCreate(simulation->controller, PATH, 3, OUTPUT_SINGLE, &fields)); /* 6668 frames */
   ok(FieldsDestroy(&fields));
   assert_false(Exists(PATH)); /* it has seen no frame */
   if (IsFirst()) assert_int_equal(rmdir("folder") || rmdir("other.xdmf"), 0);

@@ -129,7 +129,7 @@ static inline void solid_begin(Solid *solid, const Mesh *mesh, const char materi
   ok(MaterialCreate(PETSC_COMM_SELF, &solid->material));
   ok(MaterialSetOptionsPrefix(solid->material, "b_"));
   ok(MaterialSetFromOptions(solid->material));
-  ok(ElementCreate(PETSC_COMM_SELF, "b_", mesh->shape, solid->material, &solid->element));
+  ok(element_create("b_", mesh->shape, solid->material, &solid->element));
 }
 
 static inline void solid_create(Solid *solid, const Mesh *mesh, const char material[], const char more[])
@@ -150,13 +150,13 @@ static inline void solid_destroy(Solid *solid)
 static inline void get_force(const Solid *solid, const Mesh *mesh, const PetscReal u[], PetscReal f[])
 {
   for (PetscInt i = 0; i < mesh->dim * mesh->n_nodes; i++) f[i] = 0;
-  ok((*solid->element->ops.internalforce)(solid->element, u, f));
+  ok((*solid->element->ops->internalforce)(solid->element, u, f));
 }
 
 static inline PetscReal get_energy(const Solid *solid, const PetscReal u[])
 {
   PetscReal energy = -1;
 
-  ok((*solid->element->ops.energy)(solid->element, u, &energy));
+  ok((*solid->element->ops->energy)(solid->element, u, &energy));
   return energy;
 }

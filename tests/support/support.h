@@ -123,6 +123,18 @@ static inline void options_end(PetscOptions options)
   options_drop(options);
 }
 
+/* Elements of a shape on this rank, their options read, not set up */
+static inline PetscErrorCode element_create(const char prefix[], DMPolytopeType cell_type, Material material, Element *element)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementCreate(PETSC_COMM_SELF, element));
+  PetscCall(ElementSetOptionsPrefix(*element, prefix));
+  PetscCall(ElementSetMaterial(*element, material));
+  PetscCall(ElementSetCellType(*element, cell_type));
+  PetscCall(ElementSetFromOptions(*element));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rows that each give the displacement of one node, along the first axis */
 typedef struct {
   PetscInt n, local, begin;

@@ -1,3 +1,4 @@
+/* What the implementation of a contact method needs. */
 #pragma once
 #include <impakt/contact.h>
 #include <impakt/private/bodyrows.h>
@@ -124,13 +125,23 @@ struct _p_Contact {
   void      *data;
 };
 
+PETSC_INTERN PetscFunctionList ContactList;
+
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 
 PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 
+/* What a method calls in a controller step */
+PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
+PETSC_EXTERN PetscErrorCode ContactComputeGaps(Contact);
+PETSC_EXTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactOr(Contact, int *);
+
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
-PETSC_INTERN PetscErrorCode ContactReadObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
@@ -154,16 +165,11 @@ PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
-PETSC_INTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
-PETSC_INTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
-PETSC_INTERN PetscErrorCode ContactComputeGaps(Contact);
-PETSC_INTERN PetscErrorCode ContactOr(Contact, int *);
-PETSC_INTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);

@@ -1,9 +1,11 @@
+/* What the implementation of a constitutive model needs. */
 #pragma once
 #include <impakt/material.h>
 #include <petsc/private/petscimpl.h>
 
 struct _MaterialOps {
   PetscErrorCode (*setfromoptions)(Material);
+  PetscErrorCode (*setup)(Material); /* an error where a constant is missing */
   PetscErrorCode (*view)(Material, PetscViewer);
   PetscErrorCode (*destroy)(Material);
   PetscErrorCode (*kernels)(Material, PetscBool, MaterialKernels *);                     /* in plane stress, or not */
@@ -29,7 +31,9 @@ struct _p_Material {
   void           *data;
 };
 
-PETSC_INTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const void *, const PetscReal[9][8], PetscReal[8]),
+PETSC_INTERN PetscFunctionList MaterialList;
+
+PETSC_EXTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const void *, const PetscReal[9][8], PetscReal[8]),
                                                     MaterialKernels *);
 PETSC_INTERN PetscErrorCode MaterialCreate_LinearElastic(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_SaintVenantKirchhoff(Material);

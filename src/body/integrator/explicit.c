@@ -86,13 +86,6 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetFromOptions(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(TSSetFromOptions(body->time.ts));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SetRows(Body body, const PetscMPIInt changed[])
 {
   PetscFunctionBegin;
@@ -250,18 +243,17 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&explicit));
-  integrator->data               = explicit;
-  integrator->has_inertia        = PETSC_TRUE;
-  integrator->needs_stable_step  = PETSC_TRUE;
-  integrator->divides_by_mass    = PETSC_TRUE;
-  integrator->staggered          = 0.25;
-  integrator->affine             = PETSC_TRUE;
-  integrator->ops.setfromoptions = SetFromOptions;
-  integrator->ops.setup          = SetUp;
-  integrator->ops.setrows        = SetRows;
-  integrator->ops.finishsubstep  = FinishSubstep;
-  integrator->ops.save           = Save;
-  integrator->ops.restore        = Restore;
-  integrator->ops.destroy        = Destroy;
+  integrator->data              = explicit;
+  integrator->has_inertia       = PETSC_TRUE;
+  integrator->needs_stable_step = PETSC_TRUE;
+  integrator->divides_by_mass   = PETSC_TRUE;
+  integrator->staggered         = 0.25;
+  integrator->affine            = PETSC_TRUE;
+  integrator->ops.setup         = SetUp;
+  integrator->ops.setrows       = SetRows;
+  integrator->ops.finishsubstep = FinishSubstep;
+  integrator->ops.save          = Save;
+  integrator->ops.restore       = Restore;
+  integrator->ops.destroy       = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

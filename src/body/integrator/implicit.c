@@ -42,17 +42,19 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetFromOptions(Body body)
+static PetscErrorCode SetDefaults(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(TSAlpha2SetParams(body->time.ts, ALPHA_M, ALPHA_F, GAMMA, BETA));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetParameters(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
   const char   *prefix   = ((PetscObject)body)->prefix;
-  TSAdapt       adapt;
 
   PetscFunctionBegin;
-  PetscCall(TSAlpha2SetParams(body->time.ts, ALPHA_M, ALPHA_F, GAMMA, BETA));
-  PetscCall(TSGetAdapt(body->time.ts, &adapt));
-  PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
-  PetscCall(TSSetFromOptions(body->time.ts));
   PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
   PetscCheck(implicit->beta > 0 && implicit->alpha_f > 0 && implicit->alpha_m > 0 && implicit->gamma > 0,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
@@ -249,7 +251,8 @@ PetscErrorCode BodyIntegratorCreate_Implicit(BodyIntegrator integrator)
   PetscFunctionBegin;
   PetscCall(BodyImplicitCreate(integrator));
   integrator->has_inertia          = PETSC_TRUE;
-  integrator->ops.setfromoptions   = SetFromOptions;
+  integrator->ops.setdefaults      = SetDefaults;
+  integrator->ops.getparameters    = GetParameters;
   integrator->ops.setup            = SetUp;
   integrator->ops.finishsubstep    = FinishSubstep;
   integrator->ops.repeat           = Repeat;

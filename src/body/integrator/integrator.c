@@ -25,7 +25,8 @@ static PetscErrorCode ListKnown(char text[], size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The integrator for a TS of that type, as body->integrator */
+/* The integrator for a TS of that type, as body->integrator, in place of another one that is there; that one stays where the type is
+   unknown */
 PetscErrorCode BodyIntegratorCreate(Body body, const char type[])
 {
   char text[256];
@@ -36,7 +37,9 @@ PetscErrorCode BodyIntegratorCreate(Body body, const char type[])
 
     PetscCall(PetscStrcmp(type, known[i].type, &same));
     if (!same) continue;
+    PetscCall(BodyIntegratorDestroy(body));
     PetscCall(PetscNew(&body->integrator));
+    body->integrator->type = known[i].type;
     PetscCall((*known[i].create)(body->integrator));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

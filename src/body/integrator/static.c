@@ -31,12 +31,11 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetFromOptions(Body body)
+static PetscErrorCode GetParameters(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  PetscCall(TSSetFromOptions(body->time.ts));
   PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
   PetscCheck(implicit->alpha_m == 1 && implicit->alpha_f == 1 && implicit->gamma > 0 && implicit->beta > 0,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
@@ -105,7 +104,7 @@ PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator integrator)
   PetscFunctionBegin;
   PetscCall(BodyImplicitCreate(integrator));
   integrator->affine               = PETSC_TRUE;
-  integrator->ops.setfromoptions   = SetFromOptions;
+  integrator->ops.getparameters    = GetParameters;
   integrator->ops.setup            = SetUp;
   integrator->ops.finishsubstep    = FinishSubstep;
   integrator->ops.repeat           = Repeat;

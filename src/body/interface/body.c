@@ -1,51 +1,10 @@
 /* Creation, set-up and destruction of a body. */
 #include <body/layout/bodyimpl.h>
-
-PetscClassId  BODY_CLASSID = 0;
-PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
-
-/*@
-  BodyRegisterAll - registers the class, its materials and elements
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `Body`, `ImpaktInitialize()`
-@*/
-PetscErrorCode BodyRegisterAll(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscClassIdRegister("Body", &BODY_CLASSID));
-  PetscCall(PetscLogEventRegister("BodyIntegrate", BODY_CLASSID, &BODY_Integrate));
-  PetscCall(PetscLogEventRegister("BodyCompliance", BODY_CLASSID, &BODY_Compliance));
-  PetscCall(PetscLogEventRegister("BodyForce", BODY_CLASSID, &BODY_InternalForce));
-  PetscCall(PetscLogEventRegister("BodyLayerForce", BODY_CLASSID, &BODY_LayerForce));
-  PetscCall(PetscLogEventRegister("BodyTangent", BODY_CLASSID, &BODY_Tangent));
-  PetscCall(MaterialRegisterAll());
-  PetscCall(ElementRegisterAll());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include <sys/citations.h>
+#include "bodysetup.h"
 
 /*@
-  BodyFinalizePackage - empties the registries of materials and elements
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `BodyRegisterAll()`
-@*/
-PetscErrorCode BodyFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  PetscCall(ElementFinalizePackage());
-  PetscCall(MaterialFinalizePackage());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyCreate - creates a body, whose mesh, material and integrator come from options that begin with its name
+  BodyCreate - creates a body, whose mesh, material and integrator come from the program or from options that begin with its name
 
   Collective
 
@@ -58,18 +17,25 @@ PetscErrorCode BodyFinalizePackage(void)
 
   Level: beginner
 
-.seealso: `Body`, `BodySetFromOptions()`, `BodyDestroy()`
+.seealso: `Body`, `BodySetDM()`, `BodySetMaterial()`, `BodySetFromOptions()`, `BodySetUp()`, `BodyDestroy()`
 @*/
 PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
 {
   char prefix[128];
 
   PetscFunctionBegin;
+  PetscAssertPointer(name, 2);
+  PetscAssertPointer(body, 3);
+  PetscCall(BodyInitializePackage());
   PetscCall(PetscHeaderCreate(*body, BODY_CLASSID, "Body", "Deformable body", "Body", comm, BodyDestroy, BodyView));
   PetscCall(PetscObjectSetName((PetscObject)*body, name));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*body, prefix));
   PetscCallMPI(MPI_Comm_size(comm, &(*body)->rows.size));
+  (*body)->mass.type         = (BodyMassType)PETSC_DECIDE;
+  (*body)->mass.redistribute = PETSC_TRUE;
+  PetscCall(ElementCreate(comm, &(*body)->model.element));
+  PetscCall(ElementSetOptionsPrefix((*body)->model.element, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,6 +57,8 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(body, start, 2);
+  PetscValidLogicalCollectiveReal(body, step, 3);
   body->time.start           = start;
   body->time.controller_step = step;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -123,6 +91,8 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  if (n) PetscAssertPointer(vertices, 3);
+  PetscCall(BodySetUpDiscretization(body));
   PetscCall(BodyCreateVec(body, &marks));
   local = marks;
   if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
@@ -204,8 +174,9 @@ PetscErrorCode BodySetUp(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->mesh.dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
+  PetscCall(BodySetUpDiscretization(body));
   PetscCall(SetUpRows(body));
+  if (body->mass.redistribute && body->rows.global) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
   PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));
   PetscCall(BodyStateCreate(body, PETSC_FALSE, &body->saved));
   for (PetscInt k = 0; k < 3; k++) PetscCall(BodyCreateVec(body, &body->work.nodes[k]));
@@ -226,8 +197,11 @@ PetscErrorCode BodySetUp(Body body)
     PetscCall(BodyCreateVec(body, &body->substep_start.v));
   }
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));
+  PetscCall(MaterialViewFromOptions(body->model.material, (PetscObject)body, "-material_view"));
+  PetscCall(ElementViewFromOptions(body->model.element, (PetscObject)body, "-element_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
+  PetscCall(BodyViewFromOptions(body, NULL, "-body_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

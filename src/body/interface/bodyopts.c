@@ -1,6 +1,7 @@
 /* A body from its options, and its initial state. */
 #include <body/layout/bodyimpl.h>
 #include <impakt/mesh.h>
+#include "bodysetup.h"
 
 /* Every body named by -bodies must be described somewhere */
 static PetscErrorCode CheckDescribed(Body body)
@@ -24,79 +25,22 @@ static PetscErrorCode CreateMesh(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -<body>_ts_time_step takes a word where PETSc's own option of that name takes a number */
-static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
-{
-  const char *prefix = ((PetscObject)body)->prefix;
-  char        text[64], full[160];
-  PetscBool   set, is_auto;
-
-  PetscFunctionBegin;
-  *hidden = PETSC_FALSE;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_time_step", text, sizeof(text), &set));
-  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
-  if (is_auto) {
-    body->time.requested_step = -1;
-    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
-    PetscCall(PetscOptionsClearValue(NULL, full));
-    *hidden = PETSC_TRUE;
-  } else {
-    PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &body->time.requested_step, NULL));
-    PetscCheck(body->time.requested_step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-               "-%sts_time_step %s: a time step must be positive", prefix, text);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateTime(Body body)
-{
-  MPI_Comm    comm     = PetscObjectComm((PetscObject)body);
-  const char *prefix   = ((PetscObject)body)->prefix;
-  char        type[64] = TSALPHA2, full[160];
-  PetscBool   hidden;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
-  PetscCall(BodyIntegratorCreate(body, type));
-  PetscCall(ReadTimeStep(body, &hidden));
-  PetscCall(TSCreate(comm, &body->time.ts));
-  PetscCall(TSSetOptionsPrefix(body->time.ts, prefix));
-  PetscCall(TSSetDM(body->time.ts, body->mesh.dm));
-  PetscCall(TSSetType(body->time.ts, type));
-  PetscCall((*body->integrator->ops.setfromoptions)(body));
-  if (hidden) {
-    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
-    PetscCall(PetscOptionsSetValue(NULL, full, "auto"));
-    PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_time_step", NULL)); /* it has been used */
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Mass matrices that are not diagonal have to be factored, which a body that divides by the mass in each substep does not pay for in two
-   and three dimensions */
 static PetscErrorCode ReadMass(Body body)
 {
-  PetscFunctionBegin;
-  body->mass.type         = body->integrator->divides_by_mass && body->mesh.dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
-  body->mass.redistribute = PETSC_TRUE;
-  PetscObjectOptionsBegin((PetscObject)body);
-  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetFromOptions", BodyMassTypes, (PetscEnum)body->mass.type,
-                             (PetscEnum *)&body->mass.type, NULL));
-  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetFromOptions",
-                             body->mass.redistribute, &body->mass.redistribute, NULL));
-  PetscOptionsEnd();
-  if (!body->integrator->has_inertia) body->mass.redistribute = PETSC_FALSE; /* there is none to move */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  BodyMassType type;
+  PetscBool    redistribute = body->mass.redistribute;
 
-static PetscErrorCode ReadLoads(Body body)
-{
   PetscFunctionBegin;
-  PetscCall(BodyLoadsSetFromOptions(body));
-  PetscCall(BodyLoadsGetHeld(body, &body->held.n, &body->held.dofs));
-  body->held.any = (PetscBool)(body->held.n > 0);
-  PetscCall(BodyAnyRank(body, &body->held.any));
+  PetscCall(BodySetUpMassType(body));
+  type = body->mass.type;
+  PetscObjectOptionsBegin((PetscObject)body);
+  PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetMassType", BodyMassTypes, (PetscEnum)type, (PetscEnum *)&type, NULL));
+  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetMassRedistribute",
+                             redistribute, &redistribute, NULL));
+  PetscOptionsEnd();
+  PetscCall(BodySetMassType(body, type));
+  PetscCall(BodySetMassRedistribute(body, redistribute));
+  PetscCall(BodySetUpMassType(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,24 +65,35 @@ static PetscErrorCode ReadLoads(Body body)
 
   Level: beginner
 
-.seealso: `Body`, `BodySetUp()`
+  Note:
+  Mesh and material that the program has set before (`BodySetDM()`, `BodySetMaterial()`) are left as they are, and so is what else it has
+  set and the options do not name. Functions that look at the mesh, such as `BodyAddTraction()`, come after this one.
+
+.seealso: `Body`, `BodySetDM()`, `BodySetMaterial()`, `BodySetTSType()`, `BodySetMassType()`, `BodySetUp()`
 @*/
 PetscErrorCode BodySetFromOptions(Body body)
 {
+  MPI_Comm comm = PetscObjectComm((PetscObject)body);
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(!body->mesh.dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has its options already",
+  PetscCheck(!body->mesh.positions, comm, PETSC_ERR_ARG_WRONGSTATE,
+             "Body '%s' has its options, or its loads, already: call BodySetFromOptions() once, and before functions that look at the mesh",
              body->hdr.name);
-  PetscCall(CheckDescribed(body));
-  PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->model.material));
-  PetscCall(MaterialSetOptionsPrefix(body->model.material, ((PetscObject)body)->prefix));
-  PetscCall(MaterialSetFromOptions(body->model.material));
-  PetscCall(MaterialIsLinear(body->model.material, &body->model.linear));
-  PetscCall(CreateMesh(body));
-  PetscCall(BodySetUpLayout(body));
-  PetscCall(CreateTime(body));
+  if (!body->mesh.dm) PetscCall(CheckDescribed(body));
+  if (!body->model.material) {
+    PetscCall(MaterialCreate(comm, &body->model.material));
+    PetscCall(MaterialSetOptionsPrefix(body->model.material, ((PetscObject)body)->prefix));
+    PetscCall(MaterialSetFromOptions(body->model.material));
+  }
+  if (!body->mesh.dm) PetscCall(CreateMesh(body));
+  PetscCall(BodySetUpCells(body));
+  PetscCall(ElementSetFromOptions(body->model.element));
+  PetscCall(BodySetUpMesh(body));
+  PetscCall(BodySetTimeFromOptions(body));
   PetscCall(ReadMass(body));
-  PetscCall(ReadLoads(body));
+  PetscCall(BodyLoadsSetFromOptions(body));
+  PetscCall(BodyNoteHeld(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -24,19 +24,24 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 
   Input Parameters:
 + body   - the `Body`
-- viewer - an ASCII viewer
+- viewer - an ASCII viewer, `NULL` for standard output
 
   Level: beginner
 
-.seealso: `Body`
+.seealso: `Body`, `BodyViewFromOptions()`
 @*/
 PetscErrorCode BodyView(Body body, PetscViewer viewer)
 {
-  TSType   type;
-  PetscInt dofs;
+  TSType    type;
+  PetscInt  dofs;
+  PetscBool ascii;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)body), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(VecGetSize(body->mesh.positions, &dofs));
   PetscCall(TSGetType(body->time.ts, &type));
@@ -50,6 +55,31 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
 }
 
 /*@
+  BodyViewFromOptions - prints a body where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ body   - the `Body`, set up
+. object - has the prefix of the option, `NULL` for the body
+- name   - the option
+
+  Options Database Key:
+. -<body>_body_view - print the body at its set-up
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode BodyViewFromOptions(Body body, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)body, object, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetDM - the mesh
 
   Not Collective
@@ -58,40 +88,18 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
 . body - the `Body`
 
   Output Parameter:
-. dm - its `DMPLEX`, owned by the body
+. dm - its `DMPLEX`, owned by the body; `NULL` until it has one
 
   Level: intermediate
 
-.seealso: `Body`
+.seealso: `Body`, `BodySetDM()`
 @*/
 PetscErrorCode BodyGetDM(Body body, DM *dm)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(dm, 2);
   *dm = body->mesh.dm;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetTS - the time integrator
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. ts - its `TS`, owned by the body
-
-  Level: intermediate
-
-.seealso: `Body`
-@*/
-PetscErrorCode BodyGetTS(Body body, TS *ts)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  *ts = body->time.ts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,16 +112,17 @@ PetscErrorCode BodyGetTS(Body body, TS *ts)
 . body - the `Body`
 
   Output Parameter:
-. material - its `Material`, owned by the body
+. material - its `Material`, owned by the body; `NULL` until it has one
 
   Level: intermediate
 
-.seealso: `Body`, `Material`
+.seealso: `Body`, `BodySetMaterial()`
 @*/
 PetscErrorCode BodyGetMaterial(Body body, Material *material)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(material, 2);
   *material = body->model.material;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,6 +146,7 @@ PetscErrorCode BodyGetSubsteps(Body body, PetscInt *substeps)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(substeps, 2);
   *substeps = body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -163,6 +173,7 @@ PetscErrorCode BodyGetStableStep(Body body, PetscReal *step)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(step, 2);
   PetscCall(BodyComputeStableStep(body));
   *step = body->time.stable_step;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -217,6 +228,7 @@ PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(positions, 2);
   *positions = body->mesh.positions;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -240,8 +252,8 @@ PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->integrator, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
-  *is_explicit = body->integrator->needs_stable_step;
+  PetscAssertPointer(is_explicit, 2);
+  *is_explicit = body->integrator ? body->integrator->needs_stable_step : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -264,8 +276,8 @@ PetscErrorCode BodyIsStatic(Body body, PetscBool *is_static)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->integrator, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
-  *is_static = (PetscBool)!body->integrator->has_inertia;
+  PetscAssertPointer(is_static, 2);
+  *is_static = body->integrator ? (PetscBool)!body->integrator->has_inertia : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -288,7 +300,7 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->integrator, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetFromOptions() first");
+  PetscAssertPointer(redistributed, 2);
   *redistributed = (PetscBool)(body->mass.redistribute || !body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -299,7 +311,7 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
   Not Collective
 
   Input Parameter:
-. body - the `Body`, after `BodySetFromOptions()`
+. body - the `Body`, with mesh and loads
 
   Output Parameters:
 + n    - how many of this rank's
@@ -307,12 +319,14 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
 
   Level: developer
 
-.seealso: `Body`, `BodySetFromOptions()`
+.seealso: `Body`, `BodyAddDisplacement()`, `BodySetFromOptions()`
 @*/
 PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(n, 2);
+  PetscAssertPointer(dofs, 3);
   *n    = body->held.n;
   *dofs = body->held.dofs;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -39,7 +39,7 @@ PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscRe
   for (PetscInt e = 0; e < element->count; e++) {
     const PetscInt *nodes = body->mesh.connectivity + e * n;
 
-    PetscCall((*element->ops.points)(element, e, x, weight));
+    PetscCall((*element->ops->points)(element, e, x, weight));
     for (PetscInt p = 0; p < element->n_points; p++) {
       ExpressionPoint point = {.t = body->state.time};
 

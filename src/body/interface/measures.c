@@ -30,7 +30,7 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  PetscCall((*body->model.element->ops.energy)(body->model.element, u, potential));
+  PetscCall((*body->model.element->ops->energy)(body->model.element, u, potential));
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

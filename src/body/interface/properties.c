@@ -20,6 +20,8 @@ PetscErrorCode BodyGetDimension(Body body, PetscInt *dim)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(dim, 2);
+  PetscCheck(body->mesh.dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has no mesh yet", body->hdr.name);
   PetscCall(DMGetCoordinateDim(body->mesh.dm, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,8 +14,9 @@ typedef enum { BODY_SLOT_SAVED, BODY_SLOT_KEPT, BODY_SLOTS } BodySlot;
 
 /* Those marked (NULL) may be missing */
 typedef struct {
-  PetscErrorCode (*setfromoptions)(Body); /* sets the defaults of the TS, calls TSSetFromOptions(), reads and checks its parameters */
-  PetscErrorCode (*setup)(Body);          /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
+  PetscErrorCode (*setdefaults)(Body);   /* (NULL) gives a TS that has just been made the parameters that are Impakt's default */
+  PetscErrorCode (*getparameters)(Body); /* (NULL) reads and checks the parameters of the TS, after program and options have set them */
+  PetscErrorCode (*setup)(Body);         /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
   PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* the rows that are marked, of all ranks, have new entries */
   PetscErrorCode (*checksubstep)(
       Body); /* (NULL) after TSStep(): an error that says why where the equations of the substep were not solved */
@@ -42,6 +43,7 @@ typedef struct {
 } BodyIntegratorOps;
 
 struct _n_BodyIntegrator {
+  const char       *type; /* of the TS that it is for */
   BodyIntegratorOps ops;
   void             *data;
   /* known from creation on */
@@ -49,7 +51,7 @@ struct _n_BodyIntegrator {
   PetscBool needs_stable_step; /* substeps are bounded by 2 / omega_max */
   PetscBool divides_by_mass;   /* each substep divides by the mass, so that factoring it has to be paid for */
   PetscReal staggered;         /* the energy that the scheme conserves has 1/2 (v'Mv - staggered dt^2 a'Ma) for kinetic energy */
-  /* known after setfromoptions() */
+  /* known after getparameters() */
   PetscBool affine; /* for linear materials, displacements at the ends of substeps are affine in the contact forces at these ends alone */
   /* known after setup() */
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */

@@ -1,5 +1,6 @@
 /* Mesh and numbering: what the element loops and vectors of a body run over. */
 #include "bodyimpl.h"
+#include "cells.h"
 
 /* One node at each vertex, `dim` displacements at each node */
 static PetscErrorCode SetUpSection(Body body)
@@ -74,7 +75,8 @@ static PetscErrorCode SetUpCoordinates(Body body, PetscInt vstart, PetscInt vend
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+/* The shape of all cells, and with it that of the elements */
+PetscErrorCode BodySetUpCells(Body body)
 {
   PetscInt       cstart, cend;
   int            shape[2] = {DM_NUM_POLYTOPES, -1};
@@ -100,11 +102,20 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
       -shape[0] == shape[1], PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
       "The mesh of body '%s' mixes cells of shape '%s' and '%s'; one shape in a body is supported; give each shape a body of its own",
       body->hdr.name, DMPolytopeTypes[-shape[0]], DMPolytopeTypes[cell]);
-  PetscCall(
-      ElementCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, cell, body->model.material, &body->model.element));
+  PetscCall(ElementSetMaterial(body->model.element, body->model.material));
+  PetscCall(ElementSetCellType(body->model.element, cell));
   PetscCheck(body->model.element->dim == body->mesh.dim, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
              "Body '%s': cells of shape '%s' in %" PetscInt_FMT " dimensions are not supported", body->hdr.name, DMPolytopeTypes[cell],
              body->mesh.dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+{
+  PetscInt cstart, cend;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
   PetscCall(PetscMalloc1((cend - cstart) * body->model.element->nodes, &body->mesh.connectivity));
   for (PetscInt c = cstart; c < cend; c++) {
     PetscInt *closure = NULL, n_points, nodes = 0;
@@ -114,14 +125,15 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
       if (closure[2 * p] >= vstart && closure[2 * p] < vend)
         body->mesh.connectivity[(c - cstart) * body->model.element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
     PetscCall(DMPlexRestoreTransitiveClosure(body->mesh.dm, c, PETSC_TRUE, &n_points, &closure));
-    PetscCall(DMPlexInvertCell(cell, body->mesh.connectivity +
-                                         (c - cstart) * body->model.element->nodes)); /* from DMPLEX's order of vertices to the usual one */
+    PetscCall(DMPlexInvertCell(body->mesh.cell_shape,
+                               body->mesh.connectivity +
+                                   (c - cstart) * body->model.element->nodes)); /* from DMPLEX's order of vertices to the usual one */
   }
   PetscCall(ElementSetUp(body->model.element, cend - cstart, body->mesh.connectivity, body->mesh.coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbering, coordinates, connectivity and elements from the DMPlex */
+/* Numbering, coordinates, connectivity and elements from the DMPlex, after BodySetUpCells() */
 PetscErrorCode BodySetUpLayout(Body body)
 {
   PetscInt     vstart, vend, *node_of_vertex;
@@ -221,6 +233,10 @@ PetscErrorCode BodyGetCells(Body body, DMPolytopeType *shape, PetscInt *n_cells,
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(shape, 2);
+  PetscAssertPointer(n_cells, 3);
+  PetscAssertPointer(n_nodes, 4);
+  PetscAssertPointer(cells, 5);
   PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
   PetscCall(PetscMalloc1(n, cells));
   for (PetscInt i = 0; i < n; i++) {

@@ -38,62 +38,43 @@ static PetscErrorCode GetNames(Body body, const char name[], PetscInt *n, char *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -<body>_<list>_<surface> */
-static PetscErrorCode GetSurfaceComponents(Body body, const char list[], const char surface[], PetscBool allow_free,
-                                           Expression components[])
+/* The value of -<body>_<list>_<surface> */
+static PetscErrorCode GetSurfaceText(Body body, const char list[], const char surface[], const char *text[])
 {
-  const char *prefix = ((PetscObject)body)->prefix, *text;
+  const char *prefix = ((PetscObject)body)->prefix;
   char        name[LOADS_NAME_LENGTH];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s", list, surface));
-  PetscCall(BodyLoadsGetText(body, name, &text));
-  PetscCheck(text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s names '%s', but there is no -%s%s with its components",
+  PetscCall(BodyLoadsGetText(body, name, text));
+  PetscCheck(*text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s names '%s', but there is no -%s%s with its components",
              prefix, list, surface, prefix, name);
-  PetscCall(BodyLoadsGetComponents(body, name, text, allow_free, components));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ReadDisplacements(Body body, PetscInt n, char **names)
 {
-  struct _BodyLoads *loads = body->loads;
+  const char *text;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n, &loads->prescribed));
-  loads->n_prescribed = n;
   for (PetscInt i = 0; i < n; i++) {
-    char name[LOADS_NAME_LENGTH];
-
-    PetscCall(PetscSNPrintf(name, sizeof(name), "boundary_displacement_%s", names[i]));
-    PetscCall(GetSurfaceComponents(body, "boundary_displacement", names[i], PETSC_TRUE, loads->prescribed[i].component));
-    PetscCall(BodyLoadsRefuseNormal(body, name, loads->prescribed[i].component));
+    PetscCall(GetSurfaceText(body, "boundary_displacement", names[i], &text));
+    PetscCall(BodyLoadsAddDisplacement(body, names[i], text));
   }
-  PetscCall(BodyLoadsSetUpHeld(body, n, names));
+  PetscCall(BodyLoadsSetUpHeld(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ReadForces(Body body, PetscInt n, char **names, const char body_force[])
 {
-  struct _BodyLoads *loads = body->loads;
+  const char *text;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n + 1, &loads->loads));
   for (PetscInt i = 0; i < n; i++) {
-    Load *load = &loads->loads[loads->n_loads++];
-
-    load->on_faces = PETSC_TRUE;
-    PetscCall(GetSurfaceComponents(body, "boundary_traction", names[i], PETSC_FALSE, load->component));
-    PetscCall(BodyFacesCreate(body, names[i], &load->faces));
+    PetscCall(GetSurfaceText(body, "boundary_traction", names[i], &text));
+    PetscCall(BodyLoadsAddTraction(body, names[i], text));
   }
-  if (body_force) {
-    Load *load = &loads->loads[loads->n_loads++];
-
-    PetscCheck(body->model.element->ops.points, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
-               "-%sbody_force: elements of shape '%s' do not support it", ((PetscObject)body)->prefix,
-               DMPolytopeTypes[body->mesh.cell_shape]);
-    PetscCall(BodyLoadsGetComponents(body, "body_force", body_force, PETSC_FALSE, load->component));
-    PetscCall(BodyLoadsRefuseNormal(body, "body_force", load->component));
-  }
+  if (body_force) PetscCall(BodyLoadsAddBodyForce(body, body_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,7 +18,7 @@ static PetscErrorCode GetPoints(Body body, const Load *load, PetscInt i, PetscIn
   *n_points = element->n_points;
   *n_nodes  = element->nodes;
   *nodes    = element->connectivity + i * *n_nodes;
-  PetscCall((*element->ops.points)(element, i, loads->x, loads->weights));
+  PetscCall((*element->ops->points)(element, i, loads->x, loads->weights));
   for (PetscInt g = 0; g < *n_points; g++) {
     for (PetscInt d = 0; d < 3; d++) {
       loads->points[g].x[d] = d < body->mesh.dim ? loads->x[g * body->mesh.dim + d] : 0;

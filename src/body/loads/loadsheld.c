@@ -22,16 +22,17 @@ static PetscErrorCode MarkHeld(Body body, PetscInt i, const char surface[], Vec 
 
 /* For each owned dof 1 + the number of the last prescription that holds it, else 0. A rank may own a node of a surface without
    having a face of it. */
-static PetscErrorCode MarkAllHeld(Body body, PetscInt n, char **names, Vec marks)
+static PetscErrorCode MarkAllHeld(Body body, Vec marks)
 {
-  const PetscBool ghosted = (PetscBool)(body->rows.size > 1);
-  PetscErrorCode  error   = PETSC_SUCCESS;
-  Vec             local   = marks;
+  const PetscBool          ghosted = (PetscBool)(body->rows.size > 1);
+  const struct _BodyLoads *loads   = body->loads;
+  PetscErrorCode           error   = PETSC_SUCCESS;
+  Vec                      local   = marks;
 
   PetscFunctionBegin;
   if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
   PetscCall(VecSet(local, 0));
-  for (PetscInt i = 0; i < n && !error; i++) error = MarkHeld(body, i, names[i], local);
+  for (PetscInt i = 0; i < loads->n_prescribed && !error; i++) error = MarkHeld(body, i, loads->prescribed[i].surface, local);
   if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
   PetscCall(error);
   if (ghosted) {
@@ -75,11 +76,24 @@ static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which dofs are held, and by which prescription */
-PetscErrorCode BodyLoadsSetUpHeld(Body body, PetscInt n, char **names)
+static PetscErrorCode DestroyGroups(struct _BodyLoads *loads)
+{
+  PetscFunctionBegin;
+  for (PetscInt g = 0; g < loads->n_groups; g++) {
+    PetscCall(PetscFree(loads->groups[g].held.dofs));
+    PetscCall(PetscFree(loads->groups[g].held.values));
+  }
+  PetscCall(PetscFree(loads->groups));
+  PetscCall(PetscFree(loads->held_dofs));
+  loads->n_groups = loads->n_held = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which dofs are held, and by which prescription; to be called again when one has been added */
+PetscErrorCode BodyLoadsSetUpHeld(Body body)
 {
   struct _BodyLoads *loads  = body->loads;
-  const PetscInt     n_dofs = body->mesh.owned_nodes * body->mesh.dim;
+  const PetscInt     n_dofs = body->mesh.owned_nodes * body->mesh.dim, n = loads->n_prescribed;
   PetscInt64         count[2];
   PetscScalar       *mark;
   Vec                marks;
@@ -87,8 +101,9 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body, PetscInt n, char **names)
 
   PetscFunctionBegin;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DestroyGroups(loads));
   PetscCall(BodyCreateVec(body, &marks));
-  error = MarkAllHeld(body, n, names, marks);
+  error = MarkAllHeld(body, marks);
   if (error) PetscCall(VecDestroy(&marks));
   PetscCall(error);
   PetscCall(VecGetArray(marks, &mark));
@@ -167,14 +182,11 @@ PetscErrorCode BodyLoadsPrescribe(Body body, PetscReal t, Vec u, Vec v, Vec a)
 PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *loads)
 {
   PetscFunctionBegin;
-  for (PetscInt g = 0; g < loads->n_groups; g++) {
-    PetscCall(PetscFree(loads->groups[g].held.dofs));
-    PetscCall(PetscFree(loads->groups[g].held.values));
-  }
-  for (PetscInt i = 0; i < loads->n_prescribed; i++)
+  PetscCall(DestroyGroups(loads));
+  for (PetscInt i = 0; i < loads->n_prescribed; i++) {
+    PetscCall(PetscFree(loads->prescribed[i].surface));
     for (int d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&loads->prescribed[i].component[d]));
-  PetscCall(PetscFree(loads->groups));
-  PetscCall(PetscFree(loads->held_dofs));
+  }
   PetscCall(PetscFree(loads->prescribed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

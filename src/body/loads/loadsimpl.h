@@ -38,6 +38,7 @@ typedef struct {
 } HeldDofs;
 
 typedef struct {
+  char      *surface;
   Expression component[3]; /* NULL: free */
 } PrescribedDisplacement;
 
@@ -62,7 +63,12 @@ struct _BodyLoads {
 PETSC_INTERN PetscErrorCode BodyLoadsGetText(Body, const char[], const char *[]);
 PETSC_INTERN PetscErrorCode BodyLoadsGetComponents(Body, const char[], const char[], PetscBool, Expression[]);
 PETSC_INTERN PetscErrorCode BodyLoadsRefuseNormal(Body, const char[], const Expression[]);
-PETSC_INTERN PetscErrorCode BodyLoadsSetUpHeld(Body, PetscInt, char **);
+PETSC_INTERN PetscErrorCode BodyLoadsAddDisplacement(Body, const char[], const char[]);
+PETSC_INTERN PetscErrorCode BodyLoadsAddTraction(Body, const char[], const char[]);
+PETSC_INTERN PetscErrorCode BodyLoadsAddBodyForce(Body, const char[]);
+PETSC_INTERN void           BodyLoadsSetGravity(Body, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyLoadsSetInitial(Body, PetscBool, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyLoadsSetUpHeld(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyForces(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsReadInitialState(Body);

@@ -67,6 +67,22 @@ PetscErrorCode BodyLoadsReadInitialState(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The same displacement [m] or velocity [m/s] at all nodes */
+PetscErrorCode BodyLoadsSetInitial(Body body, PetscBool velocity, const PetscReal value[])
+{
+  PetscScalar *at;
+  Vec          values;
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateVec(body, &values));
+  PetscCall(VecGetArrayWrite(values, &at));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) at[i] = value[i % body->mesh.dim];
+  PetscCall(VecRestoreArrayWrite(values, &at));
+  PetscCall(PetscObjectCompose((PetscObject)body, initial[velocity ? 1 : 0], (PetscObject)values));
+  PetscCall(VecDestroy(&values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Displacement [m] and velocity [m/s] of owned nodes at the start: those of the options, else zero, and those of held dofs as they
    are prescribed */
 PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)

@@ -161,7 +161,7 @@ PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
     PetscCall(PetscArraycpy(layer->coordinates + k * dim, body->mesh.coordinates + nodes[k] * dim, dim));
     PetscCall(PetscArraycpy(layer->numbers + k * dim, number + nodes[k] * dim, dim));
   }
-  PetscCall(ElementCreateLike(body->model.element, body->model.material, &layer->element));
+  PetscCall(ElementDuplicate(body->model.element, NULL, &layer->element));
   PetscCall(ElementSetUp(layer->element, count, layer->connectivity, layer->coordinates));
   PetscCall(CreateScatters(body, layer, n_nodes, nodes, of_layer));
   PetscCall(FindNear(body, layer));
@@ -194,7 +194,7 @@ PetscErrorCode BodyLayerLinearize(Body body, Material material)
 
   PetscFunctionBegin;
   if (!layer || layer->linearized) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElementCreateLike(layer->element, material, &layer->linearized));
+  PetscCall(ElementDuplicate(layer->element, material, &layer->linearized));
   PetscCall(ElementSetUp(layer->linearized, layer->element->count, layer->connectivity, layer->coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,7 +220,7 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
   PetscCall(VecGetArrayRead(layer->u, &u_array));
   PetscCall(VecGetArrayWrite(layer->f, &f_array));
   PetscCall(PetscArrayzero(f_array, layer->n_dofs));
-  PetscCall((*element->ops.internalforce)(element, u_array, f_array));
+  PetscCall((*element->ops->internalforce)(element, u_array, f_array));
   for (PetscInt i = 0; i < layer->n_dofs; i++) f_array[i] = -f_array[i];
   PetscCall(VecRestoreArrayWrite(layer->f, &f_array));
   PetscCall(VecRestoreArrayRead(layer->u, &u_array));
@@ -262,7 +262,7 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
   for (PetscInt e = 0; e < layer->element->count; e++) {
     for (PetscInt i = 0; i < n; i++)
       dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->mesh.dim] * body->mesh.dim + i % body->mesh.dim];
-    PetscCall((*layer->element->ops.stiffness)(layer->element, e, at, element));
+    PetscCall((*layer->element->ops->stiffness)(layer->element, e, at, element));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES)); /* leaves negative numbers out */
   }
   PetscCall(VecRestoreArrayRead(near, &at));

@@ -26,7 +26,7 @@ PetscErrorCode BodyPrepareLinearized(Body body)
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   if (body->model.linear || body->model.linearized_element) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MaterialLinearize(body->model.material, &body->model.linearized_material));
-  PetscCall(ElementCreateLike(body->model.element, body->model.linearized_material, &body->model.linearized_element));
+  PetscCall(ElementDuplicate(body->model.element, body->model.linearized_material, &body->model.linearized_element));
   PetscCall(ElementSetUp(body->model.linearized_element, body->model.element->count, body->mesh.connectivity, body->mesh.coordinates));
   PetscCall(BodyLayerLinearize(body, body->model.linearized_material));
   PetscFunctionReturn(PETSC_SUCCESS);

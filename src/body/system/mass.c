@@ -11,7 +11,7 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
   PetscInt        inner = 0;
 
   PetscFunctionBegin;
-  PetscCall((*body->model.element->ops.mass)(body->model.element, e, M));
+  PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
   if (body->mass.type != BODY_MASS_CONSISTENT) {
     const PetscReal lumped = body->mass.type == BODY_MASS_LUMPED ? 1.0 : 0.5;
 
@@ -88,7 +88,7 @@ static PetscErrorCode ComputeMassShift(Body body)
 
     for (PetscInt a = 0; a < n; a++) moved = (PetscBool)(moved || body->layer.contains[nodes[a]]);
     if (!moved) continue;
-    PetscCall((*body->model.element->ops.mass)(body->model.element, e, M));
+    PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt b = 0; b < n; b++)
         for (PetscInt d = 0; d < dim; d++) sums[d] -= M[(a * dim) * n * dim + b * dim] * body->mesh.coordinates[nodes[a] * dim + d];

@@ -63,7 +63,7 @@ static PetscErrorCode CollectMass(Body body, Vec vec)
 
     for (PetscInt a = 0; a < n; a++) inner += !body->layer.contains[nodes[a]];
     if (inner) continue;
-    PetscCall((*body->model.element->ops.mass)(body->model.element, e, M));
+    PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt b = 0; b < n; b++) sum += M[a * dim * n * dim + b * dim];
     for (PetscInt a = 0; a < n; a++) mass[nodes[a] * dim] += sum / n;

@@ -43,7 +43,7 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscSca
 
   PetscFunctionBegin;
   *largest = 0;
-  PetscCall((*body->model.element->ops.stiffness)(body->model.element, e, zero, K));
+  PetscCall((*body->model.element->ops->stiffness)(body->model.element, e, zero, K));
   PetscCall(BodyGetElementMass(body, e, M));
   for (PetscInt i = 0; i < n; i++)
     if (!IsMassless(body, nodes[i / body->mesh.dim])) kept[n_kept++] = i;
@@ -118,7 +118,7 @@ static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscRea
       for (PetscInt i = 0; i < n && norm > 0; i++) u[i] *= PROBE_STRAIN * chunk->size[c] / norm;
     }
     PetscCall(PetscArrayzero(chunk->f, chunk->count * n));
-    PetscCall((*element->ops.internalforce)(element, chunk->u, chunk->f));
+    PetscCall((*element->ops->internalforce)(element, chunk->u, chunk->f));
     for (PetscInt c = 0; c < chunk->count; c++) {
       PetscReal *u = chunk->u + c * n, *f = chunk->f + c * n, uKu = 0, uMu = 0;
 
@@ -146,7 +146,7 @@ static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
   for (PetscInt begin = 0; begin < body->model.element->count; begin += CHUNK) {
     chunk.count = PetscMin(CHUNK, body->model.element->count - begin);
     PetscCall(FillChunk(body, begin, &chunk));
-    PetscCall(ElementCreate(PETSC_COMM_SELF, ((PetscObject)body)->prefix, body->mesh.cell_shape, body->model.material, &element));
+    PetscCall(ElementDuplicate(body->model.element, NULL, &element));
     PetscCall(ElementSetUp(element, chunk.count, chunk.connectivity, chunk.coordinates));
     PetscCall(Iterate(body, element, &chunk, eigenvalues + begin));
     PetscCall(ElementDestroy(&element));

@@ -17,7 +17,7 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   if (ghosted) PetscCall(VecGhostGetLocalForm(f, &f_local));
   PetscCall(VecGetArrayWrite(f_local, &f_array));
   PetscCall(PetscArrayzero(f_array, body->mesh.local_nodes * body->mesh.dim));
-  PetscCall((*element->ops.internalforce)(element, u_array, f_array));
+  PetscCall((*element->ops->internalforce)(element, u_array, f_array));
   PetscCall(VecRestoreArrayWrite(f_local, &f_array));
   PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
   if (ghosted) {
@@ -159,7 +159,7 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
     array = zero;
   }
   for (PetscInt e = 0; e < body->model.element->count; e++) {
-    PetscCall((*element->ops.stiffness)(element, e, array, tangent));
+    PetscCall((*element->ops->stiffness)(element, e, array, tangent));
     PetscCall(BodyGetElementDofs(body, e, dofs));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, tangent, ADD_VALUES));
   }
@@ -207,7 +207,7 @@ PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  PetscCall((*body->model.element->ops.stress)(body->model.element, u, stress));
+  PetscCall((*body->model.element->ops->stress)(body->model.element, u, stress));
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

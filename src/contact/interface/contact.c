@@ -1,4 +1,4 @@
-/* The class: creation, options, step, destruction. */
+/* The class: creation, type, step, view, destruction. */
 #include <impakt/private/contactimpl.h>
 #include <sys/names.h>
 
@@ -7,73 +7,6 @@
    0.05. */
 #define SLIP_BOUND  0.2
 #define ANGLE_BOUND 0.1
-
-PetscClassId  CONTACT_CLASSID = 0;
-PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
-
-const char *const ContactLaws[]        = {"frictionless", "tied", "ContactLaw", "CONTACT_LAW_", NULL};
-const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
-
-static PetscFunctionList ContactList = NULL;
-
-/*@C
-  ContactRegister - adds a contact method to the registry
-
-  Not Collective
-
-  Input Parameters:
-+ name   - its name for `-contact_type`
-- create - function that sets up the type-specific part of a `Contact`
-
-  Level: developer
-
-.seealso: `Contact`, `ContactSetType()`
-@*/
-PetscErrorCode ContactRegister(const char name[], PetscErrorCode (*create)(Contact))
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFunctionListAdd(&ContactList, name, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactRegisterAll - registers the class and all methods that Impakt brings
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ContactRegister()`, `ImpaktInitialize()`
-@*/
-PetscErrorCode ContactRegisterAll(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscClassIdRegister("Contact", &CONTACT_CLASSID));
-  PetscCall(PetscLogEventRegister("ContactStep", CONTACT_CLASSID, &CONTACT_Step));
-  PetscCall(PetscLogEventRegister("ContactSweep", CONTACT_CLASSID, &CONTACT_Sweep));
-  PetscCall(PetscLogEventRegister("ContactUpdate", CONTACT_CLASSID, &CONTACT_Update));
-  PetscCall(ContactRegister(CONTACT_SCHWARZ, ContactCreate_Schwarz));
-  PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
-  PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
-  PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactFinalizePackage - empties the registry
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ContactRegisterAll()`
-@*/
-PetscErrorCode ContactFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFunctionListDestroy(&ContactList));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /*@
   ContactCreate - creates a contact problem without bodies
@@ -93,12 +26,15 @@ PetscErrorCode ContactFinalizePackage(void)
 PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
 {
   PetscFunctionBegin;
+  PetscAssertPointer(contact, 2);
+  PetscCall(ContactInitializePackage());
   PetscCall(
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
   (*contact)->facing      = PETSC_TRUE;
   (*contact)->slip_bound  = SLIP_BOUND;
   (*contact)->angle_bound = ANGLE_BOUND;
+  (*contact)->tolerance   = PETSC_DEFAULT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,7 +46,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   Input Parameters:
 + contact - the `Contact`
 . n       - their number
-- bodies  - the bodies, with mesh but not yet set up
+- bodies  - the bodies, not yet set up
 
   Level: beginner
 
@@ -120,10 +56,13 @@ PetscErrorCode ContactSetBodies(Contact contact, PetscInt n, const Body bodies[]
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveInt(contact, n, 2);
+  if (n) PetscAssertPointer(bodies, 3);
   PetscCheck(!contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "The bodies have been set already");
   contact->n_bodies = n;
   PetscCall(PetscMalloc1(n, &contact->bodies));
   for (PetscInt b = 0; b < n; b++) {
+    PetscValidHeaderSpecific(bodies[b], BODY_CLASSID, 3);
     PetscCall(PetscObjectReference((PetscObject)bodies[b]));
     contact->bodies[b] = bodies[b];
   }
@@ -153,15 +92,21 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(type, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE,
              "The method cannot be changed after ContactSetUp()");
   PetscCall(PetscFunctionListFind(ContactList, type, &create));
-  PetscCheck(create, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
-             "Unknown -contact_type '%s'; known: schwarz, penalty, lagrange, augmented_lagrangian", type);
+  if (!create) {
+    char known[1024];
+
+    PetscCall(NamesOfRegistry(ContactList, sizeof(known), known));
+    SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown -contact_type '%s'; known: %s", type, known);
+  }
   PetscTryTypeMethod(contact, destroy);
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
+  contact->data       = NULL;
   contact->prescribes = PETSC_FALSE;
   PetscCall((*create)(contact));
   PetscCall(PetscObjectChangeTypeName((PetscObject)contact, type));
@@ -177,7 +122,7 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
 . contact - the `Contact`
 
   Output Parameter:
-. type - its name
+. type - its name; `NULL` until it has been chosen
 
   Level: beginner
 
@@ -187,74 +132,8 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(type, 2);
   *type = ((PetscObject)contact)->type_name;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetFromOptions - reads pairs and method from the options
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, with its bodies
-
-  Options Database Keys:
-+ -contact_pairs a:b,b:c                                       - pairs of bodies, Dirichlet side first; a.top:b.bottom for certain
-                                                                 surfaces; default: the two bodies, where there are two
-. -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
-. -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
-. -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the start
-(default); false where bodies move round each other, as balls do
-- -contact_tolerance g                                          - depth that does not yet count as penetration [m]
-
-  Level: beginner
-
-.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`
-@*/
-PetscErrorCode ContactSetFromOptions(Contact contact)
-{
-  char           type[64] = CONTACT_SCHWARZ, **pairs;
-  PetscInt       n;
-  PetscBool      set, none = PETSC_FALSE, all = PETSC_FALSE;
-  PetscErrorCode error = PETSC_SUCCESS;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  contact->tolerance = PETSC_DEFAULT;
-  PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
-  PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetFromOptions",
-                             contact->tolerance, &contact->tolerance, NULL));
-  PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "", ContactConstraints,
-                             (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
-  PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "", ContactStabilizations,
-                             (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
-  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "", ContactLaws, (PetscEnum)contact->law,
-                             (PetscEnum *)&contact->law, NULL));
-  PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start", "",
-                             contact->facing, &contact->facing, NULL));
-  PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "",
-                             contact->slip_bound, &contact->slip_bound, NULL));
-  PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "",
-                             contact->angle_bound, &contact->angle_bound, NULL));
-  PetscOptionsEnd();
-  PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound,
-             (double)contact->angle_bound);
-  PetscCall(ContactReadObstacles(contact));
-  PetscCall(NamesRead(((PetscObject)contact)->prefix, "-contact_pairs", &n, &pairs, &set));
-  if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "none", &none));
-  if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "auto", &all));
-  for (PetscInt p = 0; p < n && !none && !all && !error; p++) error = ContactAddPair(contact, pairs[p]);
-  PetscCall(NamesDestroy(n, &pairs));
-  PetscCall(error);
-  if (all || (!set && (contact->n_bodies == 2 || (contact->n_bodies == 1 && contact->n_obstacles)))) PetscCall(ContactAddAllPairs(contact));
-  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none", contact->n_bodies);
-  PetscCall(ContactSetType(contact, type));
-  PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -325,16 +204,22 @@ PetscErrorCode ContactAccept(Contact contact)
 
   Input Parameters:
 + contact - the `Contact`
-- viewer  - an ASCII viewer
+- viewer  - an ASCII viewer, `NULL` for standard output
 
   Level: beginner
 
-.seealso: `Contact`
+.seealso: `Contact`, `ContactViewFromOptions()`
 @*/
 PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
 {
+  PetscBool ascii;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)contact), &viewer));
+  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
@@ -348,6 +233,31 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   if (contact->stabilization != CONTACT_STABILIZATION_NONE)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->stabilization]));
   PetscTryTypeMethod(contact, view, viewer);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactViewFromOptions - prints pairs and method where an option asks for it
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+. object  - has the prefix of the option, `NULL` for the contact
+- name    - the option
+
+  Options Database Key:
+. -contact_view - print them at the end of the set-up
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactView()`, `PetscObjectViewFromOptions()`
+@*/
+PetscErrorCode ContactViewFromOptions(Contact contact, PetscObject object, const char name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(PetscObjectViewFromOptions((PetscObject)contact, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* Set-up, and what contact tells of itself. */
 #include <impakt/private/contactimpl.h>
+#include <sys/citations.h>
 
 /* Arrays with an entry for each body; traces have one more, for all obstacles */
 static PetscErrorCode AllocateBodies(Contact contact)
@@ -29,8 +30,12 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
+  if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
+  if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactOrderBodies(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
   PetscCall(ContactFindDimension(contact));
   PetscCall(ContactSetUpRows(contact));
   PetscCall(ContactSetUpScales(contact));
@@ -44,6 +49,12 @@ PetscErrorCode ContactSetUp(Contact contact)
   if (contact->n_all_rows) PetscTryTypeMethod(contact, setup);
   contact->setup = PETSC_TRUE;
   PetscCall(ContactCheckInitialGap(contact));
+  PetscCall(ContactViewFromOptions(contact, NULL, "-contact_view"));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++)
+      PetscCall(SurfaceViewFromOptions(contact->pairs[p].surfaces[side], (PetscObject)contact, "-contact_surface_view"));
+    PetscCall(TransferViewFromOptions(contact->pairs[p].transfer, (PetscObject)contact, "-contact_transfer_view"));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,6 +113,7 @@ PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(n, 2);
   *n = contact->n_pairs;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -156,6 +168,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(normal, 3);
   PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -179,6 +192,7 @@ PetscErrorCode ContactGetPenaltyEnergy(Contact contact, PetscReal *energy)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(energy, 2);
   *energy = contact->penalty_energy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -202,6 +216,7 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(counts, 2);
   *counts = contact->counts_made;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -232,6 +247,8 @@ PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal pos
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(position, 3);
+  PetscAssertPointer(velocity, 4);
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
   PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));

@@ -1,6 +1,5 @@
 /* Contact pairs: from their names to surfaces of bodies, and which side takes displacements. */
 #include <impakt/private/contactimpl.h>
-#include <sys/names.h>
 
 /* Mean elements of two bodies are alike if the ratio of their edges is above this, so that round-off does not choose the sides */
 #define ALIKE 0.999
@@ -49,14 +48,14 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   Input Parameters:
 + contact - the `Contact`, with its bodies
 - pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`; or of a body and an
-            obstacle, `ball:floor`
+            obstacle that has been added, `ball:floor`
 
   Options Database Key:
 . -contact_pairs a:b,b:c - pairs
 
   Level: beginner
 
-.seealso: `Contact`, `SurfaceCreate()`
+.seealso: `Contact`, `ContactSetBodies()`, `ContactAddObstacle()`, `SurfaceCreate()`
 @*/
 PetscErrorCode ContactAddPair(Contact contact, const char pair[])
 {
@@ -65,6 +64,7 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(pair, 2);
   PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
   PetscCall(PetscStrncpy(text, pair, sizeof(text)));
   PetscCall(PetscStrchr(text, ':', &colon));
@@ -91,22 +91,6 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddObstacle(Contact contact, const char name[])
-{
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool same;
-
-    PetscCall(PetscStrcmp(name, ((PetscObject)contact->bodies[b])->name, &same));
-    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
-  }
-  PetscCall(ObstacleCreateFromOptions(comm, name, &contact->obstacles[contact->n_obstacles]));
-  contact->n_obstacles++;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Frees pairs and obstacles */
 PetscErrorCode ContactDestroyPairs(Contact contact)
 {
@@ -124,22 +108,6 @@ PetscErrorCode ContactDestroyPairs(Contact contact)
   for (PetscInt o = 0; o < contact->n_obstacles; o++) PetscCall(ObstacleDestroy(&contact->obstacles[o]));
   PetscCall(PetscFree(contact->obstacles));
   PetscCall(PetscFree(contact->pairs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rigid obstacles, by the options */
-PetscErrorCode ContactReadObstacles(Contact contact)
-{
-  PetscErrorCode error = PETSC_SUCCESS;
-  char         **names;
-  PetscInt       n;
-
-  PetscFunctionBegin;
-  PetscCall(NamesRead(NULL, "-obstacles", &n, &names, NULL));
-  PetscCall(PetscMalloc1(n, &contact->obstacles));
-  for (PetscInt o = 0; o < n && !error; o++) error = AddObstacle(contact, names[o]);
-  PetscCall(NamesDestroy(n, &names));
-  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,6 +216,7 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
   PetscBool   hidden;
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
   PetscCall(ContactFindDimension(contact));
   PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
   PetscCall(GetPreferences(contact, preferences));

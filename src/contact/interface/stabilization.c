@@ -1,5 +1,6 @@
 /* What is done against chatter, whatever the method: the naive stabilisation. */
 #include <impakt/private/contactimpl.h>
+#include <sys/citations.h>
 
 const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilized", "ContactStabilization", "CONTACT_STABILIZATION_", NULL};
 
@@ -28,6 +29,7 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
                "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose "
                "these, or -contact_stabilization naive",
                ((PetscObject)contact)->type_name);
+  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(ImpaktCite(CITE_CONTACT_STABILIZED));
   PetscCall(PetscCalloc1(contact->n_rows, &contact->stabilized));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -76,7 +76,7 @@ static PetscReal compute_stable_step_of_elements(Body body)
     PetscReal    eigenvalues[ELEMENT_MAX_DOFS];
     PetscBLASInt one = 1, size, lwork = 8 * ELEMENT_MAX_DOFS, info;
 
-    ok((*body->model.element->ops.stiffness)(body->model.element, e, zero, K));
+    ok((*body->model.element->ops->stiffness)(body->model.element, e, zero, K));
     ok(BodyGetElementMass(body, e, M));
     ok(PetscBLASIntCast(n, &size));
     LAPACKsygv_(&one, "N", "L", &size, K, &size, M, &size, eigenvalues, work, &lwork, &info);

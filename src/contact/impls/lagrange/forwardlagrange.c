@@ -7,6 +7,7 @@
 */
 #include "lagrangeimpl.h"
 #include <contact/compliance/forces.h>
+#include <sys/citations.h>
 
 typedef struct {
   Complementarity forces; /* C: [m/N] */
@@ -104,6 +105,7 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   ForwardLagrange *lagrange;
 
   PetscFunctionBegin;
+  PetscCall(ImpaktCite(CITE_FORWARD_LAGRANGE));
   PetscCall(PetscNew(&lagrange));
   contact->data             = lagrange;
   contact->ops->step        = ContactStep_ForwardLagrange;

@@ -1,5 +1,6 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, destruction. */
 #include "schwarzimpl.h"
+#include <sys/citations.h>
 
 static const char *const ConvergenceTests[] = {"auto", "position", "contact_position", "mismatch", "ConvergenceTest", "CONVERGENCE_", NULL};
 static const char *const Relaxations[]      = {"fixed", "aitken", "Relaxation", "RELAXATION_", NULL};
@@ -92,6 +93,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscBool richardson, damping_set;
 
   PetscFunctionBegin;
+  PetscCall(ImpaktCite(CITE_SCHWARZ));
   PetscCheck(contact->constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take "
              "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");

@@ -9,6 +9,7 @@
    The newest pairs come first; those that add little to them are left out.
 */
 #include "schwarzimpl.h"
+#include <sys/citations.h>
 
 /* parts of a pair that are orthogonal to the newer ones and smaller than this are noise */
 #define INDEPENDENT 1e-2
@@ -19,6 +20,7 @@ PetscErrorCode SchwarzSetUpSecants(Contact contact)
   Secants *secants = &schwarz->secants;
 
   PetscFunctionBegin;
+  PetscCall(ImpaktCite(CITE_SECANTS));
   PetscCall(VecDuplicateVecs(schwarz->outer.x, SCHWARZ_MAX_SECANTS, &secants->dx));
   PetscCall(VecDuplicateVecs(schwarz->outer.x, SCHWARZ_MAX_SECANTS, &secants->df));
   PetscCall(VecDuplicateVecs(schwarz->outer.x, SCHWARZ_MAX_SECANTS, &secants->basis));

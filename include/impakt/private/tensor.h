@@ -1,7 +1,7 @@
 /* Second-order tensors of one point of a batch, in registers: component by component, so that loops over the points vectorise. */
 #pragma once
 #include <math.h>
-#include <sys/simd.h>
+#include <impakt/private/simd.h>
 
 typedef struct {
   PetscReal xx, xy, xz, yx, yy, yz, zx, zy, zz;

@@ -2,7 +2,7 @@
    undeformed element. */
 #pragma once
 #include <impakt/private/elementimpl.h>
-#include <sys/simd.h>
+#include <impakt/private/simd.h>
 
 #define SOLID_MAX_NODES  8
 #define SOLID_MAX_POINTS 8
@@ -26,5 +26,5 @@ typedef struct {
   PetscReal         load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
 } Solid;
 
-PETSC_INTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
-PETSC_INTERN void           SolidStretchThickness(const Solid *, PetscReal H[9][SIMD_WIDTH]);
+PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
+PETSC_EXTERN void           SolidStretchThickness(const Solid *, PetscReal H[9][SIMD_WIDTH]);

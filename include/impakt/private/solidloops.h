@@ -12,7 +12,7 @@
    and includes this. Everything of an element but its nodes is found anew from the coordinates each time: it costs less than fetching it
    from memory. By monomials, gradients at a point of a hexahedron take 27 multiplications where nodes would take 72.
 */
-#include "solid.h"
+#include <impakt/private/solid.h>
 
 /* Gradients of a batch at a point of integration */
 typedef struct {
@@ -280,8 +280,8 @@ static PetscErrorCode Create(Element element, const SolidShape *shape)
 {
   PetscFunctionBegin;
   PetscCall(ElementCreate_Solid(element, shape));
-  element->ops.internalforce = InternalForce;
-  element->ops.energy        = Energy;
-  element->ops.stress        = Stress;
+  element->ops->internalforce = InternalForce;
+  element->ops->energy        = Energy;
+  element->ops->stress        = Stress;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

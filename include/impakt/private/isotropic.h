@@ -9,4 +9,4 @@ typedef struct {
   PetscReal plane_lambda; /* lambda of plane stress: 2 lambda mu / (lambda + 2 mu) [Pa] */
 } Isotropic;
 
-PETSC_INTERN PetscErrorCode MaterialCreate_Isotropic(Material);
+PETSC_EXTERN PetscErrorCode MaterialCreate_Isotropic(Material);

@@ -1,0 +1,43 @@
+/* Finite elements: what turns the displacements of a body's nodes into forces on them. */
+#pragma once
+#include <impakt/material.h>
+#include <petscdmplex.h>
+
+/*S
+   Element - all finite elements of a body on this rank: one shape of cell, one material, flat loops over all of them
+
+   Level: intermediate
+
+   Notes:
+   A body makes its own `Element` from the shape of the cells of its mesh; programs meet elements where they add a shape with
+   `ElementRegister()`. What such an element has to do is in `<impakt/private/elementimpl.h>`; solid elements with a few shape functions
+   are easier to write with the loops in `<impakt/private/solidloops.h>`.
+
+.seealso: `ElementCreate()`, `ElementRegister()`, `BodySetThickness()`, `Material`
+S*/
+typedef struct _p_Element *Element;
+
+PETSC_EXTERN PetscClassId ELEMENT_CLASSID;
+
+PETSC_EXTERN PetscErrorCode ElementInitializePackage(void);
+PETSC_EXTERN PetscErrorCode ElementFinalizePackage(void);
+PETSC_EXTERN PetscErrorCode ElementRegister(DMPolytopeType, PetscErrorCode (*)(Element));
+PETSC_EXTERN PetscErrorCode ElementRegisterAll(void);
+
+PETSC_EXTERN PetscErrorCode ElementCreate(MPI_Comm, Element *);
+PETSC_EXTERN PetscErrorCode ElementSetOptionsPrefix(Element, const char[]);
+PETSC_EXTERN PetscErrorCode ElementSetCellType(Element, DMPolytopeType);
+PETSC_EXTERN PetscErrorCode ElementGetCellType(Element, DMPolytopeType *);
+PETSC_EXTERN PetscErrorCode ElementSetMaterial(Element, Material);
+PETSC_EXTERN PetscErrorCode ElementGetMaterial(Element, Material *);
+PETSC_EXTERN PetscErrorCode ElementSetCrossSection(Element, PetscReal);
+PETSC_EXTERN PetscErrorCode ElementSetThickness(Element, PetscReal);
+PETSC_EXTERN PetscErrorCode ElementGetCrossSection(Element, PetscReal *);
+PETSC_EXTERN PetscErrorCode ElementSetPlaneStress(Element, PetscBool);
+PETSC_EXTERN PetscErrorCode ElementGetPlaneStress(Element, PetscBool *);
+PETSC_EXTERN PetscErrorCode ElementSetFromOptions(Element);
+PETSC_EXTERN PetscErrorCode ElementSetUp(Element, PetscInt, const PetscInt[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode ElementDuplicate(Element, Material, Element *);
+PETSC_EXTERN PetscErrorCode ElementView(Element, PetscViewer);
+PETSC_EXTERN PetscErrorCode ElementViewFromOptions(Element, PetscObject, const char[]);
+PETSC_EXTERN PetscErrorCode ElementDestroy(Element *);

@@ -1,0 +1,172 @@
+/* The time integrator of a body, from the program and from options. */
+#include <body/layout/bodyimpl.h>
+#include "bodysetup.h"
+
+/*@
+  BodySetTSType - chooses the time integrator
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`, not yet set up
+- type - `TSALPHA2` (implicit, the default: Newmark's trapezoidal rule), `TSCENTRALDIFFERENCE` (explicit), or `TSSTATIC` (without
+         inertia)
+
+  Options Database Key:
+. -<body>_ts_type (alpha2|centraldifference|static) - the integrator
+
+  Level: beginner
+
+  Note:
+  The parameters of `TSALPHA2` may be changed after that: `BodyGetTS()`, `TSAlpha2SetParams()`.
+
+.seealso: `Body`, `BodyGetTS()`, `BodySetTimeStep()`, `TSALPHA2`, `TSCENTRALDIFFERENCE`, `TSSTATIC`
+@*/
+PetscErrorCode BodySetTSType(Body body, TSType type)
+{
+  PetscBool same = PETSC_FALSE;
+  TSAdapt   adapt;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(type, 2);
+  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call before BodySetUp()",
+             body->hdr.name);
+  if (body->time.ts) PetscCall(PetscObjectTypeCompare((PetscObject)body->time.ts, type, &same));
+  if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIntegratorCreate(body, type));
+  if (!body->time.ts) {
+    PetscCall(TSCreate(PetscObjectComm((PetscObject)body), &body->time.ts));
+    PetscCall(TSSetOptionsPrefix(body->time.ts, ((PetscObject)body)->prefix));
+  }
+  if (body->mesh.dm) PetscCall(TSSetDM(body->time.ts, body->mesh.dm));
+  PetscCall(TSSetType(body->time.ts, type));
+  PetscCall(TSGetAdapt(body->time.ts, &adapt));
+  PetscCall(TSAdaptSetType(adapt, TSADAPTNONE)); /* substeps stay as they are */
+  if (body->integrator->ops.setdefaults) PetscCall((*body->integrator->ops.setdefaults)(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetTS - the time integrator
+
+  Collective where the body has none yet
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. ts - its `TS`, owned by the body; until it is set up, its parameters may be changed
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetTSType()`
+@*/
+PetscErrorCode BodyGetTS(Body body, TS *ts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(ts, 2);
+  if (!body->time.ts) PetscCall(BodySetTSType(body, TSALPHA2));
+  *ts = body->time.ts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetTimeStep - sets the substep
+
+  Logically Collective
+
+  Input Parameters:
++ body - the `Body`, not yet set up
+- step - [s], of which the controller step must be a multiple; `PETSC_DETERMINE`: 0.9 of the stable explicit step, or less to divide
+         the controller step; 0 (default): the controller step
+
+  Options Database Key:
+. -<body>_ts_time_step (auto|dt) - the substep
+
+  Level: beginner
+
+.seealso: `Body`, `BodyGetSubsteps()`, `BodyGetStableStep()`, `ControllerSetTimes()`
+@*/
+PetscErrorCode BodySetTimeStep(Body body, PetscReal step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(body, step, 2);
+  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call before BodySetUp()",
+             body->hdr.name);
+  PetscCheck(step >= 0 || step == (PetscReal)PETSC_DETERMINE, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "Body '%s': a time step of %g s must not be negative", body->hdr.name, (double)step);
+  body->time.requested_step = step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -<body>_ts_time_step takes a word where PETSc's own option of that name takes a number */
+static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  char        text[64], full[160];
+  PetscBool   set, is_auto;
+
+  PetscFunctionBegin;
+  *hidden = PETSC_FALSE;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_time_step", text, sizeof(text), &set));
+  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
+  if (is_auto) {
+    PetscCall(BodySetTimeStep(body, PETSC_DETERMINE));
+    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
+    PetscCall(PetscOptionsClearValue(NULL, full));
+    *hidden = PETSC_TRUE;
+  } else {
+    PetscReal step = 0;
+
+    PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &step, NULL));
+    PetscCheck(step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sts_time_step %s: a time step must be positive",
+               prefix, text);
+    PetscCall(BodySetTimeStep(body, step));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Type, substep and parameters; what the program has chosen holds where the options are silent */
+PetscErrorCode BodySetTimeFromOptions(Body body)
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  char        type[64], full[160];
+  PetscBool   hidden, set;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), &set));
+  if (set || !body->time.ts) PetscCall(BodySetTSType(body, set ? type : TSALPHA2));
+  PetscCall(TSSetDM(body->time.ts, body->mesh.dm));
+  PetscCall(ReadTimeStep(body, &hidden));
+  PetscCall(TSSetFromOptions(body->time.ts));
+  if (hidden) {
+    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
+    PetscCall(PetscOptionsSetValue(NULL, full, "auto"));
+    PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_time_step", NULL)); /* it has been used */
+  }
+  PetscCall(BodySetUpIntegrator(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The integrator for the TS, whose type and parameters the program may have changed, with these parameters */
+PetscErrorCode BodySetUpIntegrator(Body body)
+{
+  PetscBool same;
+  TSType    type;
+  TS        ts = NULL;
+  DM        dm;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetTS(body, &ts));
+  PetscCall(TSGetType(ts, &type));
+  PetscCall(PetscStrcmp(type, body->integrator->type, &same));
+  if (!same) PetscCall(BodyIntegratorCreate(body, type));
+  PetscCall(TSGetDM(ts, &dm));
+  if (dm != body->mesh.dm) PetscCall(TSSetDM(ts, body->mesh.dm));
+  if (body->integrator->ops.getparameters) PetscCall((*body->integrator->ops.getparameters)(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

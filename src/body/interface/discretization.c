@@ -1,0 +1,61 @@
+/* A body's mesh, elements and integrator made ready: what can be asked of it before its contact rows are known. */
+#include <body/layout/bodyimpl.h>
+#include "bodysetup.h"
+
+/* Mass matrices that are not diagonal have to be factored, which a body that divides by the mass in each substep does not pay for in two
+   and three dimensions */
+PetscErrorCode BodySetUpMassType(Body body)
+{
+  PetscFunctionBegin;
+  if ((int)body->mass.type == PETSC_DECIDE)
+    body->mass.type = body->integrator->divides_by_mass && body->mesh.dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
+  if (!body->integrator->has_inertia) body->mass.redistribute = PETSC_FALSE; /* there is none to move */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes and elements, from mesh and material; nothing where they are there already */
+PetscErrorCode BodySetUpMesh(Body body)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)body);
+
+  PetscFunctionBegin;
+  if (body->mesh.positions) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(body->mesh.dm, comm, PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has no mesh: call BodySetDM() or BodySetFromOptions() first",
+             body->hdr.name);
+  PetscCheck(body->model.material, comm, PETSC_ERR_ARG_WRONGSTATE,
+             "Body '%s' has no material: call BodySetMaterial() or BodySetFromOptions() first", body->hdr.name);
+  PetscCall(MaterialSetUp(body->model.material));
+  PetscCall(MaterialIsLinear(body->model.material, &body->model.linear));
+  PetscCall(BodySetUpCells(body));
+  PetscCall(BodySetUpLayout(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetUpDiscretization - makes elements, numbering and integrator ready
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with mesh and material
+
+  Level: developer
+
+  Notes:
+  The first part of `BodySetUp()`: what contact has to know of a body before it can tell it which rows it has. The mesh and what
+  belongs to the elements cannot be changed after that; integrator, mass, loads and initial state still can.
+
+  Calls beyond the first cost nothing.
+
+.seealso: `Body`, `BodySetDM()`, `BodySetMaterial()`, `BodySetUp()`, `ContactSetUp()`
+@*/
+PetscErrorCode BodySetUpDiscretization(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodySetUpMesh(body));
+  PetscCall(BodySetUpIntegrator(body));
+  PetscCall(BodySetUpMassType(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

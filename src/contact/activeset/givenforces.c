@@ -1,0 +1,65 @@
+/* All bodies under given contact forces: the step of methods that know the forces, or guess them until they fit. */
+#include <impakt/private/contactimpl.h>
+
+/* The force on the rows of a body at each of its substeps; it pushes Neumann sides along the rows and Dirichlet sides against them */
+static PetscErrorCode LoadRows(Contact contact, PetscInt b, const PetscReal end[])
+{
+  Trace        trace = contact->traces[b].force_in;
+  PetscScalar *force;
+  PetscInt     levels;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetSizes(trace, NULL, &levels));
+  for (PetscInt level = 0; level <= levels; level++) {
+    PetscCall(TraceGetLevel(trace, level, &force));
+    for (PetscInt i = 0; i < contact->n_rows; i++) {
+      const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
+      const PetscInt     sign  = (pair->body[1] == b) - (pair->body[0] == b);
+      const PetscReal    start = contact->saved_force[i];
+
+      if (sign) force[i] = sign * (start + (end[i] - start) * level / levels);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactIntegrateForces - advances all bodies from their saved states through one controller step under given contact forces
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- force   - of each row of this rank at the end of the step, compression positive [N]
+
+  Level: developer
+
+  Notes:
+  For implementations of contact methods, which find it in `<impakt/private/contactimpl.h>`. In the course of the step each force goes
+  linearly from that of the last accepted step, `contact->saved_force`, to the one given. Afterwards `contact->gap` has the gaps at the end
+  of the step, `contact->force` the forces, and rows with a force are active.
+
+  May be called any number of times in a step, as a method looks for the forces that fit to the gaps: each call begins at the saved states.
+
+.seealso: `Contact`, `ContactRegister()`, `ContactStep()`
+@*/
+PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (contact->n_rows) PetscAssertPointer(force, 2);
+  PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(LoadRows(contact, b, force));
+    PetscCall(BodyIntegrate(contact->bodies[b]));
+  }
+  PetscCall(ContactComputeGaps(contact));
+  for (PetscInt i = 0; i < contact->n_rows; i++) {
+    contact->force[i]  = force[i];
+    contact->active[i] = (PetscBool)(force[i] != 0);
+  }
+  contact->counts_made.sweeps++;
+  PetscCall(PetscLogEventEnd(CONTACT_Sweep, contact, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

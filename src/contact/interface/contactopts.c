@@ -1,0 +1,120 @@
+/* Contact from the options. */
+#include <impakt/private/contactimpl.h>
+#include <sys/names.h>
+
+/* What the methods share */
+static PetscErrorCode ReadSettings(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetTolerance",
+                             contact->tolerance, &contact->tolerance, NULL));
+  PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetConstraint",
+                             ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
+  PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
+                             (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
+  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "ContactSetLaw", ContactLaws, (PetscEnum)contact->law,
+                             (PetscEnum *)&contact->law, NULL));
+  PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start",
+                             "ContactSetFacing", contact->facing, &contact->facing, NULL));
+  PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "ContactSetBounds",
+                             contact->slip_bound, &contact->slip_bound, NULL));
+  PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "ContactSetBounds",
+                             contact->angle_bound, &contact->angle_bound, NULL));
+  PetscOptionsEnd();
+  PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound,
+             (double)contact->angle_bound);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rigid obstacles, beside those that the program has added */
+static PetscErrorCode ReadObstacles(Contact contact)
+{
+  PetscErrorCode error = PETSC_SUCCESS;
+  char         **names;
+  PetscInt       n;
+
+  PetscFunctionBegin;
+  PetscCall(NamesRead(NULL, "-obstacles", &n, &names, NULL));
+  for (PetscInt o = 0; o < n && !error; o++) {
+    Obstacle obstacle = NULL;
+
+    error = ContactCheckObstacleName(contact, names[o]);
+    if (!error) error = ObstacleCreateFromOptions(PetscObjectComm((PetscObject)contact), names[o], &obstacle);
+    if (!error) error = ContactAddObstacle(contact, obstacle);
+    PetscCall(ObstacleDestroy(&obstacle));
+  }
+  PetscCall(NamesDestroy(n, &names));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Two bodies alone, or a body and obstacles, are pairs by themselves */
+static PetscErrorCode ReadPairs(Contact contact)
+{
+  PetscErrorCode error = PETSC_SUCCESS;
+  char         **pairs;
+  PetscInt       n;
+  PetscBool      set, none = PETSC_FALSE, all = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(NamesRead(((PetscObject)contact)->prefix, "-contact_pairs", &n, &pairs, &set));
+  if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "none", &none));
+  if (set && n == 1) PetscCall(PetscStrcmp(pairs[0], "auto", &all));
+  for (PetscInt p = 0; p < n && !none && !all && !error; p++) error = ContactAddPair(contact, pairs[p]);
+  PetscCall(NamesDestroy(n, &pairs));
+  PetscCall(error);
+  if (!set && !contact->n_pairs) all = (PetscBool)(contact->n_bodies == 2 || (contact->n_bodies == 1 && contact->n_obstacles));
+  if (all) PetscCall(ContactAddAllPairs(contact));
+  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none", contact->n_bodies);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetFromOptions - reads pairs and method from the options
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, with its bodies
+
+  Options Database Keys:
++ -contact_pairs a:b,b:c                                       - pairs of bodies, Dirichlet side first; a.top:b.bottom for certain
+                                                                 surfaces; default: the two bodies, where there are two
+. -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
+. -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
+. -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
+. -contact_law (frictionless|tied)                              - what the surfaces do to each other
+. -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
+                                                                 start (default); false where bodies move round each other, as balls do
+. -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
+- -contact_tolerance g                                          - depth that does not yet count as penetration [m]
+
+  Level: beginner
+
+  Note:
+  What the program has set before holds where the options are silent: pairs of the options come after those that have been added, and
+  the two bodies are a pair by themselves only where none has been.
+
+.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
+          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`
+@*/
+PetscErrorCode ContactSetFromOptions(Contact contact)
+{
+  char type[64];
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(PetscStrncpy(type, ((PetscObject)contact)->type_name ? ((PetscObject)contact)->type_name : CONTACT_SCHWARZ, sizeof(type)));
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
+  PetscOptionsEnd();
+  PetscCall(ReadSettings(contact));
+  PetscCall(ReadObstacles(contact));
+  PetscCall(ReadPairs(contact));
+  PetscCall(ContactSetType(contact, type));
+  PetscTryTypeMethod(contact, setfromoptions);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

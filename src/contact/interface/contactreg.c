@@ -1,0 +1,94 @@
+/* The registry of contact methods, and the package of the class. */
+#include <impakt/private/contactimpl.h>
+#include <sys/package.h>
+
+PetscClassId  CONTACT_CLASSID = 0;
+PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
+
+PetscFunctionList ContactList = NULL;
+
+static PetscBool ContactPackageInitialized = PETSC_FALSE;
+
+/*@C
+  ContactRegister - adds a contact method to the registry
+
+  Not Collective
+
+  Input Parameters:
++ name   - its name for `-contact_type`
+- create - function that sets up the type-specific part of a `Contact`
+
+  Level: developer
+
+  Note:
+  What the function has to fill in is in `<impakt/private/contactimpl.h>`; src/contact/tutorials has an example.
+
+.seealso: `Contact`, `ContactSetType()`
+@*/
+PetscErrorCode ContactRegister(const char name[], PetscErrorCode (*create)(Contact))
+{
+  PetscFunctionBegin;
+  PetscAssertPointer(name, 1);
+  PetscCall(ContactInitializePackage());
+  PetscCall(PetscFunctionListAdd(&ContactList, name, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactRegisterAll - registers all methods that Impakt brings
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ContactRegister()`, `ContactInitializePackage()`
+@*/
+PetscErrorCode ContactRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactRegister(CONTACT_SCHWARZ, ContactCreate_Schwarz));
+  PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
+  PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
+  PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactInitializePackage - registers the class and all methods that Impakt brings; `ContactCreate()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ContactFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode ContactInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (ContactPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  ContactPackageInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Contact", &CONTACT_CLASSID));
+  PetscCall(PetscLogEventRegister("ContactStep", CONTACT_CLASSID, &CONTACT_Step));
+  PetscCall(PetscLogEventRegister("ContactSweep", CONTACT_CLASSID, &CONTACT_Sweep));
+  PetscCall(PetscLogEventRegister("ContactUpdate", CONTACT_CLASSID, &CONTACT_Update));
+  PetscCall(ContactRegisterAll());
+  PetscCall(ImpaktFinishPackage("contact", CONTACT_CLASSID, ContactFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactFinalizePackage - empties the registry; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ContactInitializePackage()`
+@*/
+PetscErrorCode ContactFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListDestroy(&ContactList));
+  ContactPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

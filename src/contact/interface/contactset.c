@@ -1,0 +1,383 @@
+/* What programs set of contact beside its options, whatever the method. */
+#include <impakt/private/contactimpl.h>
+
+const char *const ContactLaws[]        = {"frictionless", "tied", "ContactLaw", "CONTACT_LAW_", NULL};
+const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
+
+#define CheckNotSetUp(contact)                                                                                                             \
+  PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
+             PETSC_FUNCTION_NAME)
+
+/*@
+  ContactSetLaw - sets what contact surfaces do to each other
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- law - a `ContactLaw`, `CONTACT_LAW_FRICTIONLESS` by default
+
+  Options Database Key:
+. -contact_law (frictionless|tied) - the law
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactGetLaw()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetLaw(Contact contact, ContactLaw law)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveEnum(contact, law, 2);
+  CheckNotSetUp(contact);
+  PetscCheck((int)law >= 0 && law <= CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no contact law %d", (int)law);
+  contact->law = law;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetLaw - what contact surfaces do to each other
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. law - see `ContactSetLaw()`
+
+  Level: beginner
+
+.seealso: `Contact`, `ContactSetLaw()`
+@*/
+PetscErrorCode ContactGetLaw(Contact contact, ContactLaw *law)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(law, 2);
+  *law = contact->law;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetConstraint - sets what contact forces keep from becoming negative
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- constraint - a `ContactConstraint`, `CONTACT_CONSTRAINT_GAP` by default
+
+  Options Database Key:
+. -contact_constraint (gap|gap_rate|both) - the constraint
+
+  Level: intermediate
+
+  Reference:
+. * - T. A. Laursen, V. Chawla, Design of energy conserving algorithms for frictionless dynamic contact problems, 1997 (gap rate)
+
+.seealso: `Contact`, `ContactGetConstraint()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetConstraint(Contact contact, ContactConstraint constraint)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveEnum(contact, constraint, 2);
+  CheckNotSetUp(contact);
+  PetscCheck((int)constraint >= 0 && constraint <= CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no constraint %d", (int)constraint);
+  contact->constraint = constraint;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetConstraint - what contact forces keep from becoming negative
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. constraint - see `ContactSetConstraint()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetConstraint()`
+@*/
+PetscErrorCode ContactGetConstraint(Contact contact, ContactConstraint *constraint)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(constraint, 2);
+  *constraint = contact->constraint;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetStabilization - sets what is done against chatter where contact nodes have mass
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- stabilization - a `ContactStabilization`, `CONTACT_STABILIZATION_NONE` by default
+
+  Options Database Key:
+. -contact_stabilization (none|naive|contact_stabilized) - the stabilization
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetStabilization()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetStabilization(Contact contact, ContactStabilization stabilization)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveEnum(contact, stabilization, 2);
+  CheckNotSetUp(contact);
+  PetscCheck((int)stabilization >= 0 && stabilization <= CONTACT_STABILIZATION_CONTACT_STABILIZED, PetscObjectComm((PetscObject)contact),
+             PETSC_ERR_ARG_OUTOFRANGE, "There is no stabilization %d", (int)stabilization);
+  contact->stabilization = stabilization;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetStabilization - what is done against chatter where contact nodes have mass
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. stabilization - see `ContactSetStabilization()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetStabilization()`
+@*/
+PetscErrorCode ContactGetStabilization(Contact contact, ContactStabilization *stabilization)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(stabilization, 2);
+  *stabilization = contact->stabilization;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetFacing - sets whether pairs of whole bodies keep only the faces that see each other at the start
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- facing - `PETSC_TRUE` by default; `PETSC_FALSE` where bodies move round each other, as balls do
+
+  Options Database Key:
+. -contact_facing (true|false) - the faces that are kept
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetFacing()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetFacing(Contact contact, PetscBool facing)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, facing, 2);
+  CheckNotSetUp(contact);
+  contact->facing = facing;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetFacing - whether pairs of whole bodies keep only the faces that see each other at the start
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. facing - see `ContactSetFacing()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetFacing()`
+@*/
+PetscErrorCode ContactGetFacing(Contact contact, PetscBool *facing)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(facing, 2);
+  *facing = contact->facing;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetTolerance - sets the depth that does not yet count as penetration
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- tolerance - [m]; `PETSC_DEFAULT`: a small part of the size of the problem
+
+  Options Database Key:
+. -contact_tolerance g - the depth [m]
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetTolerance()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetTolerance(Contact contact, PetscReal tolerance)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(contact, tolerance, 2);
+  CheckNotSetUp(contact);
+  PetscCheck(tolerance >= 0 || tolerance == (PetscReal)PETSC_DEFAULT, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "A contact tolerance of %g m must not be negative", (double)tolerance);
+  contact->tolerance = tolerance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetTolerance - the depth that does not yet count as penetration
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. tolerance - see `ContactSetTolerance()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetTolerance()`
+@*/
+PetscErrorCode ContactGetTolerance(Contact contact, PetscReal *tolerance)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(tolerance, 2);
+  *tolerance = contact->tolerance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetBounds - sets how far contact surfaces may move along each other before the rows between them are built again
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+. slip    - in parts of a face, 0.2 by default
+- angle   - by which a normal may turn, 0.1 by default [rad]
+
+  Options Database Keys:
++ -contact_slip_bound s  - the slip
+- -contact_angle_bound a - the angle
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetBounds()`, `TransferSetBounds()`
+@*/
+PetscErrorCode ContactSetBounds(Contact contact, PetscReal slip, PetscReal angle)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(contact, slip, 2);
+  PetscValidLogicalCollectiveReal(contact, angle, 3);
+  CheckNotSetUp(contact);
+  PetscCheck(slip > 0 && angle > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "The bounds of slip, %g, and angle, %g, must be positive", (double)slip, (double)angle);
+  contact->slip_bound  = slip;
+  contact->angle_bound = angle;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetBounds - how far contact surfaces may move along each other before the rows between them are built again
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameters:
++ slip  - in parts of a face, or `NULL`
+- angle - by which a normal may turn [rad], or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetBounds()`
+@*/
+PetscErrorCode ContactGetBounds(Contact contact, PetscReal *slip, PetscReal *angle)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (slip) *slip = contact->slip_bound;
+  if (angle) *angle = contact->angle_bound;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs find bodies and obstacles by their names */
+PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)contact);
+  const char *other;
+  PetscBool   same;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(PetscStrcmp(name, ((PetscObject)contact->bodies[b])->name, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
+  }
+  for (PetscInt o = 0; o < contact->n_obstacles; o++) {
+    PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+    PetscCall(PetscStrcmp(name, other, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of an obstacle already", name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactAddObstacle - adds a rigid obstacle that bodies may touch
+
+  Logically Collective
+
+  Input Parameters:
++ contact  - the `Contact`, with its bodies, not yet set up
+- obstacle - the `Obstacle`, complete
+
+  Options Database Key:
+. -obstacles o,p - names of obstacles, with options of their own
+
+  Level: beginner
+
+  Note:
+  A pair of a body and the obstacle makes that body touch it: `ContactAddPair()` with "body:obstacle".
+
+.seealso: `Contact`, `ObstacleCreate()`, `ContactAddPair()`
+@*/
+PetscErrorCode ContactAddObstacle(Contact contact, Obstacle obstacle)
+{
+  const char *name;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 2);
+  CheckNotSetUp(contact);
+  PetscCall(ObstacleSetUp(obstacle));
+  PetscCall(ObstacleGetName(obstacle, &name));
+  PetscCall(ContactCheckObstacleName(contact, name));
+  PetscCall(PetscRealloc((size_t)(contact->n_obstacles + 1) * sizeof(*contact->obstacles), &contact->obstacles));
+  PetscCall(PetscObjectReference((PetscObject)obstacle));
+  contact->obstacles[contact->n_obstacles++] = obstacle;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,300 @@
+/* What programs and options set of a simulation: bodies and times; and the package of the class. */
+#include "controllerimpl.h"
+#include <sys/names.h>
+#include <sys/package.h>
+
+PetscClassId CONTROLLER_CLASSID = 0;
+
+static PetscBool ControllerPackageInitialized = PETSC_FALSE;
+
+/*@
+  ControllerInitializePackage - registers the class; `ControllerCreate()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ControllerFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode ControllerInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (ControllerPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  ControllerPackageInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Controller", &CONTROLLER_CLASSID));
+  PetscCall(ImpaktFinishPackage("controller", CONTROLLER_CLASSID, ControllerFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerFinalizePackage - ends the package; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ControllerInitializePackage()`
+@*/
+PetscErrorCode ControllerFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  ControllerPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerAddBody - adds a body to the simulation
+
+  Logically Collective
+
+  Input Parameters:
++ controller - the `Controller`
+- body       - the `Body`, not yet set up, of a name that no other body has
+
+  Options Database Key:
+. -bodies a,b - names of bodies that are made from options
+
+  Level: beginner
+
+  Note:
+  The body reads no options by this: where it is to, call `BodySetFromOptions()` for it before.
+
+.seealso: `Controller`, `BodyCreate()`, `ControllerGetBodies()`, `ControllerGetContact()`
+@*/
+PetscErrorCode ControllerAddBody(Controller controller, Body body)
+{
+  MPI_Comm  comm;
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 2);
+  comm = PetscObjectComm((PetscObject)controller);
+  PetscCheck(!controller->contact, comm, PETSC_ERR_ARG_WRONGSTATE,
+             "Add all bodies before ControllerGetContact(), ControllerSetFromOptions() and ControllerSetUp()");
+  for (PetscInt b = 0; b < controller->n_bodies; b++) {
+    PetscCall(PetscStrcmp(((PetscObject)controller->bodies[b])->name, ((PetscObject)body)->name, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-bodies names '%s' twice", ((PetscObject)body)->name);
+  }
+  PetscCall(PetscRealloc((size_t)(controller->n_bodies + 1) * sizeof(*controller->bodies), &controller->bodies));
+  PetscCall(PetscObjectReference((PetscObject)body));
+  controller->bodies[controller->n_bodies++] = body;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The bodies that -bodies names */
+static PetscErrorCode ReadBodies(Controller controller)
+{
+  MPI_Comm       comm  = PetscObjectComm((PetscObject)controller);
+  PetscErrorCode error = PETSC_SUCCESS;
+  char         **names;
+  PetscInt       n, first = controller->n_bodies;
+  PetscBool      set;
+
+  PetscFunctionBegin;
+  PetscCall(NamesRead(NULL, "-bodies", &n, &names, &set));
+  PetscCheck(
+      (set && n) || first, comm, PETSC_ERR_USER_INPUT,
+      "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
+  for (PetscInt b = 0; b < n && !error; b++) {
+    Body body = NULL;
+
+    error = BodyCreate(comm, names[b], &body);
+    if (!error) error = ControllerAddBody(controller, body);
+    PetscCall(BodyDestroy(&body));
+  }
+  PetscCall(NamesDestroy(n, &names));
+  PetscCall(error);
+  for (PetscInt b = first; b < controller->n_bodies; b++) PetscCall(BodySetFromOptions(controller->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckTimes(MPI_Comm comm, PetscErrorCode code, PetscReal start, PetscReal end, PetscReal step)
+{
+  PetscFunctionBegin;
+  PetscCheck(step > 0, comm, code, "-time_step %g s must be positive", (double)step);
+  PetscCheck(end > start, comm, code, "-time_end %g s must be later than -time_start %g s", (double)end, (double)start);
+  PetscCheck((end - start) / step < MOST_STEPS, comm, code, "-time_step %g s is too small for %g s of simulated time", (double)step,
+             (double)(end - start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerSetTimes - sets start, end and controller step
+
+  Logically Collective
+
+  Input Parameters:
++ controller - the `Controller`, not yet set up
+. start      - [s]
+. end        - [s]; the run ends with the first controller step that reaches it
+- step       - controller step, at whose ends all bodies are synchronised [s]
+
+  Options Database Keys:
++ -time_start t - the start, default 0
+. -time_end t   - the end
+- -time_step dt - the controller step
+
+  Level: beginner
+
+.seealso: `Controller`, `ControllerGetTimes()`, `BodySetTimeStep()`
+@*/
+PetscErrorCode ControllerSetTimes(Controller controller, PetscReal start, PetscReal end, PetscReal step)
+{
+  MPI_Comm comm;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(controller, start, 2);
+  PetscValidLogicalCollectiveReal(controller, end, 3);
+  PetscValidLogicalCollectiveReal(controller, step, 4);
+  comm = PetscObjectComm((PetscObject)controller);
+  PetscCheck(!controller->setup, comm, PETSC_ERR_ARG_WRONGSTATE, "Call before ControllerSetUp()");
+  PetscCall(CheckTimes(comm, PETSC_ERR_ARG_OUTOFRANGE, start, end, step));
+  controller->time_start = start;
+  controller->time_end   = end;
+  controller->time_step  = step;
+  controller->steps      = (PetscInt)PetscCeilReal((end - start) / step * (1 - STEPS_ROUND_OFF) - STEPS_FLOOR);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadTimes(Controller controller)
+{
+  MPI_Comm  comm  = PetscObjectComm((PetscObject)controller);
+  PetscReal start = controller->time_start, end = controller->time_end, step = controller->time_step;
+  PetscBool set_end, set_step, known                                         = (PetscBool)(controller->time_step > 0);
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)controller);
+  PetscCall(PetscOptionsReal("-time_start", "Start time [s]", "ControllerSetTimes", start, &start, NULL));
+  PetscCall(PetscOptionsReal("-time_end", "End time [s]", "ControllerSetTimes", end, &end, &set_end));
+  PetscCall(PetscOptionsReal("-time_step", "Controller step [s]", "ControllerSetTimes", step, &step, &set_step));
+  PetscOptionsEnd();
+  PetscCheck((set_end && set_step) || known, comm, PETSC_ERR_USER_INPUT, "-time_end and -time_step are needed, in s");
+  PetscCall(CheckTimes(comm, PETSC_ERR_USER_INPUT, start, end, step));
+  PetscCall(ControllerSetTimes(controller, start, end, step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerSetFromOptions - reads times, bodies and contact from the options
+
+  Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Options Database Keys:
++ -bodies a,b         - names of the bodies; options of body a begin with -a_
+. -time_start t       - [s], default 0
+. -time_end t         - [s]; the run ends with the first controller step that reaches it
+. -time_step dt       - controller step, at whose ends all bodies are synchronised [s]
+. -monitor_interval n - a line on the terminal every n controller steps, 0 (default) for none
+- -progress           - a progress bar on standard error, default where that is a terminal
+
+  Level: beginner
+
+  Note:
+  What the program has set before holds where the options are silent; bodies of the options come after those that it has added.
+
+.seealso: `Controller`, `ControllerAddBody()`, `ControllerSetTimes()`, `BodySetFromOptions()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ControllerSetFromOptions(Controller controller)
+{
+  PetscLogDouble begin, end;
+  Contact        contact;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCall(PetscTime(&begin));
+  PetscCall(ControllerSetUpTerminal(controller));
+  if (!controller->contact) PetscCall(ReadBodies(controller));
+  PetscCall(ReadTimes(controller));
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ContactSetFromOptions(contact));
+  PetscCall(PetscTime(&end));
+  controller->setup_seconds = end - begin;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ControllerGetBodies - the bodies
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameters:
++ n      - their number
+- bodies - the bodies, owned by the controller
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerAddBody()`
+@*/
+PetscErrorCode ControllerGetBodies(Controller controller, PetscInt *n, const Body *bodies[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  if (n) *n = controller->n_bodies;
+  if (bodies) *bodies = controller->bodies;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetContact - the contact problem between the bodies
+
+  Collective the first time, when it is made
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameter:
+. contact - the `Contact`, owned by the controller; no body can be added after that
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerAddBody()`, `ContactAddPair()`, `ContactSetType()`
+@*/
+PetscErrorCode ControllerGetContact(Controller controller, Contact *contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(contact, 2);
+  if (!controller->contact) {
+    PetscCheck(controller->n_bodies, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE,
+               "There are no bodies: call ControllerAddBody() or ControllerSetFromOptions() first");
+    PetscCall(ContactCreate(PetscObjectComm((PetscObject)controller), &controller->contact));
+    PetscCall(ContactSetBodies(controller->contact, controller->n_bodies, controller->bodies));
+  }
+  *contact = controller->contact;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetTimes - start, controller step and number of steps
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameters:
++ start - start time [s], or `NULL`
+. step  - controller step [s], or `NULL`
+- steps - number of controller steps, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerSetTimes()`
+@*/
+PetscErrorCode ControllerGetTimes(Controller controller, PetscReal *start, PetscReal *step, PetscInt *steps)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  if (start) *start = controller->time_start;
+  if (step) *step = controller->time_step;
+  if (steps) *steps = controller->steps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,90 @@
+/* The registry of elements, by the shape of a mesh cell, and the package of the class. */
+#include <impakt/private/elementimpl.h>
+#include <sys/package.h>
+
+PetscClassId ELEMENT_CLASSID = 0;
+
+PetscFunctionList ElementList = NULL;
+
+static PetscBool ElementPackageInitialized = PETSC_FALSE;
+
+/*@C
+  ElementRegister - adds the element for a shape of mesh cell to the registry
+
+  Not Collective
+
+  Input Parameters:
++ cell_type - shape of the cell
+- create    - function that sets up the shape-specific part of an `Element`
+
+  Level: developer
+
+  Note:
+  An element that is registered later takes the place of an earlier one of the same shape.
+
+.seealso: `Element`, `ElementSetCellType()`, `MaterialRegister()`
+@*/
+PetscErrorCode ElementRegister(DMPolytopeType cell_type, PetscErrorCode (*create)(Element))
+{
+  PetscFunctionBegin;
+  PetscCall(ElementInitializePackage());
+  PetscCall(PetscFunctionListAdd(&ElementList, DMPolytopeTypes[cell_type], create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementRegisterAll - registers all elements that Impakt brings
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ElementRegister()`, `ElementInitializePackage()`
+@*/
+PetscErrorCode ElementRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementRegister(DM_POLYTOPE_SEGMENT, ElementCreate_Bar2));
+  PetscCall(ElementRegister(DM_POLYTOPE_TRIANGLE, ElementCreate_Tri3));
+  PetscCall(ElementRegister(DM_POLYTOPE_QUADRILATERAL, ElementCreate_Quad4));
+  PetscCall(ElementRegister(DM_POLYTOPE_TETRAHEDRON, ElementCreate_Tet4));
+  PetscCall(ElementRegister(DM_POLYTOPE_HEXAHEDRON, ElementCreate_Hex8));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementInitializePackage - registers the class and all elements that Impakt brings; `ElementCreate()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ElementFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode ElementInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (ElementPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  ElementPackageInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Element", &ELEMENT_CLASSID));
+  PetscCall(ElementRegisterAll());
+  PetscCall(ImpaktFinishPackage("element", ELEMENT_CLASSID, ElementFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementFinalizePackage - empties the registry; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `ElementInitializePackage()`
+@*/
+PetscErrorCode ElementFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListDestroy(&ElementList));
+  ElementPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

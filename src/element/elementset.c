@@ -1,0 +1,137 @@
+/* What programs set of elements beside their options. */
+#include <impakt/private/elementimpl.h>
+
+static PetscErrorCode SetCrossSection(Element element, PetscInt dim, PetscReal value)
+{
+  PetscFunctionBegin;
+  PetscCheck(!element->setup, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE, "Call before ElementSetUp()");
+  PetscCheck(value > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_OUTOFRANGE, "%s %g must be positive",
+             dim == 1 ? "A cross-section of" : "A thickness of", (double)value);
+  element->cross_section     = value;
+  element->cross_section_dim = dim;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementSetCrossSection - sets the cross-sectional area of bars
+
+  Logically Collective
+
+  Input Parameters:
++ element - the `Element`
+- area    - [m^2], 1 by default
+
+  Options Database Key:
+. -<body>_cross_section A - the area
+
+  Level: intermediate
+
+.seealso: `Element`, `ElementSetThickness()`, `ElementGetCrossSection()`
+@*/
+PetscErrorCode ElementSetCrossSection(Element element, PetscReal area)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(element, area, 2);
+  PetscCall(SetCrossSection(element, 1, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementSetThickness - sets the thickness of plane elements
+
+  Logically Collective
+
+  Input Parameters:
++ element   - the `Element`
+- thickness - [m], 1 by default
+
+  Options Database Key:
+. -<body>_thickness h - the thickness
+
+  Level: intermediate
+
+.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetPlaneStress()`, `ElementGetCrossSection()`
+@*/
+PetscErrorCode ElementSetThickness(Element element, PetscReal thickness)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(element, thickness, 2);
+  PetscCall(SetCrossSection(element, 2, thickness));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementGetCrossSection - the cross-sectional area of bars, or the thickness of plane elements
+
+  Not Collective
+
+  Input Parameter:
+. element - the `Element`
+
+  Output Parameter:
+. cross_section - [m^2] of bars, [m] of plane elements, 1 of others
+
+  Level: intermediate
+
+.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetThickness()`
+@*/
+PetscErrorCode ElementGetCrossSection(Element element, PetscReal *cross_section)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscAssertPointer(cross_section, 2);
+  *cross_section = element->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementSetPlaneStress - whether plane elements are free of stress across their plane, or of strain
+
+  Logically Collective
+
+  Input Parameters:
++ element      - the `Element`
+- plane_stress - `PETSC_TRUE` for plane stress, `PETSC_FALSE` (default) for plane strain
+
+  Options Database Key:
+. -<body>_plane_stress (true|false) - plane stress
+
+  Level: intermediate
+
+.seealso: `Element`, `ElementSetThickness()`, `MaterialSetPlaneStress()`
+@*/
+PetscErrorCode ElementSetPlaneStress(Element element, PetscBool plane_stress)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(element, plane_stress, 2);
+  PetscCheck(!element->setup, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE, "Call before ElementSetUp()");
+  element->plane_stress = plane_stress;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementGetPlaneStress - whether plane elements are free of stress across their plane
+
+  Not Collective
+
+  Input Parameter:
+. element - the `Element`
+
+  Output Parameter:
+. plane_stress - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Element`, `ElementSetPlaneStress()`
+@*/
+PetscErrorCode ElementGetPlaneStress(Element element, PetscBool *plane_stress)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscAssertPointer(plane_stress, 2);
+  *plane_stress = element->plane_stress;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

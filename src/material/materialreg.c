@@ -1,0 +1,89 @@
+/* The registry of constitutive models, and the package of the class. */
+#include <impakt/private/materialimpl.h>
+#include <sys/package.h>
+
+PetscClassId MATERIAL_CLASSID = 0;
+
+PetscFunctionList MaterialList = NULL;
+
+static PetscBool MaterialPackageInitialized = PETSC_FALSE;
+
+/*@C
+  MaterialRegister - adds a constitutive model to the registry
+
+  Not Collective
+
+  Input Parameters:
++ name   - its name for `-<body>_material_type`
+- create - function that sets up the type-specific part of a `Material`
+
+  Level: developer
+
+  Note:
+  What the function has to fill in is in `<impakt/private/materialimpl.h>`; src/material/tutorials has an example.
+
+.seealso: `Material`, `MaterialSetType()`, `ElementRegister()`
+@*/
+PetscErrorCode MaterialRegister(const char name[], PetscErrorCode (*create)(Material))
+{
+  PetscFunctionBegin;
+  PetscAssertPointer(name, 1);
+  PetscCall(MaterialInitializePackage());
+  PetscCall(PetscFunctionListAdd(&MaterialList, name, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialRegisterAll - registers all models that Impakt brings
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `MaterialRegister()`, `MaterialInitializePackage()`
+@*/
+PetscErrorCode MaterialRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(MaterialRegister(MATERIAL_LINEAR_ELASTIC, MaterialCreate_LinearElastic));
+  PetscCall(MaterialRegister(MATERIAL_SAINT_VENANT_KIRCHHOFF, MaterialCreate_SaintVenantKirchhoff));
+  PetscCall(MaterialRegister(MATERIAL_NEO_HOOKEAN, MaterialCreate_NeoHookean));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialInitializePackage - registers the class and all models that Impakt brings; `MaterialCreate()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `MaterialFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode MaterialInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (MaterialPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  MaterialPackageInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Material", &MATERIAL_CLASSID));
+  PetscCall(MaterialRegisterAll());
+  PetscCall(ImpaktFinishPackage("material", MATERIAL_CLASSID, MaterialFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MaterialFinalizePackage - empties the registry; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `MaterialInitializePackage()`
+@*/
+PetscErrorCode MaterialFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListDestroy(&MaterialList));
+  MaterialPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
