@@ -63,66 +63,131 @@ typedef enum {
   CONDITIONS_ACTIVE_FORCES /* active rows forced on both sides */
 } ContactConditions;
 
-struct _p_Contact {
-  PETSCHEADER(struct _ContactOps);
-  PetscInt     n_bodies, n_pairs, max_pairs, dim;
-  Body        *bodies;
-  BodyTraces  *traces;     /* per body, and then those of what stays where it is */
-  Mat         *interfaces; /* per body: rows of all pairs */
-  ContactPair *pairs;
-  PetscInt     n_obstacles;
-  Obstacle    *obstacles;
-  ContactLaw   law;
-  PetscBool    prescribes;              /* the method prescribes displacements on Dirichlet sides */
-  PetscBool    facing;                  /* whole bodies come with the faces alone that see each other at the start */
-  PetscReal    slip_bound, angle_bound; /* beyond which rows are built again: parts of a face, rad */
-  PetscInt    *order;                   /* sweep order: Dirichlet sides before their Neumann sides */
-  /* rows of this rank */
-  PetscInt             n_rows, row_begin, n_all_rows;
-  PetscInt            *row_pair;
-  PetscReal           *initial_gap, *area;
-  PetscInt            *row_dof;       /* first displacement of its node in the pair's first body, rank numbering */
-  PetscReal           *row_normal;    /* its direction, 3 numbers, 0 beyond the dimension */
-  PetscBool           *opposite;      /* it has anything to touch */
-  PetscBool           *tied;          /* it is held whatever its force and gap */
-  PetscBool           *dropped;       /* it would be one to touch, but its node is held */
-  PetscBool           *heir;          /* it has been merged with dropped ones */
-  PetscReal           *merged_gap;    /* added to its gap for that [m] */
-  Mat                  merger;        /* dropped rows to those of their neighbours; NULL: there are none */
-  Vec                  places, means; /* work space of the same sizes */
-  PetscBool           *by_force;      /* its force is an unknown of the method, on both sides; NULL: of none */
-  SharedNodes          shared;
-  PetscBool           *changed;                 /* it has new entries */
-  PetscReal           *gap_shift;               /* added to its gap when it was built again [m] */
-  PetscReal           *last_gap;                /* work space: before that */
-  PetscReal           *force, *gap;             /* at the end of the controller step */
-  PetscReal           *saved_force, *saved_gap; /* at its start */
-  PetscBool           *active, *saved_active;
-  PetscBool            fades; /* rows are not let go all at once: their forces fall to zero in the course of the controller step */
-  PetscInt            *release_intervals; /* per row let go in this controller step: between the times at which its force is told; else 0 */
-  PetscInt             release_room;      /* times that each row has room for */
-  PetscReal           *release;           /* per row: its force at these times [N] */
-  BodyCondition       *conditions;        /* work space */
-  PetscInt            *all_row_pair;      /* of all rows, on every rank */
-  int                 *mine_active, *all_active;
-  PetscMPIInt          size, *counts, *offsets;
-  PetscReal           *speeds;    /* work space, per body */
-  PetscReal            tolerance; /* gaps above minus this are not penetration [m] */
-  PetscInt           **node_dofs; /* per body: its owned contact nodes, first displacement, rank numbering */
-  PetscInt            *n_node_dofs, *n_all_nodes;
+/* What the user chooses */
+typedef struct {
+  ContactLaw           law;
   ContactConstraint    constraint;
   ContactStabilization stabilization;
-  PetscBool           *stabilized; /* work space: rows of a body in contact */
-  ContactCounts        counts_made;
-  PetscReal            penalty_energy;
-  /* resultants of the pairs */
-  PetscReal *cross_section; /* per pair: of the first body, which makes areas of `area` */
-  PetscReal *sums, *maxima; /* per pair: work space */
-  PetscReal *impulse;       /* per pair, this rank's share: impulse so far, force at the end of the last accepted step; 3 numbers each */
-  PetscReal  step;          /* controller step [s] */
-  PetscReal  length_scale, force_scale; /* of the problem, see ContactSetUpScales() [m, N] */
-  PetscBool  setup;
-  void      *data;
+  PetscBool            facing;      /* pairs of whole bodies keep only the faces that see each other at the start */
+  PetscReal            slip_bound;  /* slip after which rows are built again [parts of a face] */
+  PetscReal            angle_bound; /* turn of a normal after which they are [rad] */
+  PetscReal            tolerance;   /* depth that does not yet count as penetration [m] */
+} ContactOptions;
+
+/* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
+typedef struct {
+  PetscReal length; /* [m] */
+  PetscReal force;  /* [N] */
+} ContactScale;
+
+/* Contact nodes of each body in its first pair: their mean position and velocity are in the history */
+typedef struct {
+  PetscInt **dofs;  /* first displacement of each node that this rank owns, rank numbering */
+  PetscInt  *n;     /* their number */
+  PetscInt  *n_all; /* the number on all ranks */
+} ContactNodes;
+
+/* The rows: those of this rank, but for n_all */
+typedef struct {
+  PetscInt   n;
+  PetscInt   begin;       /* global number of the first */
+  PetscInt   n_all;       /* number of rows of all ranks */
+  PetscInt  *pair;        /* number of its pair */
+  PetscInt  *dof;         /* first displacement of its node in the pair's first body, rank numbering */
+  PetscReal *normal;      /* its direction: 3 numbers, zero beyond the dimension of space */
+  PetscReal *initial_gap; /* gap without displacements [m] */
+  PetscReal *area;        /* area that it covers [m^2; m in 2-D, 1 in 1-D: times the cross-section of the pair] */
+  PetscBool *opposite;    /* it has a partner opposite */
+  PetscBool *tied;        /* it stays in contact whatever its force */
+  PetscBool *by_force;    /* its force is an unknown of the method, on both sides; NULL: of no row */
+  PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
+  PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
+} ContactRows;
+
+/* Rows whose node is held, and their heirs, see src/contact/rows/heldrows.c */
+typedef struct {
+  PetscBool *dropped;    /* per row: it is held, and would otherwise have a partner opposite */
+  PetscBool *heir;       /* per row: it has taken over shares of dropped ones */
+  PetscReal *merged_gap; /* per row: what that has added to its gap [m] */
+  Mat        merger;     /* new rows by old rows; NULL if none has been dropped */
+  Vec        places;     /* work space: a number for each old row */
+  Vec        means;      /* work space: a number for each new row */
+} ContactHeldRows;
+
+/* The state of each row at the end of the controller step, and at its start */
+typedef struct {
+  PetscReal *force;  /* compression positive [N] */
+  PetscReal *gap;    /* [m] */
+  PetscBool *active; /* it is in contact */
+} ContactState;
+
+/* Forces of rows that are let go in a controller step */
+typedef struct {
+  PetscBool  fades;     /* these forces fall to zero in the course of the step, not all at once */
+  PetscInt  *intervals; /* per row: intervals of the step at whose ends its force is known; 0 if it was not let go in this step */
+  PetscInt   room;      /* times that each row has room for */
+  PetscReal *forces;    /* per row: its force at these times [N] */
+} ContactRelease;
+
+/* What every rank knows of the rows of all ranks */
+typedef struct {
+  PetscMPIInt  size;        /* number of ranks */
+  PetscMPIInt *counts;      /* per rank: number of rows */
+  PetscMPIInt *offsets;     /* per rank: number of its first row */
+  PetscInt    *row_pair;    /* per row of all ranks: number of its pair */
+  int         *mine_active; /* work space: what this rank sends of its rows */
+  int         *all_active;  /* work space: what has been gathered of all rows */
+} ContactRanks;
+
+/* What the forces of each pair amount to */
+typedef struct {
+  PetscReal *cross_section; /* of its first body: turns lengths and points into areas */
+  PetscReal *impulse; /* this rank's share of the impulse so far, 3 numbers, and of the force at the end of the last step, 3 numbers */
+  PetscReal  penalty_energy; /* energy in the penalty springs of all pairs [J] */
+  PetscReal *sums;           /* work space */
+  PetscReal *maxima;         /* work space */
+} ContactResultants;
+
+/* Work space */
+typedef struct {
+  PetscReal     *speeds;     /* per body */
+  PetscReal     *last_gap;   /* per row */
+  BodyCondition *conditions; /* per row */
+  PetscBool     *stabilized; /* per row */
+} ContactWork;
+
+struct _p_Contact {
+  PETSCHEADER(struct _ContactOps);
+  /* The problem */
+  PetscInt       n_bodies;
+  Body          *bodies;
+  PetscInt       dim; /* of space */
+  PetscInt       n_pairs;
+  PetscInt       max_pairs; /* how many there is room for */
+  ContactPair   *pairs;
+  PetscInt       n_obstacles;
+  Obstacle      *obstacles;
+  PetscReal      step; /* controller step [s] */
+  ContactOptions options;
+  ContactScale   scale;
+  /* What goes between contact and bodies */
+  PetscBool         prescribes; /* the method prescribes displacements on Dirichlet sides */
+  PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
+  BodyTraces       *traces;     /* per body; the last ones are those of all obstacles, which do not move */
+  Mat              *interfaces; /* per body: its part of all rows */
+  ContactNodes      nodes;
+  ContactRows       rows;
+  ContactHeldRows   held;
+  SharedNodes       shared;
+  ContactState      end;
+  ContactState      start;
+  ContactRelease    release;
+  ContactRanks      ranks;
+  ContactResultants resultants;
+  ContactCounts     counts;
+  ContactWork       work;
+  PetscBool         setup; /* ContactSetUp() has been called */
+  void             *data;  /* what the method keeps */
 };
 
 PETSC_INTERN PetscFunctionList ContactList;

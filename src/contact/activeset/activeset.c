@@ -4,18 +4,18 @@
 /* What the rows mean to a body */
 void ContactGetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
 {
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
     const PetscBool    takes = (PetscBool)(pair->body[0] == b || pair->body[1] == b);
 
     rows[i] = BODY_FREE;
     if (!takes || conditions == CONDITIONS_FREE) continue;
     if (conditions == CONDITIONS_FORCES) rows[i] = BODY_FORCED;
     if (ContactRowFades(contact, i)) rows[i] = BODY_FORCED;
-    if (!contact->active[i]) continue;
+    if (!contact->end.active[i]) continue;
     if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
     if (conditions == CONDITIONS_SCHWARZ)
-      rows[i] = pair->body[pair->dirichlet] == b && !contact->by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
+      rows[i] = pair->body[pair->dirichlet] == b && !contact->rows.by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
     if (conditions == CONDITIONS_ROBIN) rows[i] = BODY_ROBIN;
   }
 }
@@ -25,8 +25,8 @@ PetscErrorCode ContactSetConditions(Contact contact, ContactConditions condition
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactGetConditions(contact, conditions, b, contact->conditions);
-    PetscCall(BodySetConditions(contact->bodies[b], contact->conditions));
+    ContactGetConditions(contact, conditions, b, contact->work.conditions);
+    PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -37,8 +37,8 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
   int found = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    if (penetrating ? !contact->active[i] && contact->gap[i] < -contact->tolerance : contact->active[i]) found = 1;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (penetrating ? !contact->end.active[i] && contact->end.gap[i] < -contact->options.tolerance : contact->end.active[i]) found = 1;
   PetscCall(ContactOr(contact, &found));
   *any = (PetscBool)(found > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -48,8 +48,8 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
    step with a force that fades */
 void ContactMarkActive(Contact contact, InterfaceMark marks[])
 {
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    marks[i] = contact->active[i] ? INTERFACE_SOLVED : ContactRowFades(contact, i) ? INTERFACE_KNOWN : INTERFACE_LEFT_OUT;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    marks[i] = contact->end.active[i] ? INTERFACE_SOLVED : ContactRowFades(contact, i) ? INTERFACE_KNOWN : INTERFACE_LEFT_OUT;
 }
 
 /* Gaps at the end of the controller step, from the bodies' traces */
@@ -67,7 +67,7 @@ PetscErrorCode ContactComputeGaps(Contact contact)
       PetscCall(TraceGetSizes(traces->displacement, NULL, &levels));
       PetscCall(TraceGetLevel(traces->displacement, levels, &end[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) contact->gap[i] = contact->initial_gap[i] + end[1][i] - end[0][i];
+    for (PetscInt i = pair->begin; i < pair->end; i++) contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i] - end[0][i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -77,8 +77,8 @@ PetscErrorCode ContactComputeGaps(Contact contact)
 PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
 {
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(contact->active, contact->n_rows));
-  PetscCall(PetscArrayzero(contact->force, contact->n_rows));
+  PetscCall(PetscArrayzero(contact->end.active, contact->rows.n));
+  PetscCall(PetscArrayzero(contact->end.force, contact->rows.n));
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES)); /* of rows that are let go, as none is active */
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ContactLoadReleased(contact, b));

@@ -12,10 +12,10 @@ static PetscErrorCode LoadRows(Contact contact, PetscInt b, const PetscReal end[
   PetscCall(TraceGetSizes(trace, NULL, &levels));
   for (PetscInt level = 0; level <= levels; level++) {
     PetscCall(TraceGetLevel(trace, level, &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
       const PetscInt     sign  = (pair->body[1] == b) - (pair->body[0] == b);
-      const PetscReal    start = contact->saved_force[i];
+      const PetscReal    start = contact->start.force[i];
 
       if (sign) force[i] = sign * (start + (end[i] - start) * level / levels);
     }
@@ -36,8 +36,8 @@ static PetscErrorCode LoadRows(Contact contact, PetscInt b, const PetscReal end[
 
   Notes:
   For implementations of contact methods, which find it in `<impakt/private/contactimpl.h>`. In the course of the step each force goes
-  linearly from that of the last accepted step, `contact->saved_force`, to the one given. Afterwards `contact->gap` has the gaps at the end
-  of the step, `contact->force` the forces, and rows with a force are active.
+  linearly from that of the last accepted step, `contact->start.force`, to the one given. Afterwards `contact->end.gap` has the gaps at the
+end of the step, `contact->end.force` the forces, and rows with a force are active.
 
   May be called any number of times in a step, as a method looks for the forces that fit to the gaps: each call begins at the saved states.
 
@@ -47,7 +47,7 @@ PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  if (contact->n_rows) PetscAssertPointer(force, 2);
+  if (contact->rows.n) PetscAssertPointer(force, 2);
   PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -55,11 +55,11 @@ PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
     PetscCall(BodyIntegrate(contact->bodies[b]));
   }
   PetscCall(ContactComputeGaps(contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    contact->force[i]  = force[i];
-    contact->active[i] = (PetscBool)(force[i] != 0);
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    contact->end.force[i]  = force[i];
+    contact->end.active[i] = (PetscBool)(force[i] != 0);
   }
-  contact->counts_made.sweeps++;
+  contact->counts.sweeps++;
   PetscCall(PetscLogEventEnd(CONTACT_Sweep, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

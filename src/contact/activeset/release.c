@@ -5,7 +5,7 @@
    that their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and momentum with it. */
 PetscBool ContactRowFades(Contact contact, PetscInt i)
 {
-  return (PetscBool)(contact->fades && !contact->active[i] && contact->release_intervals[i]);
+  return (PetscBool)(contact->release.fades && !contact->end.active[i] && contact->release.intervals[i]);
 }
 
 /* Room for the forces of rows that are let go: of each at the ends of as many intervals as a body makes substeps */
@@ -16,17 +16,17 @@ PetscErrorCode ContactSetUpRelease(Contact contact)
     PetscInt substeps;
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    contact->release_room = PetscMax(contact->release_room, substeps + 1);
+    contact->release.room = PetscMax(contact->release.room, substeps + 1);
   }
-  PetscCall(PetscCalloc2(contact->n_rows, &contact->release_intervals, contact->n_rows * contact->release_room, &contact->release));
+  PetscCall(PetscCalloc2(contact->rows.n, &contact->release.intervals, contact->rows.n * contact->release.room, &contact->release.forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Force of a row that has been let go at a part (0 to 1) of the controller step */
 static PetscReal ReleasedForce(Contact contact, PetscInt i, PetscReal part)
 {
-  const PetscInt   n     = contact->release_intervals[i];
-  const PetscReal *force = contact->release + i * contact->release_room, at = part * n;
+  const PetscInt   n     = contact->release.intervals[i];
+  const PetscReal *force = contact->release.forces + i * contact->release.room, at = part * n;
   const PetscInt   k = PetscMin((PetscInt)PetscFloorReal(at), n - 1);
 
   return force[k] + (at - k) * (force[k + 1] - force[k]);
@@ -37,9 +37,9 @@ static PetscReal ReleasedForce(Contact contact, PetscInt i, PetscReal part)
    start brings them */
 static PetscErrorCode ReleasedSums(Contact contact, PetscInt i, PetscInt levels, PetscReal *sum, PetscReal *wanted)
 {
-  const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
-  const PetscInt     n     = contact->release_intervals[i];
-  const PetscReal   *force = contact->release + i * contact->release_room;
+  const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
+  const PetscInt     n     = contact->release.intervals[i];
+  const PetscReal   *force = contact->release.forces + i * contact->release.room;
   PetscReal          impulse;
 
   PetscFunctionBegin;
@@ -66,8 +66,8 @@ static PetscErrorCode BalanceReleased(Contact contact, PetscInt b)
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(trace, NULL, &levels));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
     PetscReal          sum = 0, wanted = 0;
 
     if (!pair->by_force || !ContactRowFades(contact, i) || (pair->body[0] != b && pair->body[1] != b)) continue;
@@ -90,10 +90,10 @@ PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(trace, NULL, &levels));
-  for (PetscInt level = 0; level <= levels && contact->fades; level++) {
+  for (PetscInt level = 0; level <= levels && contact->release.fades; level++) {
     PetscCall(TraceGetLevel(trace, level, &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
       if (ContactRowFades(contact, i))
         force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * ReleasedForce(contact, i, (PetscReal)level / levels);
@@ -108,23 +108,23 @@ PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
    ten discs 1.4e-3 of the energy at a step of 4e-4 s. */
 PetscErrorCode ContactReleaseRow(Contact contact, PetscInt i, PetscBool waveform)
 {
-  const ContactPair *pair     = &contact->pairs[contact->row_pair[i]];
+  const ContactPair *pair     = &contact->pairs[contact->rows.pair[i]];
   const Trace        reaction = contact->traces[pair->body[pair->dirichlet]].reaction;
   const PetscReal    sign     = pair->dirichlet == 0 ? -1 : 1; /* a reaction holds the Dirichlet side against the contact force */
-  PetscReal         *force    = contact->release + i * contact->release_room;
+  PetscReal         *force    = contact->release.forces + i * contact->release.room;
   PetscInt           n        = 1;
 
   PetscFunctionBegin;
   if (waveform) PetscCall(TraceGetSizes(reaction, NULL, &n));
-  force[0]                      = contact->saved_active[i] ? PetscMax(contact->saved_force[i], 0) : 0;
+  force[0]                      = contact->start.active[i] ? PetscMax(contact->start.force[i], 0) : 0;
   force[n]                      = 0;
-  contact->release_intervals[i] = force[0] > 0 ? n : 0;
+  contact->release.intervals[i] = force[0] > 0 ? n : 0;
   for (PetscInt k = 1; k < n; k++) {
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(reaction, k, &values));
     force[k] = k > 1 && force[k - 1] == 0 ? 0 : PetscMax(sign * PetscRealPart(values[i]), 0);
-    if (force[k] > 0) contact->release_intervals[i] = n;
+    if (force[k] > 0) contact->release.intervals[i] = n;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,6 +133,6 @@ PetscErrorCode ContactReleaseRow(Contact contact, PetscInt i, PetscBool waveform
 PetscErrorCode ContactBeginRelease(Contact contact)
 {
   PetscFunctionBegin;
-  if (contact->fades) PetscCall(PetscArrayzero(contact->release_intervals, contact->n_rows));
+  if (contact->release.fades) PetscCall(PetscArrayzero(contact->release.intervals, contact->rows.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -28,10 +28,10 @@ PetscErrorCode RoundsCreate(Contact contact, PetscBool active[], const PetscReal
   rounds->active    = active;
   rounds->force     = force;
   rounds->gap       = gap;
-  rounds->tolerance = contact->tolerance;
+  rounds->tolerance = contact->options.tolerance;
   rounds->recheck   = PETSC_TRUE;
-  PetscCall(PetscMalloc1((ROUNDS_MAX + 1) * contact->n_rows, &rounds->tried));
-  PetscCall(PetscCalloc1(contact->n_rows, &rounds->kept));
+  PetscCall(PetscMalloc1((ROUNDS_MAX + 1) * contact->rows.n, &rounds->tried));
+  PetscCall(PetscCalloc1(contact->rows.n, &rounds->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -47,7 +47,7 @@ PetscErrorCode RoundsDestroy(Rounds *rounds)
 PetscErrorCode RoundsBegin(Rounds *rounds)
 {
   PetscFunctionBegin;
-  if (rounds->cycled) PetscCall(PetscArrayzero(rounds->kept, rounds->contact->n_rows));
+  if (rounds->cycled) PetscCall(PetscArrayzero(rounds->kept, rounds->contact->rows.n));
   rounds->n = rounds->first = 0;
   rounds->cycled = rounds->single = PETSC_FALSE;
   rounds->fewest                  = PETSC_INT_MAX;
@@ -57,7 +57,7 @@ PetscErrorCode RoundsBegin(Rounds *rounds)
 /* Remembers the active set that is about to be solved for */
 PetscErrorCode RoundsNext(Rounds *rounds)
 {
-  const PetscInt n = rounds->contact->n_rows;
+  const PetscInt n = rounds->contact->rows.n;
 
   PetscFunctionBegin;
   PetscCheck(rounds->n < ROUNDS_MAX, PetscObjectComm((PetscObject)rounds->contact), PETSC_ERR_NOT_CONVERGED,
@@ -72,7 +72,7 @@ PetscErrorCode RoundsNext(Rounds *rounds)
 /* The active set of the last round, NULL before the first */
 const PetscBool *RoundsLast(const Rounds *rounds)
 {
-  return rounds->n ? rounds->tried + (rounds->n - 1) * rounds->contact->n_rows : NULL;
+  return rounds->n ? rounds->tried + (rounds->n - 1) * rounds->contact->rows.n : NULL;
 }
 
 /* Whether the active set is another than that of the last round; collective */
@@ -82,7 +82,7 @@ PetscErrorCode RoundsHaveChanged(const Rounds *rounds, PetscBool *changed)
   int              differs = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < rounds->contact->n_rows; i++) differs |= rounds->active[i] != last[i];
+  for (PetscInt i = 0; i < rounds->contact->rows.n; i++) differs |= rounds->active[i] != last[i];
   PetscCall(ContactOr(rounds->contact, &differs));
   *changed = (PetscBool)(differs > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -91,7 +91,7 @@ PetscErrorCode RoundsHaveChanged(const Rounds *rounds, PetscBool *changed)
 /* Whether a row penetrates without being active, or is active and pulled */
 static PetscBool RowIsWrong(const Rounds *rounds, PetscInt i)
 {
-  if (rounds->active[i]) return (PetscBool)(rounds->recheck && rounds->force[i] < 0 && !rounds->contact->tied[i] && !rounds->kept[i]);
+  if (rounds->active[i]) return (PetscBool)(rounds->recheck && rounds->force[i] < 0 && !rounds->contact->rows.tied[i] && !rounds->kept[i]);
   return (PetscBool)(rounds->gap[i] < -rounds->tolerance && (!rounds->known || rounds->known[i]));
 }
 
@@ -102,14 +102,14 @@ static PetscErrorCode FindFirstWrong(Rounds *rounds, PetscInt *which)
   PetscInt      count = 0, first = PETSC_INT_MAX;
 
   PetscFunctionBegin;
-  for (PetscInt i = contact->n_rows - 1; i >= 0; i--) {
+  for (PetscInt i = contact->rows.n - 1; i >= 0; i--) {
     if (!RowIsWrong(rounds, i)) continue;
-    first = contact->row_begin + i;
+    first = contact->rows.begin + i;
     count++;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)contact)));
-  *which = first >= contact->row_begin && first < contact->row_begin + contact->n_rows ? first - contact->row_begin : -1;
+  *which = first >= contact->rows.begin && first < contact->rows.begin + contact->rows.n ? first - contact->rows.begin : -1;
   if (count >= rounds->fewest) PetscFunctionReturn(PETSC_SUCCESS);
   rounds->single = (PetscBool)(rounds->fewest == PETSC_INT_MAX); /* the first count is what others are compared with */
   rounds->fewest = count;
@@ -123,7 +123,7 @@ PetscErrorCode RoundsChange(Rounds *rounds)
 
   PetscFunctionBegin;
   if (rounds->single) PetscCall(FindFirstWrong(rounds, &first));
-  for (PetscInt i = 0; i < rounds->contact->n_rows; i++)
+  for (PetscInt i = 0; i < rounds->contact->rows.n; i++)
     if (rounds->single ? i == first : RowIsWrong(rounds, i)) rounds->active[i] = (PetscBool)!rounds->active[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,7 +131,7 @@ PetscErrorCode RoundsChange(Rounds *rounds)
 /* How many rounds ago the active set was solved for in this step, under the present rule; 0: never */
 static PetscErrorCode FindActiveSet(const Rounds *rounds, PetscInt *ago)
 {
-  const PetscInt n = rounds->contact->n_rows;
+  const PetscInt n = rounds->contact->rows.n;
 
   PetscFunctionBegin;
   *ago = 0;
@@ -156,14 +156,14 @@ PetscErrorCode RoundsBreakCycle(Rounds *rounds, PetscBool *flips)
   PetscCall(FindActiveSet(rounds, &ago));
   *flips = (PetscBool)(ago == 2);
   if (!ago) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!rounds->cycled) rounds->contact->counts_made.set_cycles++;
+  if (!rounds->cycled) rounds->contact->counts.set_cycles++;
   rounds->cycled = PETSC_TRUE;
   rounds->first  = rounds->n;
   if (!*flips && !rounds->single) {
     rounds->single = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt i = 0; i < rounds->contact->n_rows; i++)
+  for (PetscInt i = 0; i < rounds->contact->rows.n; i++)
     if (rounds->active[i] != last[i]) rounds->active[i] = rounds->kept[i] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

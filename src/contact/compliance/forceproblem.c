@@ -26,24 +26,24 @@ PetscErrorCode ForceProblemUpdate(Contact contact, ForceProblem *problem, const 
   PetscFunctionBegin;
   if (problem->rigid) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(X, &x));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (problem->pushing[i] != pushing[i]) flags[1] = 1;
     problem->pushing[i] = pushing[i];
     if (problem->listed[i] || (!pushing[i] && x[i] == 0)) continue;
     problem->listed[i] = INTERFACE_SOLVED;
     flags[0]           = 1;
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flags, 2, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flags, 2, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
   if (flags[0]) PetscCall(InterfaceOperatorSetRows(problem->S, problem->listed, 1));
   InterfaceOperatorGetRows(problem->S, NULL, NULL, &dense);
   if (flags[0] && !dense) {
     /* many that pushed once may have come away since */
-    for (PetscInt i = 0; i < contact->n_rows; i++) problem->listed[i] = pushing[i] || x[i] != 0 ? INTERFACE_SOLVED : INTERFACE_LEFT_OUT;
+    for (PetscInt i = 0; i < contact->rows.n; i++) problem->listed[i] = pushing[i] || x[i] != 0 ? INTERFACE_SOLVED : INTERFACE_LEFT_OUT;
     PetscCall(InterfaceOperatorSetRows(problem->S, problem->listed, 1));
   }
   PetscCall(VecRestoreArrayRead(X, &x));
   if (flags[0] || flags[1]) {
-    for (PetscInt i = 0; i < contact->n_rows; i++) problem->springs[i] = pushing[i] ? 1 / problem->stiffness[i] : 0;
+    for (PetscInt i = 0; i < contact->rows.n; i++) problem->springs[i] = pushing[i] ? 1 / problem->stiffness[i] : 0;
     PetscCall(InterfaceOperatorFactor(problem->S, problem->pushing, problem->springs));
   }
   problem->stale = PETSC_FALSE;
@@ -60,14 +60,14 @@ PetscErrorCode ForceProblemSolve(Contact contact, ForceProblem *problem, Vec F, 
   PetscCall(VecCopy(F, Y));
   if (problem->rigid) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(F, &f));
-  for (PetscInt i = 0; i < contact->n_rows; i++) problem->rest[i] = problem->pushing[i] ? 0 : f[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) problem->rest[i] = problem->pushing[i] ? 0 : f[i];
   PetscCall(InterfaceOperatorMultiply(problem->S, INTERFACE_GAP, problem->rest, problem->opened));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
+  for (PetscInt i = 0; i < contact->rows.n; i++)
     problem->rest[i] = problem->pushing[i] ? f[i] / problem->stiffness[i] - problem->opened[i] : 0;
   PetscCall(VecRestoreArrayRead(F, &f));
   PetscCall(InterfaceOperatorSolve(problem->S, problem->rest, problem->solution));
   PetscCall(VecGetArray(Y, &y));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
+  for (PetscInt i = 0; i < contact->rows.n; i++)
     if (problem->pushing[i]) y[i] = problem->solution[i];
   PetscCall(VecRestoreArray(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,7 +78,7 @@ PetscErrorCode ForceProblemCreate(Contact contact, PetscReal stiffness[], ForceP
 {
   const InterfaceSettings settings = {
       .prefix = "penalty_interface_", .tolerance = FORCE_TOLERANCE, .worst = 0, .dense_limit = DENSE_LIMIT, .few = DENSE_ROWS};
-  const PetscInt n = contact->n_rows;
+  const PetscInt n = contact->rows.n;
 
   PetscFunctionBegin;
   problem->stiffness = stiffness;
@@ -93,7 +93,7 @@ PetscErrorCode ForceProblemCreate(Contact contact, PetscReal stiffness[], ForceP
   PetscCall(PetscCalloc6(n, &problem->listed, n, &problem->pushing, n, &problem->springs, n, &problem->rest, n, &problem->opened, n,
                          &problem->solution));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &problem->S));
-  if (problem->rigid || contact->n_all_rows > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
+  if (problem->rigid || contact->rows.n_all > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < n; i++) problem->listed[i] = INTERFACE_SOLVED;
   PetscCall(InterfaceOperatorSetRows(problem->S, problem->listed, 1));
   PetscFunctionReturn(PETSC_SUCCESS);

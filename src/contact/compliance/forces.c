@@ -29,8 +29,8 @@ PetscErrorCode ForcesIntegrate(Contact contact, Forces *forces, const PetscScala
   PetscCall(PetscTime(&begin));
   PetscCall(TraceGetLevel(forces->trace, 0, &from));
   PetscCall(TraceGetLevel(forces->trace, 1, &to));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    from[i] = contact->saved_force[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    from[i] = contact->start.force[i];
     to[i]   = factor * end[i];
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -38,9 +38,9 @@ PetscErrorCode ForcesIntegrate(Contact contact, Forces *forces, const PetscScala
     PetscCall(BodyIntegrate(contact->bodies[b]));
   }
   PetscCall(ContactComputeGaps(contact));
-  contact->counts_made.sweeps++;
+  contact->counts.sweeps++;
   PetscCall(PetscTime(&finish));
-  contact->counts_made.seconds += finish - begin;
+  contact->counts.seconds += finish - begin;
   PetscCall(PetscLogEventEnd(CONTACT_Sweep, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -48,8 +48,8 @@ PetscErrorCode ForcesIntegrate(Contact contact, Forces *forces, const PetscScala
 PetscErrorCode ForcesCreate(Contact contact, Forces *forces)
 {
   PetscFunctionBegin;
-  PetscCall(TraceCreate(contact->n_rows, 1, &forces->trace));
-  PetscCall(PetscCalloc1(contact->n_rows, &forces->touching));
+  PetscCall(TraceCreate(contact->rows.n, 1, &forces->trace));
+  PetscCall(PetscCalloc1(contact->rows.n, &forces->touching));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,10 +65,10 @@ PetscErrorCode ForcesDestroy(Forces *forces)
 PetscErrorCode ForcesCheckDense(Contact contact, const char type[])
 {
   PetscFunctionBegin;
-  PetscCheck(contact->n_all_rows <= MAX_DENSE_ROWS, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+  PetscCheck(contact->rows.n_all <= MAX_DENSE_ROWS, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_type %s with these bodies solves for the forces of all contact nodes at once, and there are %" PetscInt_FMT
              ", more than %d; choose -contact_type schwarz or penalty, or coarser contact surfaces",
-             type, contact->n_all_rows, MAX_DENSE_ROWS);
+             type, contact->rows.n_all, MAX_DENSE_ROWS);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,13 +78,13 @@ PetscErrorCode ForcesCheckDense(Contact contact, const char type[])
 PetscErrorCode ForcesBeginStep(Contact contact, Forces *forces, PetscBool *in_contact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(contact->active, contact->saved_active, contact->n_rows));
+  PetscCall(PetscArraycpy(contact->end.active, contact->start.active, contact->rows.n));
   PetscCall(ContactAny(contact, PETSC_FALSE, in_contact));
-  if (contact->law == CONTACT_LAW_TIED) *in_contact = PETSC_TRUE;
+  if (contact->options.law == CONTACT_LAW_TIED) *in_contact = PETSC_TRUE;
   if (!*in_contact) PetscCall(ContactIntegrateFree(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    forces->touching[i] = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    forces->touching[i] = (PetscBool)(contact->start.active[i] || contact->end.gap[i] < -contact->options.tolerance);
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -96,14 +96,14 @@ PetscErrorCode ForcesTouch(Contact contact, Forces *forces, const PetscScalar fo
   int        any      = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    if (touching[i] || !(force[i] > 0 || contact->gap[i] < -contact->tolerance)) continue;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (touching[i] || !(force[i] > 0 || contact->end.gap[i] < -contact->options.tolerance)) continue;
     touching[i] = PETSC_TRUE;
     any         = 1;
   }
   PetscCall(ContactOr(contact, &any));
   *changed = (PetscBool)(any > 0);
-  if (*changed) contact->counts_made.set_changes++;
+  if (*changed) contact->counts.set_changes++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

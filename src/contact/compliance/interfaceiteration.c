@@ -39,15 +39,15 @@ static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArrayWrite(op->work[0], &force));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    force[i] = op->marks[i] == INTERFACE_SOLVED ? InterfaceSideIn(map, &contact->pairs[contact->row_pair[i]], b) * in[i] : 0;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    force[i] = op->marks[i] == INTERFACE_SOLVED ? InterfaceSideIn(map, &contact->pairs[contact->rows.pair[i]], b) * in[i] : 0;
   PetscCall(VecRestoreArrayWrite(op->work[0], &force));
   PetscCall(VecRestoreArrayRead(x, &in));
   PetscCall(BodyApplyCompliance(contact->bodies[b], op->work[0], op->work[1]));
   PetscCall(VecGetArrayRead(op->work[1], &moved));
   PetscCall(VecGetArray(y, &out));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    if (op->marks[i] == INTERFACE_SOLVED) out[i] += InterfaceSideOut(map, &contact->pairs[contact->row_pair[i]], b) * moved[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (op->marks[i] == INTERFACE_SOLVED) out[i] += InterfaceSideOut(map, &contact->pairs[contact->rows.pair[i]], b) * moved[i];
   PetscCall(VecRestoreArray(y, &out));
   PetscCall(VecRestoreArrayRead(op->work[1], &moved));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -76,7 +76,7 @@ static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
   else PetscCall(InterfaceOperatorApply(op, INTERFACE_GAP, x, y));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArray(y, &out));
-  for (PetscInt i = 0; i < op->contact->n_rows; i++) {
+  for (PetscInt i = 0; i < op->contact->rows.n; i++) {
     if (IsIn(op, i)) out[i] += op->diagonal[i] * in[i];
     else out[i] = in[i];
   }
@@ -97,7 +97,7 @@ static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
   if (op->matrix) PetscCall(MatGetDiagonal(op->matrix, diagonal));
   else PetscCall(VecZeroEntries(diagonal));
   PetscCall(VecGetArray(diagonal, &values));
-  for (PetscInt i = 0; i < op->contact->n_rows; i++) {
+  for (PetscInt i = 0; i < op->contact->rows.n; i++) {
     values[i] += op->diagonal[i];
     if (!IsIn(op, i) || !(PetscRealPart(values[i]) > 0)) values[i] = 1;
   }
@@ -114,7 +114,7 @@ static PetscErrorCode CreateIterative(InterfaceOperator op)
 
   PetscFunctionBegin;
   if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
-  PetscCall(MatCreateShell(comm, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, op, &shell));
+  PetscCall(MatCreateShell(comm, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all, op, &shell));
   PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))Multiply));
   PetscCall(MatShellSetOperation(shell, MATOP_GET_DIAGONAL, (void (*)(void))GetDiagonal));
   PetscCall(KSPCreate(comm, &op->iterative));
@@ -140,7 +140,7 @@ static PetscErrorCode CheckConverged(InterfaceOperator op)
 
   PetscFunctionBegin;
   PetscCall(KSPGetIterationNumber(op->iterative, &iterations));
-  op->contact->counts_made.inner_iterations += iterations;
+  op->contact->counts.inner_iterations += iterations;
   op->spent += (iterations + (op->settings.warm ? 1 : 0)) * op->product_flops; /* a first iterate takes a product for its residual */
   PetscCall(KSPGetConvergedReason(op->iterative, &reason));
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
@@ -162,15 +162,15 @@ PetscErrorCode InterfaceOperatorIterate(InterfaceOperator op, const PetscScalar 
   PetscFunctionBegin;
   if (!op->iterative) PetscCall(CreateIterative(op));
   PetscCall(VecGetArrayWrite(op->rhs, &values));
-  for (PetscInt i = 0; i < op->contact->n_rows; i++) values[i] = IsIn(op, i) ? x[i] : 0;
+  for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = IsIn(op, i) ? x[i] : 0;
   PetscCall(VecRestoreArrayWrite(op->rhs, &values));
   PetscCall(VecGetArrayWrite(op->unknown, &values));
-  for (PetscInt i = 0; i < op->contact->n_rows; i++) values[i] = IsIn(op, i) && op->settings.warm ? y[i] : 0;
+  for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = IsIn(op, i) && op->settings.warm ? y[i] : 0;
   PetscCall(VecRestoreArrayWrite(op->unknown, &values));
   PetscCall(KSPSolve(op->iterative, op->rhs, op->unknown));
   PetscCall(CheckConverged(op));
   PetscCall(VecGetArrayRead(op->unknown, &solution));
-  PetscCall(PetscArraycpy(y, solution, op->contact->n_rows));
+  PetscCall(PetscArraycpy(y, solution, op->contact->rows.n));
   PetscCall(VecRestoreArrayRead(op->unknown, &solution));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

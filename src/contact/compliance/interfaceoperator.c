@@ -10,7 +10,7 @@ PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings 
   op->contact  = contact;
   op->settings = *settings;
   op->levels   = 1;
-  PetscCall(PetscCalloc3(contact->n_rows, &op->marks, contact->n_rows, &op->diagonal, contact->n_bodies, &op->feels));
+  PetscCall(PetscCalloc3(contact->rows.n, &op->marks, contact->rows.n, &op->diagonal, contact->n_bodies, &op->feels));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
   *operator= op;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -50,7 +50,7 @@ static PetscErrorCode MakeRoom(InterfaceOperator op, PetscInt n)
   PetscFunctionBegin;
   if (n <= op->room) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree5(op->rows, op->body_rows, op->places, op->listed[0], op->listed[1]));
-  op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->n_all_rows));
+  op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->rows.n_all));
   PetscCall(PetscMalloc5(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->places, op->room, &op->listed[0], op->room,
                          &op->listed[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -62,7 +62,7 @@ static PetscInt ListBodyRows(InterfaceOperator op, PetscInt b)
   PetscInt n = 0;
 
   for (PetscInt i = 0; i < op->n_known && op->feels[b]; i++) {
-    const ContactPair *pair = &op->contact->pairs[op->contact->all_row_pair[op->rows[i]]];
+    const ContactPair *pair = &op->contact->pairs[op->contact->ranks.row_pair[op->rows[i]]];
 
     if (pair->body[0] == b || pair->body[1] == b) op->body_rows[n++] = op->rows[i];
   }
@@ -123,20 +123,20 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   op->levels   = levels;
   op->factored = PETSC_FALSE;
   for (PetscInt m = 0; m < INTERFACE_MAPS; m++) op->assembled[m] = PETSC_FALSE;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    op->marks[i]            = marks[i];
-    contact->mine_active[i] = (int)marks[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    op->marks[i]                  = marks[i];
+    contact->ranks.mine_active[i] = (int)marks[i];
   }
-  PetscCallMPI(MPI_Allgatherv(contact->mine_active, (PetscMPIInt)contact->n_rows, MPI_INT, contact->all_active, contact->counts,
-                              contact->offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt i = 0; i < contact->n_all_rows; i++) count[contact->all_active[i]]++;
+  PetscCallMPI(MPI_Allgatherv(contact->ranks.mine_active, (PetscMPIInt)contact->rows.n, MPI_INT, contact->ranks.all_active,
+                              contact->ranks.counts, contact->ranks.offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt i = 0; i < contact->rows.n_all; i++) count[contact->ranks.all_active[i]]++;
   op->n       = count[INTERFACE_SOLVED];
   op->n_known = op->n + count[INTERFACE_KNOWN];
   PetscCall(MakeRoom(op, op->n_known));
   next[INTERFACE_SOLVED] = 0;
   next[INTERFACE_KNOWN]  = op->n;
-  for (PetscInt i = 0; i < contact->n_all_rows; i++)
-    if (contact->all_active[i]) op->rows[next[contact->all_active[i]]++] = i;
+  for (PetscInt i = 0; i < contact->rows.n_all; i++)
+    if (contact->ranks.all_active[i]) op->rows[next[contact->ranks.all_active[i]]++] = i;
   PetscCall(ChooseDense(op));
   if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -172,11 +172,11 @@ static PetscErrorCode AddBody(InterfaceOperator op, InterfaceMap map, PetscInt b
   PetscFunctionBegin;
   PetscCall(BodyGetCompliance(contact->bodies[b], level, &place, &leading, &W));
   for (PetscInt j = 0; j < op->n; j++) {
-    const PetscInt sign_j = InterfaceSideIn(map, &contact->pairs[contact->all_row_pair[op->rows[j]]], b);
+    const PetscInt sign_j = InterfaceSideIn(map, &contact->pairs[contact->ranks.row_pair[op->rows[j]]], b);
 
     if (!sign_j) continue;
     for (PetscInt i = 0; i < op->n; i++) {
-      const PetscInt sign_i = InterfaceSideOut(map, &contact->pairs[contact->all_row_pair[op->rows[i]]], b);
+      const PetscInt sign_i = InterfaceSideOut(map, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], b);
 
       if (sign_i) matrix[j * op->n + i] += sign_i * sign_j * W[place[op->rows[j]] * leading + place[op->rows[i]]];
     }
@@ -191,21 +191,21 @@ static PetscErrorCode AssembleFromMatrix(InterfaceOperator op, PetscScalar matri
   PetscInt     *place;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_all_rows, &place));
-  for (PetscInt i = 0; i < contact->n_all_rows; i++) place[i] = -1;
+  PetscCall(PetscMalloc1(contact->rows.n_all, &place));
+  for (PetscInt i = 0; i < contact->rows.n_all; i++) place[i] = -1;
   for (PetscInt i = 0; i < op->n; i++) place[op->rows[i]] = i;
   for (PetscInt i = 0; i < op->n; i++) {
-    const PetscInt     local = op->rows[i] - contact->row_begin, *columns;
+    const PetscInt     local = op->rows[i] - contact->rows.begin, *columns;
     const PetscScalar *values;
     PetscInt           count;
 
-    if (local < 0 || local >= contact->n_rows) continue;
+    if (local < 0 || local >= contact->rows.n) continue;
     PetscCall(MatGetRow(op->matrix, op->rows[i], &count, &columns, &values));
     for (PetscInt k = 0; k < count; k++)
       if (place[columns[k]] >= 0) matrix[place[columns[k]] * op->n + i] = values[k];
     PetscCall(MatRestoreRow(op->matrix, op->rows[i], &count, &columns, &values));
   }
-  if (contact->size > 1)
+  if (contact->ranks.size > 1)
     PetscCallMPI(
         MPI_Allreduce(MPI_IN_PLACE, matrix, (PetscMPIInt)(op->n * op->n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(place));
@@ -248,7 +248,7 @@ static PetscErrorCode MakeMatrices(InterfaceOperator op, InterfaceMap map)
 PetscErrorCode InterfaceOperatorSum(InterfaceOperator op, PetscInt n, PetscScalar values[])
 {
   PetscFunctionBegin;
-  if (op->contact->size > 1)
+  if (op->contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, values, (PetscMPIInt)n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)op->contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -260,9 +260,9 @@ PetscErrorCode InterfaceOperatorGather(InterfaceOperator op, const PetscScalar m
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < op->n; i++) {
-    const PetscInt local = op->rows[i] - contact->row_begin;
+    const PetscInt local = op->rows[i] - contact->rows.begin;
 
-    all[i] = local >= 0 && local < contact->n_rows ? mine[local] : 0;
+    all[i] = local >= 0 && local < contact->rows.n ? mine[local] : 0;
   }
   PetscCall(InterfaceOperatorSum(op, op->n, all));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -276,7 +276,7 @@ PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[
   PetscBool    singular;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < op->contact->n_rows; i++)
+  for (PetscInt i = 0; i < op->contact->rows.n; i++)
     op->diagonal[i] = op->marks[i] != INTERFACE_SOLVED || (in && !in[i]) ? -1 : diagonal ? diagonal[i] : 0;
   op->factored = PETSC_TRUE;
   if (!op->dense) PetscFunctionReturn(PETSC_SUCCESS);
@@ -286,7 +286,7 @@ PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[
   op->n_in = 0;
   for (PetscInt i = 0; i < op->n; i++)
     if (PetscRealPart(listed[i]) >= 0) op->places[op->n_in++] = i;
-  PetscCall(DenseFactorResize(&op->factor, op->n_in, op->contact->n_all_rows));
+  PetscCall(DenseFactorResize(&op->factor, op->n_in, op->contact->rows.n_all));
   for (PetscInt j = 0; j < op->n_in; j++)
     for (PetscInt i = 0; i < op->n_in; i++)
       op->factor.values[j * op->n_in + i] = S[op->places[j] * op->n + op->places[i]] + (i == j ? listed[op->places[i]] : 0);
@@ -325,11 +325,11 @@ PetscErrorCode InterfaceOperatorMultiplyListed(InterfaceOperator op, InterfaceMa
 /* Values on the rows that are solved for, back on this rank's rows; zero on others */
 static void Scatter(InterfaceOperator op, const PetscScalar all[], PetscScalar mine[])
 {
-  for (PetscInt i = 0; i < op->contact->n_rows; i++) mine[i] = 0;
+  for (PetscInt i = 0; i < op->contact->rows.n; i++) mine[i] = 0;
   for (PetscInt i = 0; i < op->n; i++) {
-    const PetscInt local = op->rows[i] - op->contact->row_begin;
+    const PetscInt local = op->rows[i] - op->contact->rows.begin;
 
-    if (local >= 0 && local < op->contact->n_rows) mine[local] = all[i];
+    if (local >= 0 && local < op->contact->rows.n) mine[local] = all[i];
   }
 }
 
@@ -363,11 +363,11 @@ PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map,
 
     if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
     PetscCall(VecGetArrayWrite(op->unknown, &force));
-    PetscCall(PetscArraycpy(force, x, op->contact->n_rows));
+    PetscCall(PetscArraycpy(force, x, op->contact->rows.n));
     PetscCall(VecRestoreArrayWrite(op->unknown, &force));
     PetscCall(InterfaceOperatorApply(op, map, op->unknown, op->rhs));
     PetscCall(VecGetArrayRead(op->rhs, &moved));
-    PetscCall(PetscArraycpy(y, moved, op->contact->n_rows));
+    PetscCall(PetscArraycpy(y, moved, op->contact->rows.n));
     PetscCall(VecRestoreArrayRead(op->rhs, &moved));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

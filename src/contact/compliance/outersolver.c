@@ -25,7 +25,7 @@ PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt 
   PetscCall(SNESGetKSP(solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, contact->size == 1 ? PCLU : PCREDUNDANT));
+  PetscCall(PCSetType(pc, contact->ranks.size == 1 ? PCLU : PCREDUNDANT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,11 +30,11 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCall(ContactInitializePackage());
   PetscCall(
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
-  PetscCallMPI(MPI_Comm_size(comm, &(*contact)->size));
-  (*contact)->facing      = PETSC_TRUE;
-  (*contact)->slip_bound  = SLIP_BOUND;
-  (*contact)->angle_bound = ANGLE_BOUND;
-  (*contact)->tolerance   = PETSC_DEFAULT;
+  PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
+  (*contact)->options.facing      = PETSC_TRUE;
+  (*contact)->options.slip_bound  = SLIP_BOUND;
+  (*contact)->options.angle_bound = ANGLE_BOUND;
+  (*contact)->options.tolerance   = PETSC_DEFAULT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -157,16 +157,16 @@ PetscErrorCode ContactStep(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
-  contact->counts_made.sweeps = 0;
+  contact->counts.sweeps = 0;
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactUpdateRows(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
-  if (contact->n_all_rows) PetscUseTypeMethod(contact, step);
+  if (contact->rows.n_all) PetscUseTypeMethod(contact, step);
   else { /* nothing can touch */ PetscBool penetrating;
 
     PetscCall(ContactIntegrateFree(contact, &penetrating));
   }
-  contact->counts_made.total_sweeps += contact->counts_made.sweeps;
+  contact->counts.total_sweeps += contact->counts.sweeps;
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,12 +188,12 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscTryTypeMethod(contact, accept);
-  if (contact->stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
+  if (contact->options.stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactAddImpulses(contact));
-  PetscCall(PetscArraycpy(contact->saved_force, contact->force, contact->n_rows));
-  PetscCall(PetscArraycpy(contact->saved_gap, contact->gap, contact->n_rows));
-  PetscCall(PetscArraycpy(contact->saved_active, contact->active, contact->n_rows));
+  PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->start.gap, contact->end.gap, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,12 +226,13 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, " %s%s", contact->pairs[p].name,
                                      contact->pairs[p].chosen && !contact->pairs[p].obstacle ? " (sides chosen)" : ""));
   PetscCall(
-      PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->n_all_rows, contact->n_all_rows == 1 ? "" : "s"));
-  if (contact->law != CONTACT_LAW_FRICTIONLESS) PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactLaws[contact->law]));
-  if (contact->constraint != CONTACT_CONSTRAINT_GAP)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->constraint]));
-  if (contact->stabilization != CONTACT_STABILIZATION_NONE)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->stabilization]));
+      PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->rows.n_all, contact->rows.n_all == 1 ? "" : "s"));
+  if (contact->options.law != CONTACT_LAW_FRICTIONLESS)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactLaws[contact->options.law]));
+  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->options.constraint]));
+  if (contact->options.stabilization != CONTACT_STABILIZATION_NONE)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->options.stabilization]));
   PetscTryTypeMethod(contact, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -288,13 +289,13 @@ PetscErrorCode ContactDestroy(Contact *contact)
   for (PetscInt b = 0; b < c->n_bodies; b++) {
     PetscCall(BodyDestroy(&c->bodies[b]));
     if (c->interfaces) PetscCall(MatDestroy(&c->interfaces[b]));
-    if (c->node_dofs) PetscCall(PetscFree(c->node_dofs[b]));
+    if (c->nodes.dofs) PetscCall(PetscFree(c->nodes.dofs[b]));
   }
   PetscCall(ContactDestroyRows(c));
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
-  PetscCall(PetscFree7(c->speeds, c->traces, c->interfaces, c->order, c->node_dofs, c->n_node_dofs, c->n_all_nodes));
-  PetscCall(PetscFree(c->stabilized));
+  PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
+  PetscCall(PetscFree(c->work.stabilized));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -51,7 +51,7 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
   PetscCall(PetscNew(&f));
   *fields    = f;
   f->contact = contact;
-  PetscCall(VecCreateMPI(comm, contact->n_rows, PETSC_DETERMINE, &f->rows));
+  PetscCall(VecCreateMPI(comm, contact->rows.n, PETSC_DETERMINE, &f->rows));
   PetscCall(PetscCalloc1(N_CARRIED * contact->n_bodies, &f->nodes));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec positions;
@@ -59,8 +59,8 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
     PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
     for (PetscInt k = 0; k < N_CARRIED; k++) PetscCall(VecDuplicate(positions, &f->nodes[N_CARRIED * b + k]));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    largest = PetscMax(largest, contact->area[i] * contact->cross_section[contact->row_pair[i]]);
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    largest = PetscMax(largest, contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
   f->smallest = NO_AREA * largest;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -70,19 +70,19 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
    each axis, so that the areas they carry point along the normal as those of other nodes do. */
 static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried kind)
 {
-  const PetscReal area = contact->area[i] * contact->cross_section[contact->row_pair[i]];
+  const PetscReal area = contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]];
 
   switch (kind) {
   case CARRY_FORCE:
-    return contact->force[i];
+    return contact->end.force[i];
   case CARRY_AREA:
     return along * area;
   case CARRY_ACTIVE_AREA:
-    return contact->active[i] ? along * area : 0;
+    return contact->end.active[i] ? along * area : 0;
   case CARRY_GAP_AREA:
-    return contact->opposite[i] ? along * area : 0;
+    return contact->rows.opposite[i] ? along * area : 0;
   default:
-    return contact->opposite[i] ? area * contact->gap[i] : 0;
+    return contact->rows.opposite[i] ? area * contact->end.gap[i] : 0;
   }
 }
 
@@ -102,7 +102,7 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
-      const PetscReal along = contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+      const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
 
       values[i] = sign ? sign * RowValue(contact, i, along, kind) : 0;
     }

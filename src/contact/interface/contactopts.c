@@ -8,23 +8,23 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetTolerance",
-                             contact->tolerance, &contact->tolerance, NULL));
+                             contact->options.tolerance, &contact->options.tolerance, NULL));
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetConstraint",
-                             ContactConstraints, (PetscEnum)contact->constraint, (PetscEnum *)&contact->constraint, NULL));
+                             ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
-                             (PetscEnum)contact->stabilization, (PetscEnum *)&contact->stabilization, NULL));
-  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "ContactSetLaw", ContactLaws, (PetscEnum)contact->law,
-                             (PetscEnum *)&contact->law, NULL));
+                             (PetscEnum)contact->options.stabilization, (PetscEnum *)&contact->options.stabilization, NULL));
+  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "ContactSetLaw", ContactLaws,
+                             (PetscEnum)contact->options.law, (PetscEnum *)&contact->options.law, NULL));
   PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start",
-                             "ContactSetFacing", contact->facing, &contact->facing, NULL));
+                             "ContactSetFacing", contact->options.facing, &contact->options.facing, NULL));
   PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "ContactSetBounds",
-                             contact->slip_bound, &contact->slip_bound, NULL));
+                             contact->options.slip_bound, &contact->options.slip_bound, NULL));
   PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "ContactSetBounds",
-                             contact->angle_bound, &contact->angle_bound, NULL));
+                             contact->options.angle_bound, &contact->options.angle_bound, NULL));
   PetscOptionsEnd();
-  PetscCheck(contact->slip_bound > 0 && contact->angle_bound > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_slip_bound %g and -contact_angle_bound %g must be positive", (double)contact->slip_bound,
-             (double)contact->angle_bound);
+  PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
+             PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
+             (double)contact->options.slip_bound, (double)contact->options.angle_bound);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

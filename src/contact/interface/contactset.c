@@ -32,7 +32,7 @@ PetscErrorCode ContactSetLaw(Contact contact, ContactLaw law)
   CheckNotSetUp(contact);
   PetscCheck((int)law >= 0 && law <= CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no contact law %d", (int)law);
-  contact->law = law;
+  contact->options.law = law;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,7 +56,7 @@ PetscErrorCode ContactGetLaw(Contact contact, ContactLaw *law)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(law, 2);
-  *law = contact->law;
+  *law = contact->options.law;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,7 +87,7 @@ PetscErrorCode ContactSetConstraint(Contact contact, ContactConstraint constrain
   CheckNotSetUp(contact);
   PetscCheck((int)constraint >= 0 && constraint <= CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no constraint %d", (int)constraint);
-  contact->constraint = constraint;
+  contact->options.constraint = constraint;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,7 +111,7 @@ PetscErrorCode ContactGetConstraint(Contact contact, ContactConstraint *constrai
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(constraint, 2);
-  *constraint = contact->constraint;
+  *constraint = contact->options.constraint;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,7 +139,7 @@ PetscErrorCode ContactSetStabilization(Contact contact, ContactStabilization sta
   CheckNotSetUp(contact);
   PetscCheck((int)stabilization >= 0 && stabilization <= CONTACT_STABILIZATION_CONTACT_STABILIZED, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_ARG_OUTOFRANGE, "There is no stabilization %d", (int)stabilization);
-  contact->stabilization = stabilization;
+  contact->options.stabilization = stabilization;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -163,7 +163,7 @@ PetscErrorCode ContactGetStabilization(Contact contact, ContactStabilization *st
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(stabilization, 2);
-  *stabilization = contact->stabilization;
+  *stabilization = contact->options.stabilization;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -189,7 +189,7 @@ PetscErrorCode ContactSetFacing(Contact contact, PetscBool facing)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveBool(contact, facing, 2);
   CheckNotSetUp(contact);
-  contact->facing = facing;
+  contact->options.facing = facing;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,7 +213,7 @@ PetscErrorCode ContactGetFacing(Contact contact, PetscBool *facing)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(facing, 2);
-  *facing = contact->facing;
+  *facing = contact->options.facing;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,7 +241,7 @@ PetscErrorCode ContactSetTolerance(Contact contact, PetscReal tolerance)
   CheckNotSetUp(contact);
   PetscCheck(tolerance >= 0 || tolerance == (PetscReal)PETSC_DEFAULT, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "A contact tolerance of %g m must not be negative", (double)tolerance);
-  contact->tolerance = tolerance;
+  contact->options.tolerance = tolerance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -265,7 +265,7 @@ PetscErrorCode ContactGetTolerance(Contact contact, PetscReal *tolerance)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(tolerance, 2);
-  *tolerance = contact->tolerance;
+  *tolerance = contact->options.tolerance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -296,8 +296,8 @@ PetscErrorCode ContactSetBounds(Contact contact, PetscReal slip, PetscReal angle
   CheckNotSetUp(contact);
   PetscCheck(slip > 0 && angle > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "The bounds of slip, %g, and angle, %g, must be positive", (double)slip, (double)angle);
-  contact->slip_bound  = slip;
-  contact->angle_bound = angle;
+  contact->options.slip_bound  = slip;
+  contact->options.angle_bound = angle;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -321,8 +321,8 @@ PetscErrorCode ContactGetBounds(Contact contact, PetscReal *slip, PetscReal *ang
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  if (slip) *slip = contact->slip_bound;
-  if (angle) *angle = contact->angle_bound;
+  if (slip) *slip = contact->options.slip_bound;
+  if (angle) *angle = contact->options.angle_bound;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

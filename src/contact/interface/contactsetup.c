@@ -8,8 +8,8 @@ static PetscErrorCode AllocateBodies(Contact contact)
   const PetscInt n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc7(n, &contact->speeds, n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n, &contact->node_dofs,
-                         n, &contact->n_node_dofs, n, &contact->n_all_nodes));
+  PetscCall(PetscCalloc7(n, &contact->work.speeds, n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n,
+                         &contact->nodes.dofs, n, &contact->nodes.n, n, &contact->nodes.n_all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,7 +32,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
-  if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
+  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactOrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
@@ -46,7 +46,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpObstacleTraces(contact));
   PetscCall(ContactSetUpResultants(contact));
   PetscCall(ContactSetUpStabilization(contact));
-  if (contact->n_all_rows) PetscTryTypeMethod(contact, setup);
+  if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
   contact->setup = PETSC_TRUE;
   PetscCall(ContactCheckInitialGap(contact));
   PetscCall(ContactViewFromOptions(contact, NULL, "-contact_view"));
@@ -84,9 +84,9 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
     ContactPairState   state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(!pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+    PetscCheck(!pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_pairs %s: the body is %g m inside the obstacle at the start; move one of them", pair->name, (double)-state.gap);
-    PetscCheck(pair->obstacle || state.gap >= -contact->tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+    PetscCheck(pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
@@ -193,7 +193,7 @@ PetscErrorCode ContactGetPenaltyEnergy(Contact contact, PetscReal *energy)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(energy, 2);
-  *energy = contact->penalty_energy;
+  *energy = contact->resultants.penalty_energy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,7 +217,7 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(counts, 2);
-  *counts = contact->counts_made;
+  *counts = contact->counts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -255,8 +255,8 @@ PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal pos
   PetscCall(VecGetArrayRead(positions, &x));
   PetscCall(VecGetArrayRead(displacements, &u));
   PetscCall(VecGetArrayRead(velocities, &v));
-  for (PetscInt i = 0; i < contact->n_node_dofs[body]; i++) {
-    const PetscInt dof = contact->node_dofs[body][i];
+  for (PetscInt i = 0; i < contact->nodes.n[body]; i++) {
+    const PetscInt dof = contact->nodes.dofs[body][i];
 
     for (PetscInt d = 0; d < dim; d++) {
       sums[d] += x[dof + d] + u[dof + d];
@@ -266,10 +266,11 @@ PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal pos
   PetscCall(VecRestoreArrayRead(velocities, &v));
   PetscCall(VecRestoreArrayRead(displacements, &u));
   PetscCall(VecRestoreArrayRead(positions, &x));
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   for (PetscInt d = 0; d < 3; d++) {
-    position[d] = contact->n_all_nodes[body] ? sums[d] / contact->n_all_nodes[body] : 0;
-    velocity[d] = contact->n_all_nodes[body] ? sums[3 + d] / contact->n_all_nodes[body] : 0;
+    position[d] = contact->nodes.n_all[body] ? sums[d] / contact->nodes.n_all[body] : 0;
+    velocity[d] = contact->nodes.n_all[body] ? sums[3 + d] / contact->nodes.n_all[body] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

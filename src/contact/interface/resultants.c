@@ -15,10 +15,10 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
 
   PetscFunctionBegin;
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc4(contact->n_pairs, &contact->cross_section, N_SUMS * contact->n_pairs, &contact->sums, N_MAXIMA * contact->n_pairs,
-                         &contact->maxima, 6 * contact->n_pairs, &contact->impulse));
+  PetscCall(PetscCalloc4(contact->n_pairs, &contact->resultants.cross_section, N_SUMS * contact->n_pairs, &contact->resultants.sums,
+                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, 6 * contact->n_pairs, &contact->resultants.impulse));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->cross_section[p]));
+    PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->resultants.cross_section[p]));
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTimeStep(ts, &contact->step));
   PetscCall(BodyGetSubsteps(contact->bodies[0], &substeps));
@@ -30,7 +30,8 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
 PetscErrorCode ContactDestroyResultants(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree4(contact->cross_section, contact->sums, contact->maxima, contact->impulse));
+  PetscCall(
+      PetscFree4(contact->resultants.cross_section, contact->resultants.sums, contact->resultants.maxima, contact->resultants.impulse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -39,7 +40,7 @@ static void SumForces(Contact contact, const ContactPair *pair, PetscReal force[
 {
   for (PetscInt d = 0; d < 3; d++) force[d] = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++)
-    for (PetscInt d = 0; d < 3; d++) force[d] += contact->force[i] * contact->row_normal[3 * i + d];
+    for (PetscInt d = 0; d < 3; d++) force[d] += contact->end.force[i] * contact->rows.normal[3 * i + d];
 }
 
 /* Adds the controller step that has been accepted to the impulses */
@@ -47,7 +48,7 @@ PetscErrorCode ContactAddImpulses(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscReal *impulse = contact->impulse + 6 * p, *last = impulse + 3, force[3];
+    PetscReal *impulse = contact->resultants.impulse + 6 * p, *last = impulse + 3, force[3];
 
     SumForces(contact, &contact->pairs[p], force);
     for (PetscInt d = 0; d < 3; d++) {
@@ -72,15 +73,15 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscCall(BodyGetSolution(body, &u, NULL, NULL));
   PetscCall(VecGetArrayRead(positions, &reference));
   PetscCall(VecGetArrayRead(u, &displacement));
-  if (contact->merger) PetscCall(ContactSumMergedMoments(contact, pair, reference, displacement, moment));
-  for (PetscInt i = pair->begin; i < pair->end && !contact->merger; i++) {
-    const PetscReal *normal = contact->row_normal + 3 * i;
-    const PetscInt   dof    = contact->row_dof[i];
+  if (contact->held.merger) PetscCall(ContactSumMergedMoments(contact, pair, reference, displacement, moment));
+  for (PetscInt i = pair->begin; i < pair->end && !contact->held.merger; i++) {
+    const PetscReal *normal = contact->rows.normal + 3 * i;
+    const PetscInt   dof    = contact->rows.dof[i];
     PetscReal        x[3]   = {0};
 
     for (PetscInt d = 0; d < dim; d++) x[d] = PetscRealPart(reference[dof + d] + displacement[dof + d]);
     for (PetscInt d = 0; d < 3; d++)
-      moment[d] += contact->force[i] * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
+      moment[d] += contact->end.force[i] * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
   }
   PetscCall(VecRestoreArrayRead(u, &displacement));
   PetscCall(VecRestoreArrayRead(positions, &reference));
@@ -101,33 +102,33 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   maxima[MAX_TENSION]     = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
-    const PetscReal along = contact->law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+    const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
 
-    sums[SUM_FORCE] += along * contact->force[i];
-    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->gap[i]);
-    if (!contact->tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->force[i]);
-    if (!contact->active[i]) continue;
+    sums[SUM_FORCE] += along * contact->end.force[i];
+    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
+    if (!contact->rows.tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->end.force[i]);
+    if (!contact->end.active[i]) continue;
     /* merged rows of one node may have different areas */
-    if (contact->merger) sums[SUM_AREA] += PetscSqr(along) * contact->area[i] * contact->cross_section[p];
-    if (contact->row_dof[i] == counted) continue;
+    if (contact->held.merger) sums[SUM_AREA] += PetscSqr(along) * contact->rows.area[i] * contact->resultants.cross_section[p];
+    if (contact->rows.dof[i] == counted) continue;
     sums[SUM_ACTIVE] += 1;
-    if (!contact->merger) sums[SUM_AREA] += contact->area[i] * contact->cross_section[p];
-    counted = contact->row_dof[i];
+    if (!contact->held.merger) sums[SUM_AREA] += contact->rows.area[i] * contact->resultants.cross_section[p];
+    counted = contact->rows.dof[i];
   }
   SumForces(contact, pair, sums + SUM_VECTOR);
   PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
-  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->impulse + 6 * p, 3));
+  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + 6 * p, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* States of the pairs `begin` to `end` - 1 */
 static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt end, ContactPairState states[])
 {
-  PetscReal *sums = contact->sums, *maxima = contact->maxima;
+  PetscReal *sums = contact->resultants.sums, *maxima = contact->resultants.maxima;
 
   PetscFunctionBegin;
   for (PetscInt p = begin; p < end; p++) PetscCall(SumPair(contact, p, sums + N_SUMS * (p - begin), maxima + N_MAXIMA * (p - begin)));
-  if (contact->size > 1 && end > begin) {
+  if (contact->ranks.size > 1 && end > begin) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(N_SUMS * (end - begin)), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX,

@@ -56,14 +56,14 @@ static PetscErrorCode GetElementForce(Body body, PetscReal *force)
 PetscErrorCode ContactSetUpScales(Contact contact)
 {
   PetscFunctionBegin;
-  contact->length_scale = contact->force_scale = PETSC_MAX_REAL;
+  contact->scale.length = contact->scale.force = PETSC_MAX_REAL;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal extent = 0, force = 0;
 
     PetscCall(GetExtent(contact->bodies[b], &extent));
     PetscCall(GetElementForce(contact->bodies[b], &force));
-    contact->length_scale = PetscMin(contact->length_scale, extent);
-    contact->force_scale  = PetscMin(contact->force_scale, force);
+    contact->scale.length = PetscMin(contact->scale.length, extent);
+    contact->scale.force  = PetscMin(contact->scale.force, force);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,7 +88,7 @@ PetscErrorCode ContactGetLengthScale(Contact contact, PetscReal *length)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  *length = contact->length_scale;
+  *length = contact->scale.length;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,6 +111,6 @@ PetscErrorCode ContactGetForceScale(Contact contact, PetscReal *force)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  *force = contact->force_scale;
+  *force = contact->scale.force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

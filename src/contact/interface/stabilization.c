@@ -11,7 +11,7 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
   PetscBool lagrange, all_massless = PETSC_TRUE;
 
   PetscFunctionBegin;
-  if (contact->stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->options.stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++) {
       PetscBool massless;
@@ -22,15 +22,15 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
   PetscCheck(!all_massless, comm, PETSC_ERR_USER_INPUT,
              "-contact_stabilization %s acts on contact nodes with mass, and all are massless here, which do not chatter; leave it at "
              "none, or set -<body>_mass_redistribute false",
-             ContactStabilizations[contact->stabilization]);
+             ContactStabilizations[contact->options.stabilization]);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_LAGRANGE, &lagrange));
-  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED)
+  if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED)
     PetscCheck(lagrange, comm, PETSC_ERR_USER_INPUT,
                "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose "
                "these, or -contact_stabilization naive",
                ((PetscObject)contact)->type_name);
-  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(ImpaktCite(CITE_CONTACT_STABILIZED));
-  PetscCall(PetscCalloc1(contact->n_rows, &contact->stabilized));
+  if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(ImpaktCite(CITE_CONTACT_STABILIZED));
+  PetscCall(PetscCalloc1(contact->rows.n, &contact->work.stabilized));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -44,12 +44,12 @@ PetscErrorCode ContactStabilize(Contact contact)
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
-      contact->stabilized[i] = (PetscBool)(contact->active[i] && (pair->body[0] == b || pair->body[1] == b));
+      contact->work.stabilized[i] = (PetscBool)(contact->end.active[i] && (pair->body[0] == b || pair->body[1] == b));
     }
-    PetscCall(BodyClearAcceleration(contact->bodies[b], contact->stabilized));
+    PetscCall(BodyClearAcceleration(contact->bodies[b], contact->work.stabilized));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -23,7 +23,7 @@ typedef enum { ROW_AREA, ROW_GAP, ROW_NORMAL } RowNumber;
 /* Such a number of all rows of this rank, before any are merged; of normals the component d */
 static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec vec)
 {
-  const PetscBool tied = (PetscBool)(contact->law == CONTACT_LAW_TIED);
+  const PetscBool tied = (PetscBool)(contact->options.law == CONTACT_LAW_TIED);
   PetscScalar    *values;
 
   PetscFunctionBegin;
@@ -49,18 +49,18 @@ static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec 
 /* A matrix of rows by rows, with ones where the nodes of two rows have an edge in common and, if rows may open, parallel surfaces there */
 static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
 {
-  const PetscReal slope = contact->law == CONTACT_LAW_TIED ? PETSC_MAX_REAL : PARALLEL;
+  const PetscReal slope = contact->options.law == CONTACT_LAW_TIED ? PETSC_MAX_REAL : PARALLEL;
 
   PetscFunctionBegin;
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), neighbours));
-  PetscCall(MatSetSizes(*neighbours, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows));
+  PetscCall(MatSetSizes(*neighbours, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all));
   PetscCall(MatSetType(*neighbours, MATAIJ));
   PetscCall(MatSetUp(*neighbours));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     if (!pair->obstacle)
-      PetscCall(TransferSetNeighbours(pair->transfer, contact->row_begin + pair->begin, pair->components, slope, *neighbours));
+      PetscCall(TransferSetNeighbours(pair->transfer, contact->rows.begin + pair->begin, pair->components, slope, *neighbours));
   }
   PetscCall(MatAssemblyBegin(*neighbours, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*neighbours, MAT_FINAL_ASSEMBLY));
@@ -80,8 +80,8 @@ static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec n
   PetscCall(VecGetArrayWrite(now, &values));
   PetscCall(VecGetArray(part, &parts));
   *any = 0;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscBool next = (PetscBool)(contact->dropped[i] && PetscRealPart(has[i]) == 0 && PetscRealPart(parts[i]) > 0);
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscBool next = (PetscBool)(contact->held.dropped[i] && PetscRealPart(has[i]) == 0 && PetscRealPart(parts[i]) > 0);
 
     values[i] = next ? 1 : 0;
     parts[i]  = next ? 1 / parts[i] : 0;
@@ -108,9 +108,9 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
   PetscCall(MatCreateVecs(neighbours, &known, &now));
   PetscCall(VecDuplicate(now, &part));
   PetscCall(MatDuplicate(neighbours, MAT_DO_NOT_COPY_VALUES, weights));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    PetscCall(VecSetValue(known, contact->row_begin + i, contact->opposite[i] ? 1 : 0, INSERT_VALUES));
-    PetscCall(VecSetValue(now, contact->row_begin + i, contact->dropped[i] ? 0 : 1, INSERT_VALUES));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    PetscCall(VecSetValue(known, contact->rows.begin + i, contact->rows.opposite[i] ? 1 : 0, INSERT_VALUES));
+    PetscCall(VecSetValue(now, contact->rows.begin + i, contact->held.dropped[i] ? 0 : 1, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(known));
   PetscCall(VecAssemblyEnd(known));
@@ -128,12 +128,12 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
     PetscCall(MatDestroy(&given));
     PetscCall(FindNext(contact, neighbours, known, now, part, &any));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt row = contact->row_begin + i;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscInt row = contact->rows.begin + i;
     PetscScalar    has;
 
     PetscCall(VecGetValues(known, 1, &row, &has));
-    PetscCall(VecSetValue(now, row, contact->dropped[i] && PetscRealPart(has) > 0 ? 0 : 1, INSERT_VALUES));
+    PetscCall(VecSetValue(now, row, contact->held.dropped[i] && PetscRealPart(has) > 0 ? 0 : 1, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(now));
   PetscCall(VecAssemblyEnd(now));
@@ -159,17 +159,17 @@ static PetscErrorCode CreateMerger(Contact contact)
   PetscCall(MatMultTranspose(weights, before, scale));
   PetscCall(VecGetArray(before, &areas));
   PetscCall(VecGetArray(scale, &sums));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    contact->heir[i] = (PetscBool)(!contact->dropped[i] && sums[i] != areas[i]);
-    contact->area[i] = PetscRealPart(sums[i]);
-    if (!contact->dropped[i] && !contact->heir[i]) areas[i] = 1;
-    sums[i] = contact->heir[i] ? 1 / sums[i] : 1;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    contact->held.heir[i] = (PetscBool)(!contact->held.dropped[i] && sums[i] != areas[i]);
+    contact->rows.area[i] = PetscRealPart(sums[i]);
+    if (!contact->held.dropped[i] && !contact->held.heir[i]) areas[i] = 1;
+    sums[i] = contact->held.heir[i] ? 1 / sums[i] : 1;
   }
   PetscCall(VecRestoreArray(scale, &sums));
   PetscCall(VecRestoreArray(before, &areas));
-  PetscCall(MatTranspose(weights, MAT_INITIAL_MATRIX, &contact->merger));
-  PetscCall(MatDiagonalScale(contact->merger, scale, before));
-  PetscCall(MatCreateVecs(contact->merger, &contact->places, &contact->means));
+  PetscCall(MatTranspose(weights, MAT_INITIAL_MATRIX, &contact->held.merger));
+  PetscCall(MatDiagonalScale(contact->held.merger, scale, before));
+  PetscCall(MatCreateVecs(contact->held.merger, &contact->held.places, &contact->held.means));
   PetscCall(VecDestroy(&scale));
   PetscCall(VecDestroy(&before));
   PetscCall(MatDestroy(&weights));
@@ -183,25 +183,25 @@ static PetscErrorCode MergeNumbers(Contact contact)
   const PetscScalar *own, *means;
 
   PetscFunctionBegin;
-  PetscCall(GetRows(contact, ROW_GAP, 0, contact->places));
-  PetscCall(MatMult(contact->merger, contact->places, contact->means));
-  PetscCall(VecGetArrayRead(contact->places, &own));
-  PetscCall(VecGetArrayRead(contact->means, &means));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscReal part = contact->heir[i] ? PetscRealPart(means[i] - own[i]) : 0;
+  PetscCall(GetRows(contact, ROW_GAP, 0, contact->held.places));
+  PetscCall(MatMult(contact->held.merger, contact->held.places, contact->held.means));
+  PetscCall(VecGetArrayRead(contact->held.places, &own));
+  PetscCall(VecGetArrayRead(contact->held.means, &means));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscReal part = contact->held.heir[i] ? PetscRealPart(means[i] - own[i]) : 0;
 
-    contact->initial_gap[i] += part - contact->merged_gap[i];
-    contact->merged_gap[i] = part;
+    contact->rows.initial_gap[i] += part - contact->held.merged_gap[i];
+    contact->held.merged_gap[i] = part;
   }
-  PetscCall(VecRestoreArrayRead(contact->means, &means));
-  PetscCall(VecRestoreArrayRead(contact->places, &own));
+  PetscCall(VecRestoreArrayRead(contact->held.means, &means));
+  PetscCall(VecRestoreArrayRead(contact->held.places, &own));
   for (PetscInt d = 0; d < contact->dim; d++) {
-    PetscCall(GetRows(contact, ROW_NORMAL, d, contact->places));
-    PetscCall(MatMult(contact->merger, contact->places, contact->means));
-    PetscCall(VecGetArrayRead(contact->means, &means));
-    for (PetscInt i = 0; i < contact->n_rows; i++)
-      if (contact->heir[i]) contact->row_normal[3 * i + d] = PetscRealPart(means[i]);
-    PetscCall(VecRestoreArrayRead(contact->means, &means));
+    PetscCall(GetRows(contact, ROW_NORMAL, d, contact->held.places));
+    PetscCall(MatMult(contact->held.merger, contact->held.places, contact->held.means));
+    PetscCall(VecGetArrayRead(contact->held.means, &means));
+    for (PetscInt i = 0; i < contact->rows.n; i++)
+      if (contact->held.heir[i]) contact->rows.normal[3 * i + d] = PetscRealPart(means[i]);
+    PetscCall(VecRestoreArrayRead(contact->held.means, &means));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -212,24 +212,24 @@ static PetscErrorCode MarkHeirs(Contact contact)
   int any = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) any |= contact->changed[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) any |= contact->rows.changed[i];
   PetscCall(ContactOr(contact, &any));
-  for (PetscInt i = 0; i < contact->n_rows && any; i++) {
-    if (contact->changed[i] || !contact->heir[i]) continue;
-    contact->changed[i] = PETSC_TRUE;
-    contact->initial_gap[i] -= contact->gap_shift[i];
+  for (PetscInt i = 0; i < contact->rows.n && any; i++) {
+    if (contact->rows.changed[i] || !contact->held.heir[i]) continue;
+    contact->rows.changed[i] = PETSC_TRUE;
+    contact->rows.initial_gap[i] -= contact->rows.gap_shift[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Drops the held rows and gives their shares to their heirs: areas, gaps and normals at once, and matrices by contact->merger, which is
-   NULL if no row has been dropped */
+/* Drops the held rows and gives their shares to their heirs: areas, gaps and normals at once, and matrices by contact->held.merger, which
+   is NULL if no row has been dropped */
 PetscErrorCode ContactMergeDroppedRows(Contact contact)
 {
-  int any = contact->merger ? 1 : 0;
+  int any = contact->held.merger ? 1 : 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) any |= contact->dropped[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) any |= contact->held.dropped[i];
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkHeirs(contact));
@@ -246,8 +246,8 @@ PetscErrorCode ContactMergeMatrix(Contact contact, Mat *rows)
   Mat merged;
 
   PetscFunctionBegin;
-  if (!contact->merger) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMatMult(contact->merger, *rows, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &merged));
+  if (!contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMatMult(contact->held.merger, *rows, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &merged));
   PetscCall(MatDestroy(rows));
   *rows = merged;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -269,18 +269,18 @@ PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair,
       const PetscReal sign  = (b - a + 3) % 3 == 1 ? 1 : -1;
 
       if (a == b) continue; /* x_a n_b is part of the component along the third axis */
-      PetscCall(GetRows(contact, ROW_NORMAL, b, contact->places));
-      PetscCall(VecGetArray(contact->places, &levers));
-      for (PetscInt i = 0; i < contact->n_rows; i++)
-        levers[i] *= i >= pair->begin && i < pair->end ? reference[contact->row_dof[i] + a] + displacement[contact->row_dof[i] + a] : 0;
-      PetscCall(VecRestoreArray(contact->places, &levers));
-      PetscCall(MatMult(contact->merger, contact->places, contact->means));
-      PetscCall(VecGetArrayRead(contact->places, &own));
-      PetscCall(VecGetArrayRead(contact->means, &means));
+      PetscCall(GetRows(contact, ROW_NORMAL, b, contact->held.places));
+      PetscCall(VecGetArray(contact->held.places, &levers));
+      for (PetscInt i = 0; i < contact->rows.n; i++)
+        levers[i] *= i >= pair->begin && i < pair->end ? reference[contact->rows.dof[i] + a] + displacement[contact->rows.dof[i] + a] : 0;
+      PetscCall(VecRestoreArray(contact->held.places, &levers));
+      PetscCall(MatMult(contact->held.merger, contact->held.places, contact->held.means));
+      PetscCall(VecGetArrayRead(contact->held.places, &own));
+      PetscCall(VecGetArrayRead(contact->held.means, &means));
       for (PetscInt i = pair->begin; i < pair->end; i++)
-        moment[third] += sign * contact->force[i] * PetscRealPart(contact->heir[i] ? means[i] : own[i]);
-      PetscCall(VecRestoreArrayRead(contact->means, &means));
-      PetscCall(VecRestoreArrayRead(contact->places, &own));
+        moment[third] += sign * contact->end.force[i] * PetscRealPart(contact->held.heir[i] ? means[i] : own[i]);
+      PetscCall(VecRestoreArrayRead(contact->held.means, &means));
+      PetscCall(VecRestoreArrayRead(contact->held.places, &own));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -289,8 +289,8 @@ PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair,
 PetscErrorCode ContactDestroyMerger(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&contact->merger));
-  PetscCall(VecDestroy(&contact->places));
-  PetscCall(VecDestroy(&contact->means));
+  PetscCall(MatDestroy(&contact->held.merger));
+  PetscCall(VecDestroy(&contact->held.places));
+  PetscCall(VecDestroy(&contact->held.means));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,6 +5,6 @@
 PetscErrorCode ContactOr(Contact contact, int *flag)
 {
   PetscFunctionBegin;
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

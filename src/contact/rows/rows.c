@@ -23,15 +23,15 @@ static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
 
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
     PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
-    if (contact->n_all_nodes[body]) continue;
+    if (contact->nodes.n_all[body]) continue;
     /* the contact position and velocity of a body in the history are those of its first pair */
     PetscCall(SurfaceGetData(pair->surfaces[side], &data));
-    PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->n_all_nodes[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->nodes.n_all[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
     PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
     PetscCall(VecGetOwnershipRange(positions, &rstart, NULL));
-    PetscCall(PetscMalloc1(data->n_owned, &contact->node_dofs[body]));
-    for (PetscInt i = 0; i < data->n_owned; i++) contact->node_dofs[body][i] = data->dofs[i] - rstart;
-    contact->n_node_dofs[body] = data->n_owned;
+    PetscCall(PetscMalloc1(data->n_owned, &contact->nodes.dofs[body]));
+    for (PetscInt i = 0; i < data->n_owned; i++) contact->nodes.dofs[body][i] = data->dofs[i] - rstart;
+    contact->nodes.n[body] = data->n_owned;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,16 +40,16 @@ static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
 static PetscErrorCode CountRows(Contact contact)
 {
   PetscFunctionBegin;
-  contact->n_rows = 0;
+  contact->rows.n = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     TransferRows rows;
 
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    pair->components = contact->law == CONTACT_LAW_TIED ? contact->dim : 1;
-    pair->begin      = contact->n_rows;
-    contact->n_rows += rows.n * pair->components;
-    pair->end = contact->n_rows;
+    pair->components = contact->options.law == CONTACT_LAW_TIED ? contact->dim : 1;
+    pair->begin      = contact->rows.n;
+    contact->rows.n += rows.n * pair->components;
+    pair->end = contact->rows.n;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,26 +58,28 @@ static PetscErrorCode AllocateRows(Contact contact)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)contact);
   PetscMPIInt mine, total = 0;
-  PetscInt    n = contact->n_rows;
+  PetscInt    n = contact->rows.n;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Scan(&n, &contact->row_begin, 1, MPIU_INT, MPI_SUM, comm));
-  contact->row_begin -= n;
-  PetscCallMPI(MPI_Allreduce(&n, &contact->n_all_rows, 1, MPIU_INT, MPI_SUM, comm));
-  PetscCall(PetscCalloc7(n, &contact->row_pair, n, &contact->initial_gap, n, &contact->area, n, &contact->row_dof, 3 * n,
-                         &contact->row_normal, n, &contact->opposite, n, &contact->tied));
-  PetscCall(PetscCalloc7(n, &contact->force, n, &contact->gap, n, &contact->saved_force, n, &contact->saved_gap, n, &contact->active, n,
-                         &contact->saved_active, n, &contact->conditions));
-  PetscCall(PetscCalloc5(contact->n_all_rows, &contact->all_row_pair, n, &contact->mine_active, contact->n_all_rows, &contact->all_active,
-                         contact->size, &contact->counts, contact->size, &contact->offsets));
-  PetscCall(PetscCalloc6(n, &contact->changed, n, &contact->gap_shift, n, &contact->last_gap, n, &contact->dropped, n, &contact->heir, n,
-                         &contact->merged_gap));
+  PetscCallMPI(MPI_Scan(&n, &contact->rows.begin, 1, MPIU_INT, MPI_SUM, comm));
+  contact->rows.begin -= n;
+  PetscCallMPI(MPI_Allreduce(&n, &contact->rows.n_all, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCall(PetscCalloc7(n, &contact->rows.pair, n, &contact->rows.initial_gap, n, &contact->rows.area, n, &contact->rows.dof, 3 * n,
+                         &contact->rows.normal, n, &contact->rows.opposite, n, &contact->rows.tied));
+  PetscCall(PetscCalloc7(n, &contact->end.force, n, &contact->end.gap, n, &contact->start.force, n, &contact->start.gap, n,
+                         &contact->end.active, n, &contact->start.active, n, &contact->work.conditions));
+  PetscCall(PetscCalloc5(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
+                         &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
+                         &contact->ranks.offsets));
+  PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
+                         &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscMPIIntCast(n, &mine));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->counts, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < contact->size; total += contact->counts[r++]) contact->offsets[r] = total;
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) contact->row_pair[i] = p;
-  PetscCallMPI(MPI_Allgatherv(contact->row_pair, mine, MPIU_INT, contact->all_row_pair, contact->counts, contact->offsets, MPIU_INT, comm));
+    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) contact->rows.pair[i] = p;
+  PetscCallMPI(MPI_Allgatherv(contact->rows.pair, mine, MPIU_INT, contact->ranks.row_pair, contact->ranks.counts, contact->ranks.offsets,
+                              MPIU_INT, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,8 +95,8 @@ static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt 
   for (PetscInt d = 0; d < contact->dim && *held; d++) {
     PetscInt place;
 
-    if (PetscAbsReal(contact->row_normal[3 * i + d]) < NO_COMPONENT) continue;
-    PetscCall(PetscFindInt(contact->row_dof[i] + d, n, dofs, &place));
+    if (PetscAbsReal(contact->rows.normal[3 * i + d]) < NO_COMPONENT) continue;
+    PetscCall(PetscFindInt(contact->rows.dof[i] + d, n, dofs, &place));
     if (place < 0) *held = PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -129,25 +131,27 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       const PetscInt i = pair->begin + node * pair->components + k;
       PetscBool      held;
 
-      contact->row_dof[i]     = rows.dofs[node] - first;
-      contact->opposite[i]    = rows.opposite[node];
-      contact->initial_gap[i] = rows.opposite[node] ? rows.gap[node] + (rows.changed[node] ? 0 : contact->gap_shift[i]) : CONTACT_NO_GAP;
-      contact->area[i]        = rows.area[node];
-      contact->changed[i]     = rows.changed[node];
-      if (contact->law == CONTACT_LAW_TIED) {
-        contact->tied[i]        = (PetscBool)(rows.opposite[node] &&
-                                              PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * (dim == 1 ? point_size : rows.size[node]));
-        contact->initial_gap[i] = contact->tied[i] ? 0 : CONTACT_NO_GAP;
-        contact->row_normal[3 * i + k] = 1;
+      contact->rows.dof[i]         = rows.dofs[node] - first;
+      contact->rows.opposite[i]    = rows.opposite[node];
+      contact->rows.initial_gap[i] = rows.opposite[node] ? rows.gap[node] + (rows.changed[node] ? 0 : contact->rows.gap_shift[i])
+                                                         : CONTACT_NO_GAP;
+      contact->rows.area[i]        = rows.area[node];
+      contact->rows.changed[i]     = rows.changed[node];
+      if (contact->options.law == CONTACT_LAW_TIED) {
+        contact->rows.tied[i] = (PetscBool)(rows.opposite[node] &&
+                                            PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * (dim == 1 ? point_size : rows.size[node]));
+        contact->rows.initial_gap[i]    = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
+        contact->rows.normal[3 * i + k] = 1;
       } else
-        for (PetscInt d = 0; d < dim; d++) contact->row_normal[3 * i + d] = rows.normals[dim * node + d];
+        for (PetscInt d = 0; d < dim; d++) contact->rows.normal[3 * i + d] = rows.normals[dim * node + d];
       PetscCall(IsHeld(contact, pair, i, &held));
-      contact->dropped[i]    = (PetscBool)(held && (contact->law == CONTACT_LAW_TIED ? contact->tied[i] : rows.opposite[node]) &&
-                                           !pair->obstacle && dim > 1);
-      contact->merged_gap[i] = 0;
+      contact->held.dropped[i]    = (PetscBool)(held &&
+                                                (contact->options.law == CONTACT_LAW_TIED ? contact->rows.tied[i] : rows.opposite[node]) &&
+                                                !pair->obstacle && dim > 1);
+      contact->held.merged_gap[i] = 0;
       if (!held) continue;
-      contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
-      contact->initial_gap[i]                 = CONTACT_NO_GAP;
+      contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;
+      contact->rows.initial_gap[i]                      = CONTACT_NO_GAP;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -161,7 +165,7 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
   for (PetscInt i = 0; i < rows.n; i++) any[0] |= rows.opposite[i];
-  for (PetscInt i = pair->begin; i < pair->end; i++) any[1] |= contact->opposite[i];
+  for (PetscInt i = pair->begin; i < pair->end; i++) any[1] |= contact->rows.opposite[i];
   PetscCall(ContactOr(contact, &any[0]));
   PetscCall(ContactOr(contact, &any[1]));
   PetscCheck(!any[0] || any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -185,14 +189,14 @@ PetscErrorCode ContactFillMatrices(Contact contact)
     PetscCall(VecGetLocalSize(positions, &n));
     PetscCall(MatDestroy(&contact->interfaces[b]));
     PetscCall(MatCreate(comm, &contact->interfaces[b]));
-    PetscCall(MatSetSizes(contact->interfaces[b], contact->n_rows, n, PETSC_DETERMINE, PETSC_DETERMINE));
+    PetscCall(MatSetSizes(contact->interfaces[b], contact->rows.n, n, PETSC_DETERMINE, PETSC_DETERMINE));
     PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
     PetscCall(MatSetUp(contact->interfaces[b]));
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    PetscCall(TransferSetValues(pair->transfer, contact->row_begin + pair->begin, pair->components, contact->interfaces[pair->body[0]],
+    PetscCall(TransferSetValues(pair->transfer, contact->rows.begin + pair->begin, pair->components, contact->interfaces[pair->body[0]],
                                 pair->obstacle ? NULL : contact->interfaces[pair->body[1]]));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -230,7 +234,7 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
   int     any[2]      = {0, 1};
 
   PetscFunctionBegin;
-  if (pair->chosen || !contact->facing) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->chosen || !contact->options.facing) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     DM dm;
 
@@ -272,12 +276,13 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
              "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT
              ", and another body has %" PetscInt_FMT,
              pair->name, dims[0], dims[1], contact->dim);
-  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, (PetscBool)(contact->facing && !pair->surface[0]),
-                              (PetscBool)(contact->facing && !pair->surface[1])));
+  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle,
+                              (PetscBool)(contact->options.facing && !pair->surface[0]),
+                              (PetscBool)(contact->options.facing && !pair->surface[1])));
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
-  PetscCall(TransferSetBounds(pair->transfer, contact->slip_bound, contact->angle_bound));
-  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->law != CONTACT_LAW_TIED)));
+  PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
+  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -304,9 +309,9 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
-  if (contact->tolerance == (PetscReal)PETSC_DEFAULT) contact->tolerance = PENETRATION_TOLERANCE * extent;
-  PetscCheck(contact->tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_tolerance %g m must not be negative", (double)contact->tolerance);
+  if (contact->options.tolerance == (PetscReal)PETSC_DEFAULT) contact->options.tolerance = PENETRATION_TOLERANCE * extent;
+  PetscCheck(contact->options.tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_tolerance %g m must not be negative", (double)contact->options.tolerance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -323,11 +328,11 @@ PetscErrorCode ContactSetUpObstacleTraces(Contact contact)
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     levels = PetscMax(levels, substeps);
   }
-  PetscCall(TraceCreate(contact->n_rows, levels, &traces->displacement));
-  PetscCall(TraceCreate(contact->n_rows, levels, &traces->velocity));
-  PetscCall(TraceCreate(contact->n_rows, levels, &traces->acceleration));
-  PetscCall(TraceCreate(contact->n_rows, levels, &traces->reaction));
-  PetscCall(TraceCreate(contact->n_rows, levels, &traces->force_in));
+  PetscCall(TraceCreate(contact->rows.n, levels, &traces->displacement));
+  PetscCall(TraceCreate(contact->rows.n, levels, &traces->velocity));
+  PetscCall(TraceCreate(contact->rows.n, levels, &traces->acceleration));
+  PetscCall(TraceCreate(contact->rows.n, levels, &traces->reaction));
+  PetscCall(TraceCreate(contact->rows.n, levels, &traces->force_in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -345,13 +350,15 @@ PetscErrorCode ContactDestroyRows(Contact contact)
     PetscCall(TraceDestroy(&traces->force_in));
   }
   PetscCall(ContactDestroyMerger(contact));
-  PetscCall(PetscFree7(contact->row_pair, contact->initial_gap, contact->area, contact->row_dof, contact->row_normal, contact->opposite,
-                       contact->tied));
-  PetscCall(PetscFree7(contact->force, contact->gap, contact->saved_force, contact->saved_gap, contact->active, contact->saved_active,
-                       contact->conditions));
-  PetscCall(PetscFree5(contact->all_row_pair, contact->mine_active, contact->all_active, contact->counts, contact->offsets));
-  PetscCall(PetscFree6(contact->changed, contact->gap_shift, contact->last_gap, contact->dropped, contact->heir, contact->merged_gap));
-  PetscCall(PetscFree2(contact->release_intervals, contact->release));
+  PetscCall(PetscFree7(contact->rows.pair, contact->rows.initial_gap, contact->rows.area, contact->rows.dof, contact->rows.normal,
+                       contact->rows.opposite, contact->rows.tied));
+  PetscCall(PetscFree7(contact->end.force, contact->end.gap, contact->start.force, contact->start.gap, contact->end.active,
+                       contact->start.active, contact->work.conditions));
+  PetscCall(PetscFree5(contact->ranks.row_pair, contact->ranks.mine_active, contact->ranks.all_active, contact->ranks.counts,
+                       contact->ranks.offsets));
+  PetscCall(PetscFree6(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
+                       contact->held.merged_gap));
+  PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,7 +17,7 @@ static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
 {
   PetscReal cosine = 0;
 
-  for (PetscInt d = 0; d < 3; d++) cosine += contact->row_normal[3 * i + d] * contact->row_normal[3 * j + d];
+  for (PetscInt d = 0; d < 3; d++) cosine += contact->rows.normal[3 * i + d] * contact->rows.normal[3 * j + d];
   return cosine;
 }
 
@@ -25,13 +25,13 @@ static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
 PetscErrorCode ContactComputeStartGaps(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
     PetscScalar       *dirichlet, *neumann;
 
     PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
     PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-    contact->gap[i] = contact->saved_gap[i] = contact->initial_gap[i] + neumann[i] - dirichlet[i];
+    contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + neumann[i] - dirichlet[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -76,7 +76,7 @@ static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const
     PetscCall(PetscFindInt(rows->dofs[node], others.n, others.dofs, &place));
     if (place < 0) continue;
     j = other->begin + place;
-    if (!contact->opposite[j] || contact->gap[j] > rows->size[node] || (others.beyond[place] && q > p)) continue;
+    if (!contact->rows.opposite[j] || contact->end.gap[j] > rows->size[node] || (others.beyond[place] && q > p)) continue;
     *shared = (PetscBool)(PetscAbsReal(RowCosine(contact, i, j)) > PARALLEL);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,7 +87,7 @@ static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const
 PetscErrorCode ContactDropShared(Contact contact)
 {
   PetscFunctionBegin;
-  if (contact->law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     TransferRows rows;
 
@@ -96,11 +96,11 @@ PetscErrorCode ContactDropShared(Contact contact)
       const PetscInt i = contact->pairs[p].begin + node;
       PetscBool      shared;
 
-      if (!rows.beyond[node] || !contact->opposite[i]) continue;
+      if (!rows.beyond[node] || !contact->rows.opposite[i]) continue;
       PetscCall(IsShared(contact, p, node, &rows, &shared));
       if (!shared) continue;
-      contact->opposite[i]    = PETSC_FALSE;
-      contact->initial_gap[i] = contact->gap[i] = contact->saved_gap[i] = CONTACT_NO_GAP;
+      contact->rows.opposite[i]    = PETSC_FALSE;
+      contact->rows.initial_gap[i] = contact->end.gap[i] = contact->start.gap[i] = CONTACT_NO_GAP;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,14 +117,14 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
     Vec velocity;
 
     PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
-    PetscCall(GetLargest(velocity, &contact->speeds[b]));
+    PetscCall(GetLargest(velocity, &contact->work.speeds[b]));
   }
-  if (contact->size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->speeds, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX,
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->work.speeds, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX,
                                PetscObjectComm((PetscObject)contact)));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    second = PetscMax(second, PetscMin(first, contact->speeds[b]));
-    first  = PetscMax(first, contact->speeds[b]);
+    second = PetscMax(second, PetscMin(first, contact->work.speeds[b]));
+    first  = PetscMax(first, contact->work.speeds[b]);
   }
   *near = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,17 +156,17 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
     if (without_inertia[0] && without_inertia[1]) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscBool pushes = (PetscBool)(contact->saved_active[i] && contact->saved_force[i] > 0);
+      const PetscBool pushes = (PetscBool)(contact->start.active[i] && contact->start.force[i] > 0);
       const PetscInt  node   = (i - pair->begin) / pair->components;
 
-      if (!contact->changed[i]) continue;
-      if (!contact->opposite[i]) contact->gap_shift[i] = 0;
+      if (!contact->rows.changed[i]) continue;
+      if (!contact->rows.opposite[i]) contact->rows.gap_shift[i] = 0;
       else
-        contact->gap_shift[i] = pushes ? RemainingShift(before[i] - contact->gap[i], rows.size[node], rows.slip[node])
-                                       : PetscMax(-contact->gap[i], 0);
-      contact->initial_gap[i] += contact->gap_shift[i];
-      contact->gap[i] += contact->gap_shift[i];
-      contact->saved_gap[i] = contact->gap[i];
+        contact->rows.gap_shift[i] = pushes ? RemainingShift(before[i] - contact->end.gap[i], rows.size[node], rows.slip[node])
+                                            : PetscMax(-contact->end.gap[i], 0);
+      contact->rows.initial_gap[i] += contact->rows.gap_shift[i];
+      contact->end.gap[i] += contact->rows.gap_shift[i];
+      contact->start.gap[i] = contact->end.gap[i];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,14 +175,14 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
 /* Takes shifts of gaps back as far as rows are open, where this does no work. In contact it would do work, out of nothing. */
 static void DropShifts(Contact contact)
 {
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscReal part = PetscMin(contact->gap_shift[i], PetscMax(contact->gap[i], 0));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscReal part = PetscMin(contact->rows.gap_shift[i], PetscMax(contact->end.gap[i], 0));
 
-    if (contact->saved_active[i] || part == 0) continue;
-    contact->gap_shift[i] -= part;
-    contact->initial_gap[i] -= part;
-    contact->gap[i] -= part;
-    contact->saved_gap[i] -= part;
+    if (contact->start.active[i] || part == 0) continue;
+    contact->rows.gap_shift[i] -= part;
+    contact->rows.initial_gap[i] -= part;
+    contact->end.gap[i] -= part;
+    contact->start.gap[i] -= part;
   }
 }
 
@@ -194,10 +194,10 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscBool any  = PETSC_FALSE;
 
   PetscFunctionBegin;
-  if (contact->dim == 1 || contact->law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetReach(contact, &near));
   DropShifts(contact);
-  PetscCall(PetscArrayzero(contact->changed, contact->n_rows));
+  PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     Vec          u[2] = {NULL, NULL};
@@ -211,21 +211,21 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     PetscCall(ContactDescribeRows(contact, pair));
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  contact->counts_made.rebuilds++;
+  contact->counts.rebuilds++;
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->changed));
-  PetscCall(PetscArraycpy(contact->last_gap, contact->saved_gap, contact->n_rows));
+    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->rows.changed));
+  PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactDropShared(contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    if (contact->opposite[i]) continue;
-    contact->saved_active[i] = PETSC_FALSE;
-    contact->saved_force[i]  = 0;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (contact->rows.opposite[i]) continue;
+    contact->start.active[i] = PETSC_FALSE;
+    contact->start.force[i]  = 0;
   }
-  PetscCall(ShiftGaps(contact, contact->last_gap));
+  PetscCall(ShiftGaps(contact, contact->work.last_gap));
   PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

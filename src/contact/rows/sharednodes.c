@@ -26,7 +26,7 @@
 static void GetDirection(Contact contact, PetscInt node, PetscInt i, PetscReal direction[3])
 {
   for (PetscInt d = 0; d < 3; d++)
-    direction[d] = d < contact->dim && contact->shared.free_dofs[3 * node + d] ? contact->row_normal[3 * i + d] : 0;
+    direction[d] = d < contact->dim && contact->shared.free_dofs[3 * node + d] ? contact->rows.normal[3 * i + d] : 0;
 }
 
 /* Finds out which displacements of a shared node are not held */
@@ -37,11 +37,11 @@ static PetscErrorCode MarkFreeDofs(Contact contact, PetscInt node)
   PetscInt        n;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetHeldDofs(contact->bodies[contact->pairs[contact->row_pair[i]].body[0]], &n, &held));
+  PetscCall(BodyGetHeldDofs(contact->bodies[contact->pairs[contact->rows.pair[i]].body[0]], &n, &held));
   for (PetscInt d = 0; d < contact->dim; d++) {
     PetscInt place;
 
-    PetscCall(PetscFindInt(contact->row_dof[i] + d, n, held, &place));
+    PetscCall(PetscFindInt(contact->rows.dof[i] + d, n, held, &place));
     contact->shared.free_dofs[3 * node + d] = (PetscBool)(place < 0);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -51,7 +51,7 @@ static PetscErrorCode MarkFreeDofs(Contact contact, PetscInt node)
 PetscErrorCode ContactFindSharedNodes(Contact contact)
 {
   SharedNodes   *shared = &contact->shared;
-  const PetscInt n      = contact->n_rows;
+  const PetscInt n      = contact->rows.n;
   PetscInt      *rows, *keys, count = 0;
 
   PetscFunctionBegin;
@@ -61,15 +61,15 @@ PetscErrorCode ContactFindSharedNodes(Contact contact)
     PetscInt of_body = 0;
 
     for (PetscInt i = 0; i < n; i++) {
-      if (contact->pairs[contact->row_pair[i]].body[0] != b) continue;
+      if (contact->pairs[contact->rows.pair[i]].body[0] != b) continue;
       rows[of_body]   = i;
-      keys[of_body++] = contact->row_dof[i];
+      keys[of_body++] = contact->rows.dof[i];
     }
     PetscCall(PetscSortIntWithArray(of_body, keys, rows));
     for (PetscInt begin = 0, end; begin < of_body; begin = end) {
       for (end = begin + 1; end < of_body && keys[end] == keys[begin];) end++;
       PetscCall(PetscSortInt(end - begin, rows + begin));
-      if (contact->row_pair[rows[begin]] == contact->row_pair[rows[end - 1]]) continue;
+      if (contact->rows.pair[rows[begin]] == contact->rows.pair[rows[end - 1]]) continue;
       for (PetscInt k = begin; k < end; k++) shared->rows[count++] = rows[k];
       shared->offsets[++shared->n] = count;
       PetscCall(MarkFreeDofs(contact, shared->n - 1));
@@ -85,35 +85,36 @@ PetscErrorCode ContactDestroySharedNodes(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscFree4(shared->offsets, shared->rows, shared->left_out, shared->free_dofs));
-  PetscCall(PetscFree4(contact->by_force, shared->unit, shared->answers, shared->sorted));
+  PetscCall(PetscFree4(contact->rows.by_force, shared->unit, shared->answers, shared->sorted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether row i has the same normal as row j, and row j is that of another obstacle, which is nearer */
 static PetscBool IsBehind(Contact contact, PetscInt i, PetscInt j)
 {
-  const PetscReal *a = contact->row_normal + 3 * i, *b = contact->row_normal + 3 * j;
+  const PetscReal *a = contact->rows.normal + 3 * i, *b = contact->rows.normal + 3 * j;
   const PetscReal  along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-  if (contact->row_pair[i] == contact->row_pair[j] || !contact->pairs[contact->row_pair[j]].obstacle || !contact->opposite[j])
+  if (contact->rows.pair[i] == contact->rows.pair[j] || !contact->pairs[contact->rows.pair[j]].obstacle || !contact->rows.opposite[j])
     return PETSC_FALSE;
   if (along <= 0 || PetscSqr(along) < 1 - PARALLEL) return PETSC_FALSE;
-  return (PetscBool)(contact->initial_gap[j] < contact->initial_gap[i] || (contact->initial_gap[j] == contact->initial_gap[i] && j < i));
+  return (PetscBool)(contact->rows.initial_gap[j] < contact->rows.initial_gap[i] ||
+                     (contact->rows.initial_gap[j] == contact->rows.initial_gap[i] && j < i));
 }
 
 /* Takes a row back that has been left out, unless its pair has been described since */
 static PetscErrorCode Reconsider(Contact contact, PetscInt i)
 {
-  const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
   const PetscInt     node = (i - pair->begin) / pair->components;
   TransferRows       rows;
 
   PetscFunctionBegin;
-  if (contact->opposite[i]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->rows.opposite[i]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  contact->opposite[i] = rows.opposite[node];
-  contact->area[i]     = rows.area[node];
-  if (rows.opposite[node]) contact->initial_gap[i] = rows.gap[node];
+  contact->rows.opposite[i] = rows.opposite[node];
+  contact->rows.area[i]     = rows.area[node];
+  if (rows.opposite[node]) contact->rows.initial_gap[i] = rows.gap[node];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,16 +133,16 @@ PetscErrorCode ContactLeaveOutObstacles(Contact contact)
       const PetscInt i = shared->rows[k];
 
       shared->left_out[k] = PETSC_FALSE;
-      if (!contact->pairs[contact->row_pair[i]].obstacle || !contact->opposite[i]) continue;
+      if (!contact->pairs[contact->rows.pair[i]].obstacle || !contact->rows.opposite[i]) continue;
       for (PetscInt l = begin; l < end && !shared->left_out[k]; l++) shared->left_out[k] = IsBehind(contact, i, shared->rows[l]);
     }
     for (PetscInt k = begin; k < end; k++) {
       const PetscInt i = shared->rows[k];
 
       if (!shared->left_out[k]) continue;
-      contact->opposite[i] = contact->tied[i] = PETSC_FALSE;
-      contact->initial_gap[i]                 = CONTACT_NO_GAP;
-      contact->area[i]                        = 0;
+      contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;
+      contact->rows.initial_gap[i]                      = CONTACT_NO_GAP;
+      contact->rows.area[i]                             = 0;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -172,16 +173,16 @@ PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool arranges)
 
   PetscFunctionBegin;
   for (PetscInt node = 0; node < shared->n; node++) most = PetscMax(most, shared->offsets[node + 1] - shared->offsets[node]);
-  PetscCall(PetscCalloc4(contact->n_rows, &contact->by_force, contact->n_pairs, &shared->unit, contact->n_pairs, &shared->answers, most,
-                         &shared->sorted));
+  PetscCall(PetscCalloc4(contact->rows.n, &contact->rows.by_force, contact->n_pairs, &shared->unit, contact->n_pairs, &shared->answers,
+                         most, &shared->sorted));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     PetscCall(GetUnit(contact, pair, &shared->unit[p]));
     if (!pair->obstacle) PetscCall(BodyFeelsEndForce(contact->bodies[pair->body[1]], &shared->answers[p]));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->by_force[i] = contact->pairs[contact->row_pair[i]].by_force;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRowWeights(contact->bodies[b], contact->area));
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.by_force[i] = contact->pairs[contact->rows.pair[i]].by_force;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRowWeights(contact->bodies[b], contact->rows.area));
   shared->arranges = arranges;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -189,7 +190,7 @@ PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool arranges)
 /* Force along a row for a metre of its unknown [N/m] */
 PetscReal ContactForceUnit(Contact contact, PetscInt i)
 {
-  return contact->shared.unit[contact->row_pair[i]] * contact->area[i] * contact->cross_section[contact->row_pair[i]];
+  return contact->shared.unit[contact->rows.pair[i]] * contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]];
 }
 
 /* Puts the active rows of a node into `sorted`, in the order in which they are prescribed: first those whose partner does not move
@@ -202,9 +203,9 @@ static PetscInt SortActive(Contact contact, PetscInt node, PetscInt sorted[])
   for (PetscInt round = 0; round < 3; round++)
     for (PetscInt k = shared->offsets[node]; k < shared->offsets[node + 1]; k++) {
       const PetscInt  i     = shared->rows[k];
-      const PetscBool first = (PetscBool)(contact->gap[i] < -contact->tolerance);
+      const PetscBool first = (PetscBool)(contact->end.gap[i] < -contact->options.tolerance);
 
-      if (contact->active[i] && round == (shared->answers[contact->row_pair[i]] ? 2 : first ? 0 : 1)) sorted[count++] = i;
+      if (contact->end.active[i] && round == (shared->answers[contact->rows.pair[i]] ? 2 : first ? 0 : 1)) sorted[count++] = i;
     }
   return count;
 }
@@ -240,15 +241,15 @@ void ContactArrangeShared(Contact contact)
 
     for (PetscInt k = 0; k < count; k++) {
       const PetscInt  i       = shared->sorted[k];
-      const PetscBool answers = shared->answers[contact->row_pair[i]];
+      const PetscBool answers = shared->answers[contact->rows.pair[i]];
       PetscReal       direction[3];
       PetscBool       independent;
 
-      if (contact->pairs[contact->row_pair[i]].by_force) continue; /* not prescribed anyway */
+      if (contact->pairs[contact->rows.pair[i]].by_force) continue; /* not prescribed anyway */
       GetDirection(contact, node, i, direction);
-      independent          = Extends(direction, answers ? NEAR : PARALLEL, &n, basis);
-      contact->by_force[i] = (PetscBool)(!independent && answers);
-      contact->active[i]   = (PetscBool)(independent || answers);
+      independent               = Extends(direction, answers ? NEAR : PARALLEL, &n, basis);
+      contact->rows.by_force[i] = (PetscBool)(!independent && answers);
+      contact->end.active[i]    = (PetscBool)(independent || answers);
     }
   }
 }

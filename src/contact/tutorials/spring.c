@@ -19,14 +19,14 @@ static PetscErrorCode ContactStep_Spring(Contact contact)
   const Spring *spring = (const Spring *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(spring->force, contact->saved_force, contact->n_rows));
+  PetscCall(PetscArraycpy(spring->force, contact->start.force, contact->rows.n));
   for (int guess = 0, off = 1; off; guess++) {
     PetscCheck(guess < 50, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The spring forces do not settle");
     PetscCall(ContactIntegrateForces(contact, spring->force));
     off = 0;
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const PetscReal depth  = PetscMax(-contact->gap[i], 0);
-      const PetscReal wanted = spring->stiffness * contact->area[i] * depth * PetscSqrtReal(depth);
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const PetscReal depth  = PetscMax(-contact->end.gap[i], 0);
+      const PetscReal wanted = spring->stiffness * contact->rows.area[i] * depth * PetscSqrtReal(depth);
 
       if (PetscAbsReal(wanted - spring->force[i]) > 1e-12 * wanted) off = 1;
       spring->force[i] = wanted;
@@ -39,7 +39,7 @@ static PetscErrorCode ContactStep_Spring(Contact contact)
 static PetscErrorCode ContactSetUp_Spring(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_rows, &((Spring *)contact->data)->force));
+  PetscCall(PetscMalloc1(contact->rows.n, &((Spring *)contact->data)->force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -25,17 +25,18 @@ static void model_create(PetscInt n, Model *m)
   ok(ContactCreate(PETSC_COMM_WORLD, &m->contact));
   ok(ContactSetTolerance(m->contact, 0)); /* the default one is known after ContactSetUp(), which made-up problems do without */
   ok(PetscSplitOwnership(PETSC_COMM_WORLD, &local, &n));
-  assert_int_equal(MPI_Exscan(&local, &m->contact->row_begin, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
-  m->contact->n_rows = local;
-  ok(PetscCalloc4(local, &m->contact->active, local, &m->contact->tied, local, &m->contact->force, local, &m->contact->gap));
-  ok(RoundsCreate(m->contact, m->contact->active, m->contact->force, m->contact->gap, &m->set));
+  assert_int_equal(MPI_Exscan(&local, &m->contact->rows.begin, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+  m->contact->rows.n = local;
+  ok(PetscCalloc4(local, &m->contact->end.active, local, &m->contact->rows.tied, local, &m->contact->end.force, local,
+                  &m->contact->end.gap));
+  ok(RoundsCreate(m->contact, m->contact->end.active, m->contact->end.force, m->contact->end.gap, &m->set));
 }
 
 static void model_destroy(Model *m)
 {
   ok(RoundsDestroy(&m->set));
-  ok(PetscFree4(m->contact->active, m->contact->tied, m->contact->force, m->contact->gap));
-  m->contact->n_rows = 0;
+  ok(PetscFree4(m->contact->end.active, m->contact->rows.tied, m->contact->end.force, m->contact->end.gap));
+  m->contact->rows.n = 0;
   ok(ContactDestroy(&m->contact));
 }
 
@@ -46,7 +47,7 @@ static void solve(const Problem *problem, Model *m)
   PetscReal      a[MOST_ROWS][MOST_ROWS + 1] = {{0}};
   int            active[MOST_ROWS]           = {0};
 
-  for (PetscInt i = 0; i < m->contact->n_rows; i++) active[m->contact->row_begin + i] = m->contact->active[i];
+  for (PetscInt i = 0; i < m->contact->rows.n; i++) active[m->contact->rows.begin + i] = m->contact->end.active[i];
   assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, active, MOST_ROWS, MPI_INT, MPI_MAX, PETSC_COMM_WORLD), 0);
   for (PetscInt i = 0; i < n; i++) {
     for (PetscInt j = 0; j < n; j++) a[i][j] = active[i] && active[j] ? problem->S[i * n + j] : i == j;
@@ -60,9 +61,9 @@ static void solve(const Problem *problem, Model *m)
     m->gap[i] = problem->q[i];
     for (PetscInt j = 0; j < n; j++) m->gap[i] += problem->S[i * n + j] * m->force[j];
   }
-  for (PetscInt i = 0; i < m->contact->n_rows; i++) {
-    m->contact->force[i] = m->force[m->contact->row_begin + i];
-    m->contact->gap[i]   = m->contact->active[i] ? 0 : m->gap[m->contact->row_begin + i];
+  for (PetscInt i = 0; i < m->contact->rows.n; i++) {
+    m->contact->end.force[i] = m->force[m->contact->rows.begin + i];
+    m->contact->end.gap[i]   = m->contact->end.active[i] ? 0 : m->gap[m->contact->rows.begin + i];
   }
 }
 
@@ -72,7 +73,7 @@ static PetscInt step(const Problem *problem, Model *m)
   PetscBool changed = PETSC_TRUE, flips;
 
   ok(RoundsBegin(&m->set));
-  for (PetscInt i = 0; i < m->contact->n_rows; i++) m->contact->active[i] = problem->start[m->contact->row_begin + i];
+  for (PetscInt i = 0; i < m->contact->rows.n; i++) m->contact->end.active[i] = problem->start[m->contact->rows.begin + i];
   for (m->rounds = 0; changed; m->rounds++) {
     ok(RoundsNext(&m->set));
     solve(problem, m);
@@ -80,7 +81,7 @@ static PetscInt step(const Problem *problem, Model *m)
     ok(RoundsHaveChanged(&m->set, &changed));
     if (changed) ok(RoundsBreakCycle(&m->set, &flips));
   }
-  return m->contact->counts_made.set_cycles;
+  return m->contact->counts.set_cycles;
 }
 
 static void check(const Model *m, PetscInt n, const PetscReal force[])
@@ -107,7 +108,7 @@ static void a_circle_of_three_sets(void **state)
   ok(PetscArraycpy(problem.q, circle_q, 3));
   model_create(3, &model);
   for (PetscInt start = 0; start < 8; start++) {
-    const PetscInt before = model.contact->counts_made.set_cycles;
+    const PetscInt before = model.contact->counts.set_cycles;
 
     for (PetscInt i = 0; i < 3; i++) problem.start[i] = (PetscBool)((start >> i) & 1);
     assert_int_equal(step(&problem, &model) - before,

@@ -18,7 +18,7 @@ static void Create(Simulation *simulation)
              "-density 1 -youngs_modulus 1 -poissons_ratio 0.25 -ts_type centraldifference -prefix_pop "
              "-bodies a,b -contact_pairs a.xmax:b.xmin -time_step 0.04 -time_end 1");
   ok(SimulationCreate(simulation));
-  between(simulation->contact->n_all_rows, 5, MOST_ROWS);
+  between(simulation->contact->rows.n_all, 5, MOST_ROWS);
 }
 
 /* All rows with both sides are solved for, but the last of all ranks where `leave` */
@@ -28,8 +28,8 @@ static InterfaceOperator SetUp(Simulation *simulation, const InterfaceSettings *
   InterfaceMark     marks[MOST_ROWS];
   InterfaceOperator op;
 
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    marks[i] = leave && contact->row_begin + i == contact->n_all_rows - 1 ? INTERFACE_LEFT_OUT : INTERFACE_SOLVED;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    marks[i] = leave && contact->rows.begin + i == contact->rows.n_all - 1 ? INTERFACE_LEFT_OUT : INTERFACE_SOLVED;
   ok(InterfaceOperatorCreate(contact, settings, &op));
   ok(InterfaceOperatorSetRows(op, marks, 1));
   return op;
@@ -42,7 +42,7 @@ static PetscReal force(PetscInt row)
 
 static void fill(const Contact contact, PetscScalar x[])
 {
-  for (PetscInt i = 0; i < contact->n_rows; i++) x[i] = force(contact->row_begin + i);
+  for (PetscInt i = 0; i < contact->rows.n; i++) x[i] = force(contact->rows.begin + i);
 }
 
 /* Forces of some N bring some m: round-off, and what conjugate gradients leave */
@@ -63,9 +63,9 @@ static void products_are_the_same(void **state)
     for (PetscInt map = 0; map < 4; map++) {
       ok(InterfaceOperatorMultiply(op[0], (InterfaceMap)map, x, gap));
       ok(InterfaceOperatorMultiply(op[1], (InterfaceMap)map, x, other));
-      for (PetscInt i = 0; i < contact->n_rows; i++) {
+      for (PetscInt i = 0; i < contact->rows.n; i++) {
         near(gap[i], other[i], 1e-12);
-        if (leave && contact->row_begin + i == contact->n_all_rows - 1) near(gap[i], 0, 0);
+        if (leave && contact->rows.begin + i == contact->rows.n_all - 1) near(gap[i], 0, 0);
         else assert_true(gap[i] != 0 || map == INTERFACE_NEUMANN_DIRICHLET); /* where both sides are apart */
       }
     }
@@ -73,7 +73,7 @@ static void products_are_the_same(void **state)
     ok(InterfaceOperatorMultiply(op[0], INTERFACE_GAP, x, gap));
     ok(InterfaceOperatorMultiply(op[0], INTERFACE_DIRICHLET, x, side[0]));
     ok(InterfaceOperatorMultiply(op[0], INTERFACE_NEUMANN_GAP, x, side[1]));
-    for (PetscInt i = 0; i < contact->n_rows; i++) near(gap[i], side[0][i] - side[1][i], 1e-13);
+    for (PetscInt i = 0; i < contact->rows.n; i++) near(gap[i], side[0][i] - side[1][i], 1e-13);
     for (PetscInt k = 0; k < 2; k++) ok(InterfaceOperatorDestroy(&op[k]));
   }
 }
@@ -93,16 +93,16 @@ static void solutions_are_the_same(void **state)
     PetscBool         in[MOST_ROWS];
 
     for (PetscInt some = 0; some < 2; some++) {
-      for (PetscInt i = 0; i < contact->n_rows; i++) {
-        in[i]      = (PetscBool)(!some || (contact->row_begin + i) % 2);
+      for (PetscInt i = 0; i < contact->rows.n; i++) {
+        in[i]      = (PetscBool)(!some || (contact->rows.begin + i) % 2);
         springs[i] = some ? 0.3 + 0.1 * i : 0;
-        x[i]       = in[i] ? force(contact->row_begin + i) : 0;
+        x[i]       = in[i] ? force(contact->rows.begin + i) : 0;
       }
       ok(InterfaceOperatorMultiply(op, INTERFACE_GAP, x, gap));
-      for (PetscInt i = 0; i < contact->n_rows; i++) gap[i] += springs[i] * x[i];
+      for (PetscInt i = 0; i < contact->rows.n; i++) gap[i] += springs[i] * x[i];
       ok(InterfaceOperatorFactor(op, some ? in : NULL, some ? springs : NULL));
       ok(InterfaceOperatorSolve(op, gap, found));
-      for (PetscInt i = 0; i < contact->n_rows; i++) near(found[i], x[i], 1e-10);
+      for (PetscInt i = 0; i < contact->rows.n; i++) near(found[i], x[i], 1e-10);
     }
     ok(InterfaceOperatorDestroy(&op));
   }
@@ -132,13 +132,13 @@ static void becomes_dense_when_that_has_paid(void **state)
   }
   /* a column for each row costs as one iteration does, and an iteration closes one gap at least */
   between(solutions, 0, 3);
-  for (PetscInt i = 0; i < contact->n_rows; i++) marks[i] = INTERFACE_SOLVED;
+  for (PetscInt i = 0; i < contact->rows.n; i++) marks[i] = INTERFACE_SOLVED;
   ok(InterfaceOperatorSetRows(op, marks, 1));
   InterfaceOperatorGetRows(op, NULL, NULL, &is_dense);
   assert_true(is_dense);
   assert_false(InterfaceOperatorWantsDense(op));
   ok(InterfaceOperatorSolve(op, gap, found));
-  for (PetscInt i = 0; i < contact->n_rows; i++) near(found[i], first[i], 1e-10);
+  for (PetscInt i = 0; i < contact->rows.n; i++) near(found[i], first[i], 1e-10);
   ok(InterfaceOperatorDestroy(&op));
 }
 
@@ -151,11 +151,11 @@ static void may_be_a_sparse_matrix(void **state)
 
   Create(simulation);
   contact = simulation->contact;
-  ok(MatCreateAIJ(PETSC_COMM_WORLD, contact->n_rows, contact->n_rows, contact->n_all_rows, contact->n_all_rows, 2, NULL, 2, NULL, &S));
-  for (PetscInt i = contact->row_begin; i < contact->row_begin + contact->n_rows; i++) {
+  ok(MatCreateAIJ(PETSC_COMM_WORLD, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all, 2, NULL, 2, NULL, &S));
+  for (PetscInt i = contact->rows.begin; i < contact->rows.begin + contact->rows.n; i++) {
     ok(MatSetValue(S, i, i, 2 + i, INSERT_VALUES));
-    if (i == 0) ok(MatSetValue(S, i, contact->n_all_rows - 1, 1, INSERT_VALUES));
-    if (i == contact->n_all_rows - 1) ok(MatSetValue(S, i, 0, 1, INSERT_VALUES));
+    if (i == 0) ok(MatSetValue(S, i, contact->rows.n_all - 1, 1, INSERT_VALUES));
+    if (i == contact->rows.n_all - 1) ok(MatSetValue(S, i, 0, 1, INSERT_VALUES));
   }
   ok(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
   ok(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
@@ -166,15 +166,15 @@ static void may_be_a_sparse_matrix(void **state)
 
     ok(InterfaceOperatorCreate(contact, which ? &iterative : &dense, &op));
     ok(InterfaceOperatorSetMatrix(op, S));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const PetscInt row = contact->row_begin + i, last = contact->n_all_rows - 1;
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const PetscInt row = contact->rows.begin + i, last = contact->rows.n_all - 1;
 
       marks[i] = INTERFACE_SOLVED;
       gap[i]   = (2 + row) * force(row) + (row == 0 ? force(last) : row == last ? force(0) : 0);
     }
     ok(InterfaceOperatorSetRows(op, marks, 1));
     ok(InterfaceOperatorSolve(op, gap, found));
-    for (PetscInt i = 0; i < contact->n_rows; i++) near(found[i], force(contact->row_begin + i), 1e-12);
+    for (PetscInt i = 0; i < contact->rows.n; i++) near(found[i], force(contact->rows.begin + i), 1e-12);
     ok(InterfaceOperatorDestroy(&op));
     assert_null(op);
   }

@@ -33,7 +33,7 @@ static PetscErrorCode Orient(Contact contact, PetscInt b, Vec sign, Mat matrix)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(sign, &signs));
-  for (PetscInt i = 0; i < contact->n_rows; i++) signs[i] = Sign(&contact->pairs[contact->row_pair[i]], b);
+  for (PetscInt i = 0; i < contact->rows.n; i++) signs[i] = Sign(&contact->pairs[contact->rows.pair[i]], b);
   PetscCall(VecRestoreArrayWrite(sign, &signs));
   PetscCall(MatDiagonalScale(matrix, sign, sign));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,7 +65,7 @@ static PetscErrorCode TakeActive(Contact contact, Complementarity *problem)
   int differs = !problem->current;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
     const InterfaceMark mark = problem->active[i] ? INTERFACE_SOLVED : INTERFACE_LEFT_OUT;
 
     differs |= problem->marks[i] != mark;
@@ -86,7 +86,7 @@ PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
                                       .dense_limit = MAX_DENSE_ROWS,
                                       .few         = MAX_DENSE_ROWS,
                                       .warm        = PETSC_TRUE};
-  const PetscInt          n        = contact->n_rows;
+  const PetscInt          n        = contact->rows.n;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->closed, n,
@@ -107,9 +107,9 @@ PetscErrorCode ComplementaritySolveActive(Contact contact, Complementarity *prob
   PetscCall(TakeActive(contact, problem));
   InterfaceOperatorGetRows(problem->S, &n, NULL, NULL);
   if (n) {
-    for (PetscInt i = 0; i < contact->n_rows; i++) problem->mine[i] = -problem->gaps[i];
+    for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = -problem->gaps[i];
     PetscCall(InterfaceOperatorSolve(problem->S, problem->mine, problem->forces));
-  } else PetscCall(PetscArrayzero(problem->forces, contact->n_rows));
+  } else PetscCall(PetscArrayzero(problem->forces, contact->rows.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,11 +121,11 @@ static PetscErrorCode ComputeClosed(Contact contact, Complementarity *problem)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(problem->force_vec, &force));
-  PetscCall(PetscArraycpy(force, problem->forces, contact->n_rows));
+  PetscCall(PetscArraycpy(force, problem->forces, contact->rows.n));
   PetscCall(VecRestoreArrayWrite(problem->force_vec, &force));
   PetscCall(MatMult(problem->compliance, problem->force_vec, problem->gap_vec));
   PetscCall(VecGetArrayRead(problem->gap_vec, &moved));
-  for (PetscInt i = 0; i < contact->n_rows; i++) problem->closed[i] = problem->gaps[i] + moved[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) problem->closed[i] = problem->gaps[i] + moved[i];
   PetscCall(VecRestoreArrayRead(problem->gap_vec, &moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -138,7 +138,7 @@ PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Comple
   PetscFunctionBegin;
   problem->rounds.tolerance = tolerance;
   PetscCall(RoundsBegin(&problem->rounds));
-  for (PetscInt i = 0; i < contact->n_rows; i++) problem->active[i] = (PetscBool)(contact->tied[i] || problem->gaps[i] < 0);
+  for (PetscInt i = 0; i < contact->rows.n; i++) problem->active[i] = (PetscBool)(contact->rows.tied[i] || problem->gaps[i] < 0);
   while (changed) {
     PetscCall(RoundsNext(&problem->rounds));
     PetscCall(ComplementaritySolveActive(contact, problem));
@@ -146,7 +146,7 @@ PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Comple
     PetscCall(RoundsChange(&problem->rounds));
     PetscCall(RoundsHaveChanged(&problem->rounds, &changed));
     if (!changed) break;
-    contact->counts_made.set_changes++;
+    contact->counts.set_changes++;
     PetscCall(RoundsBreakCycle(&problem->rounds, &flips));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,6 +156,6 @@ PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Comple
 PetscErrorCode ComplementarityGetBodyForces(Contact contact, PetscInt b, const Complementarity *problem, PetscScalar forces[])
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) forces[i] = Sign(&contact->pairs[contact->row_pair[i]], b) * problem->forces[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) forces[i] = Sign(&contact->pairs[contact->rows.pair[i]], b) * problem->forces[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -24,12 +24,12 @@ typedef struct {
 /* What is to be closed of the gap at the end of a free step */
 static PetscReal GapToClose(Contact contact, PetscInt i)
 {
-  const PetscReal start   = contact->saved_gap[i];
-  const PetscBool touches = (PetscBool)(contact->saved_active[i] || contact->gap[i] < -contact->tolerance);
+  const PetscReal start   = contact->start.gap[i];
+  const PetscBool touches = (PetscBool)(contact->start.active[i] || contact->end.gap[i] < -contact->options.tolerance);
 
   /* a gap that is left as it is when the bodies meet stays so */
-  if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) return contact->gap[i] - (touches ? start : 0);
-  return contact->gap[i] - (start < -contact->tolerance ? (1 - RECOVERY) * start : 0);
+  if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE) return contact->end.gap[i] - (touches ? start : 0);
+  return contact->end.gap[i] - (start < -contact->options.tolerance ? (1 - RECOVERY) * start : 0);
 }
 
 static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
@@ -41,27 +41,27 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, &penetrating));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    lagrange->forces.gaps[i] = contact->tied[i] ? contact->gap[i] : GapToClose(contact, i);
-    any |= contact->tied[i] || (lagrange->forces.gaps[i] < 0 && (penetrating || contact->saved_active[i]));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    lagrange->forces.gaps[i] = contact->rows.tied[i] ? contact->end.gap[i] : GapToClose(contact, i);
+    any |= contact->rows.tied[i] || (lagrange->forces.gaps[i] < 0 && (penetrating || contact->start.active[i]));
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
-  PetscCall(ComplementaritySolve(contact, contact->tolerance, &lagrange->forces));
+  PetscCall(ComplementaritySolve(contact, contact->options.tolerance, &lagrange->forces));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->forces, lagrange->forces.mine));
     PetscCall(BodyAddImpulse(contact->bodies[b], lagrange->forces.mine));
     PetscCall(BodyIntegrate(contact->bodies[b]));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    contact->force[i]  = lagrange->forces.forces[i];
-    contact->active[i] = (PetscBool)(contact->tied[i] || contact->force[i] > 0);
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    contact->end.force[i]  = lagrange->forces.forces[i];
+    contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || contact->end.force[i] > 0);
   }
   PetscCall(ContactComputeGaps(contact));
-  contact->counts_made.sweeps = 1;
+  contact->counts.sweeps = 1;
   PetscCall(PetscTime(&end));
-  contact->counts_made.seconds += end - begin;
+  contact->counts.seconds += end - begin;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,8 +73,8 @@ static PetscErrorCode ContactAccept_ForwardLagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(LagrangeCloseRate(contact, PETSC_TRUE, &lagrange->impulses));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    if (contact->active[i]) contact->force[i] += lagrange->impulses.forces[i] / lagrange->step;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (contact->end.active[i]) contact->end.force[i] += lagrange->impulses.forces[i] / lagrange->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,7 +113,7 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   contact->ops->destroy     = ContactDestroy_ForwardLagrange;
   PetscCall(ComplementarityCreate(contact, &lagrange->forces));
   PetscCall(ForcesGetStep(contact, &lagrange->step));
-  if (contact->constraint == CONTACT_CONSTRAINT_BOTH) {
+  if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) {
     contact->ops->accept = ContactAccept_ForwardLagrange;
     lagrange->close_rate = PETSC_TRUE;
     PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));

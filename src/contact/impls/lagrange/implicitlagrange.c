@@ -39,18 +39,19 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar x[], co
   PetscReal         sums[2]  = {0, 0};
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt row = contact->row_begin + i;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscInt row = contact->rows.begin + i;
     PetscReal      mismatch;
     PetscScalar   *start;
 
-    mismatch = x[i] > 0 ? PetscAbsReal(f[i]) : PetscMax(-f[i], -x[i] * lagrange->compliance[row * (contact->n_all_rows + 1)]);
-    PetscCall(TraceGetLevel(contact->traces[contact->pairs[contact->row_pair[i]].body[0]].displacement, 0, &start));
+    mismatch = x[i] > 0 ? PetscAbsReal(f[i]) : PetscMax(-f[i], -x[i] * lagrange->compliance[row * (contact->rows.n_all + 1)]);
+    PetscCall(TraceGetLevel(contact->traces[contact->pairs[contact->rows.pair[i]].body[0]].displacement, 0, &start));
     sums[0] += PetscSqr(PetscMax(mismatch, 0));
     sums[1] += PetscSqr(start[i]);
     if (PetscIsInfOrNanReal(f[i])) sums[0] = f[i];
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   lagrange->mismatch  = PetscSqrtReal(sums[0]);
   lagrange->magnitude = PetscSqrtReal(sums[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -68,9 +69,9 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(ForcesIntegrate(contact, &lagrange->forces, x, lagrange->scale));
   PetscCall(VecGetArrayWrite(F, &f));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    f[i] = contact->gap[i] -
-           (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->forces.touching[i] ? contact->saved_gap[i] : 0);
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    f[i] = contact->end.gap[i] -
+           (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE && lagrange->forces.touching[i] ? contact->start.gap[i] : 0);
   PetscCall(MeasureMismatch(contact, x, f));
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -88,9 +89,9 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   (void)P;
   if (lagrange->have_jacobian && !lagrange->scaled_in_place) PetscFunctionReturn(PETSC_SUCCESS);
   lagrange->have_jacobian = PETSC_TRUE;
-  for (PetscInt i = contact->row_begin; i < contact->row_begin + contact->n_rows; i++)
-    for (PetscInt j = 0; j < contact->n_all_rows; j++)
-      PetscCall(MatSetValue(J, i, j, lagrange->compliance[j * contact->n_all_rows + i], INSERT_VALUES));
+  for (PetscInt i = contact->rows.begin; i < contact->rows.begin + contact->rows.n; i++)
+    for (PetscInt j = 0; j < contact->rows.n_all; j++)
+      PetscCall(MatSetValue(J, i, j, lagrange->compliance[j * contact->rows.n_all + i], INSERT_VALUES));
   PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -122,11 +123,11 @@ static PetscErrorCode SetZeroPivot(Contact contact, SNES snes)
   PC                      pc;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_all_rows; i++)
-    largest = PetscMax(largest, PetscAbsScalar(lagrange->compliance[i * (contact->n_all_rows + 1)]));
+  for (PetscInt i = 0; i < contact->rows.n_all; i++)
+    largest = PetscMax(largest, PetscAbsScalar(lagrange->compliance[i * (contact->rows.n_all + 1)]));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  if (contact->size > 1) { /* a copy of the matrix on each rank, see OuterSolverCreate() */
+  if (contact->ranks.size > 1) { /* a copy of the matrix on each rank, see OuterSolverCreate() */
     PetscCall(PCRedundantGetKSP(pc, &ksp));
     PetscCall(KSPGetPC(ksp, &pc));
   }
@@ -145,7 +146,7 @@ static PetscErrorCode SetUpOuter(Contact contact)
   char              type[64] = SNESVINEWTONRSLS;
 
   PetscFunctionBegin;
-  PetscCall(OuterSolverCreate(contact, "lagrange_", contact->n_rows, ComputeResidual, ComputeJacobian, &lagrange->outer));
+  PetscCall(OuterSolverCreate(contact, "lagrange_", contact->rows.n, ComputeResidual, ComputeJacobian, &lagrange->outer));
   snes = lagrange->outer.snes;
   PetscCall(SetZeroPivot(contact, snes));
   PetscCall(PetscOptionsGetString(NULL, "lagrange_", "-snes_type", type, sizeof(type), NULL));
@@ -159,7 +160,7 @@ static PetscErrorCode SetUpOuter(Contact contact)
     PetscCall(SNESGetLineSearch(snes, &line_search));
     PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   }
-  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->length_scale, 1e-15, 0, 50, 1000000));
+  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->scale.length, 1e-15, 0, 50, 1000000));
   PetscCall(PetscOptionsHasName(NULL, "lagrange_", "-snes_vi_zero_tolerance", &tolerance_set));
   if (!tolerance_set) PetscCall(PetscOptionsSetValue(NULL, "-lagrange_snes_vi_zero_tolerance", "0"));
   PetscCall(SNESSetFromOptions(snes));
@@ -193,7 +194,7 @@ static PetscErrorCode CheckConverged(Contact contact)
           "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
           " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose "
           "a smaller -time_step",
-          (double)time, contact->counts_made.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]);
+          (double)time, contact->counts.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]);
 }
 
 /* The solution. The semismooth iteration may leave forces that pull, within the tolerance: these are taken out. */
@@ -205,13 +206,13 @@ static PetscErrorCode TakeForces(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(lagrange->outer.x, &force));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
     pulls |= force[i] < 0;
-    contact->force[i] = PetscMax(force[i], 0);
+    contact->end.force[i] = PetscMax(force[i], 0);
   }
   PetscCall(VecRestoreArrayRead(lagrange->outer.x, &force));
   PetscCall(ContactOr(contact, &pulls));
-  if (pulls) PetscCall(ForcesIntegrate(contact, &lagrange->forces, contact->force, lagrange->scale));
+  if (pulls) PetscCall(ForcesIntegrate(contact, &lagrange->forces, contact->end.force, lagrange->scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,16 +227,17 @@ static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   if (lagrange->stabilized) PetscCall(LagrangeProjectPrediction(contact, lagrange->step, &lagrange->impulses));
   PetscCall(VecGetArrayWrite(lagrange->outer.x, &x));
-  PetscCall(PetscArraycpy(x, contact->saved_force, contact->n_rows));
+  PetscCall(PetscArraycpy(x, contact->start.force, contact->rows.n));
   PetscCall(VecRestoreArrayWrite(lagrange->outer.x, &x));
   while (changed) {
     PetscCall(SNESSolve(lagrange->outer.snes, NULL, lagrange->outer.x));
     PetscCall(CheckConverged(contact));
     PetscCall(TakeForces(contact));
     changed = PETSC_FALSE;
-    if (contact->constraint == CONTACT_CONSTRAINT_GAP_RATE) PetscCall(ForcesTouch(contact, &lagrange->forces, contact->force, &changed));
+    if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE)
+      PetscCall(ForcesTouch(contact, &lagrange->forces, contact->end.force, &changed));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->force[i] > 0);
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = (PetscBool)(contact->end.force[i] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,7 +253,7 @@ static PetscErrorCode ContactAccept_ImplicitLagrange(Contact contact)
   if (!lagrange->stabilized) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->n_rows; i++) lagrange->impulses.forces[i] = -lagrange->scale * contact->force[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) lagrange->impulses.forces[i] = -lagrange->scale * contact->end.force[i];
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->impulses, lagrange->impulses.mine));
     PetscCall(BodyAddAcceleration(contact->bodies[b], lagrange->impulses.mine));
@@ -294,9 +296,9 @@ static PetscErrorCode SetUpStabilized(Contact contact)
 
   PetscFunctionBegin;
   PetscCheck(
-      contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT,
+      contact->options.constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT,
       "-contact_stabilization contact_stabilized closes the gap by a projection of its own; leave -contact_constraint at gap, not %s",
-      ContactConstraints[contact->constraint]);
+      ContactConstraints[contact->options.constraint]);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const char *name = ((PetscObject)contact->bodies[b])->name;
     PetscBool   is_explicit, massless;
@@ -338,7 +340,7 @@ static PetscErrorCode ComputeCompliance(Contact contact)
   PetscFunctionBegin;
   PetscCall(InterfaceOperatorSetRows(lagrange->S, lagrange->marks, 1));
   PetscCall(InterfaceOperatorAssemble(lagrange->S, INTERFACE_GAP, -1, lagrange->compliance));
-  for (PetscInt i = 0; i < contact->n_all_rows * contact->n_all_rows; i++) lagrange->compliance[i] *= lagrange->scale;
+  for (PetscInt i = 0; i < contact->rows.n_all * contact->rows.n_all; i++) lagrange->compliance[i] *= lagrange->scale;
   lagrange->have_jacobian = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -357,13 +359,13 @@ static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
 PetscErrorCode LagrangeSetUpImplicit(Contact contact)
 {
   /* SNESVI wants all of S as a matrix: dense whatever its size, which ForcesCheckDense() bounds; nothing is iterated for */
-  const InterfaceSettings settings = {.prefix = "lagrange_", .dense_limit = contact->n_all_rows, .few = contact->n_all_rows};
+  const InterfaceSettings settings = {.prefix = "lagrange_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
   ImplicitLagrange       *lagrange;
 
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, "lagrange"));
   PetscCall(ForcesCheckDense(contact, "lagrange"));
-  PetscCheck(contact->law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+  PetscCheck(contact->options.law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and "
              "without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
   PetscCall(PetscNew(&lagrange));
@@ -376,10 +378,10 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   PetscCall(ForcesGetStep(contact, &lagrange->step));
   PetscCall(ForcesCreate(contact, &lagrange->forces));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &lagrange->S));
-  PetscCall(PetscCalloc2(contact->n_all_rows * contact->n_all_rows, &lagrange->compliance, contact->n_rows, &lagrange->marks));
-  for (PetscInt i = 0; i < contact->n_rows; i++) lagrange->marks[i] = INTERFACE_SOLVED;
-  if (contact->stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(SetUpStabilized(contact));
-  if (contact->constraint == CONTACT_CONSTRAINT_BOTH) {
+  PetscCall(PetscCalloc2(contact->rows.n_all * contact->rows.n_all, &lagrange->compliance, contact->rows.n, &lagrange->marks));
+  for (PetscInt i = 0; i < contact->rows.n; i++) lagrange->marks[i] = INTERFACE_SOLVED;
+  if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(SetUpStabilized(contact));
+  if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) {
     PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
     lagrange->close_rate = PETSC_TRUE;
   } else if (lagrange->stabilized)

@@ -26,10 +26,10 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
   PetscFunctionBegin;
   PetscCall(SuitsForward(contact, &forward));
   if (forward) {
-    PetscCheck(contact->stabilization != CONTACT_STABILIZATION_CONTACT_STABILIZED, comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(contact->options.stabilization != CONTACT_STABILIZATION_CONTACT_STABILIZED, comm, PETSC_ERR_USER_INPUT,
                "-contact_stabilization contact_stabilized works with implicit bodies only, and all are explicit; give them -<body>_ts_type "
                "alpha2, or leave the stabilization at none");
-    PetscCheck(contact->stabilization == CONTACT_STABILIZATION_NONE, comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm, PETSC_ERR_USER_INPUT,
                "-contact_stabilization naive: with forward-increment Lagrange multipliers the accelerations at the end of a step have no "
                "contact force in them yet, so that to set them to zero would take away internal forces; they do not chatter either. Leave "
                "it at none, or choose -contact_type schwarz or penalty");

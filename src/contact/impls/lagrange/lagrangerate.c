@@ -53,8 +53,8 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetRates(contact, PETSC_TRUE, impulses->gaps));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    impulses->active[i] = (PetscBool)(contact->active[i] && (contact->tied[i] || !pushing_only || impulses->gaps[i] < 0));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    impulses->active[i] = (PetscBool)(contact->end.active[i] && (contact->rows.tied[i] || !pushing_only || impulses->gaps[i] < 0));
   PetscCall(ComplementaritySolveActive(contact, impulses));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
@@ -71,13 +71,13 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
 
   PetscFunctionBegin;
   PetscCall(GetRates(contact, PETSC_FALSE, impulses->gaps));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    impulses->gaps[i] = contact->saved_gap[i] + step * impulses->gaps[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    impulses->gaps[i] = contact->start.gap[i] + step * impulses->gaps[i];
     any |= impulses->gaps[i] < 0;
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComplementaritySolve(contact, contact->tolerance, impulses));
+  PetscCall(ComplementaritySolve(contact, contact->options.tolerance, impulses));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
     PetscCall(BodyShiftStart(contact->bodies[b], impulses->mine));

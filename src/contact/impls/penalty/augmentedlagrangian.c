@@ -11,9 +11,9 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
   MPI_Comm comm    = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCheck(contact->constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT,
              "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty",
-             ContactConstraints[contact->constraint]);
+             ContactConstraints[contact->options.constraint]);
   PetscCall(PenaltyReadParameter(contact));
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "", penalty->augmentation_tolerance,
@@ -35,7 +35,7 @@ static PetscErrorCode ContactSetUp_AugmentedLagrangian(Contact contact)
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, CONTACT_AUGMENTED_LAGRANGIAN));
   if (penalty->augmentation_tolerance == (PetscReal)PETSC_DEFAULT)
-    penalty->augmentation_tolerance = CONTACT_AUGMENTATION_TOLERANCE * contact->length_scale;
+    penalty->augmentation_tolerance = CONTACT_AUGMENTATION_TOLERANCE * contact->scale.length;
   PetscCall(PenaltySetUp(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -46,9 +46,10 @@ static PetscErrorCode GetMismatch(Contact contact, PetscReal *mismatch)
   PetscReal worst = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    worst = PetscMax(worst, contact->active[i] ? PetscAbsReal(contact->gap[i]) : -contact->gap[i]);
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    worst = PetscMax(worst, contact->end.active[i] ? PetscAbsReal(contact->end.gap[i]) : -contact->end.gap[i]);
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
   *mismatch = worst;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,9 +63,9 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
   PetscFunctionBegin;
   PetscCall(ForcesBeginStep(contact, &penalty->forces, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(contact->force, contact->saved_force, contact->n_rows));
+  PetscCall(PetscArraycpy(contact->end.force, contact->start.force, contact->rows.n));
   for (PetscInt k = 0; k < penalty->augmentation_max_it; k++) {
-    PetscCall(PetscArraycpy(penalty->multiplier, contact->force, contact->n_rows));
+    PetscCall(PetscArraycpy(penalty->multiplier, contact->end.force, contact->rows.n));
     PetscCall(PenaltySolve(contact));
     PetscCall(GetMismatch(contact, &mismatch));
     if (mismatch <= penalty->augmentation_tolerance) PetscFunctionReturn(PETSC_SUCCESS);

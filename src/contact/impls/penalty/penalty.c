@@ -20,8 +20,8 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
   PetscBool set;
 
   PetscFunctionBegin;
-  if (contact->constraint != CONTACT_CONSTRAINT_GAP_RATE) PetscCall(PenaltyReadParameter(contact));
-  if (contact->constraint == CONTACT_CONSTRAINT_GAP) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP_RATE) PetscCall(PenaltyReadParameter(contact));
+  if (contact->options.constraint == CONTACT_CONSTRAINT_GAP) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "", penalty->damping,
                              &penalty->damping, &set));
@@ -29,7 +29,7 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
   PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "
              "of a bar, sqrt(E rho) times its area, is its scale",
-             ContactConstraints[contact->constraint]);
+             ContactConstraints[contact->options.constraint]);
   PetscCheck(penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_penalty_damping %g must be positive", (double)penalty->damping);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -39,11 +39,11 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
 static PetscReal WantedForce(Contact contact, PetscInt i)
 {
   const Penalty  *penalty = (const Penalty *)contact->data;
-  const PetscReal spring  = penalty->multiplier[i] - penalty->spring[i] * contact->gap[i];
+  const PetscReal spring  = penalty->multiplier[i] - penalty->spring[i] * contact->end.gap[i];
 
-  if (contact->constraint == CONTACT_CONSTRAINT_GAP) return spring;
+  if (contact->options.constraint == CONTACT_CONSTRAINT_GAP) return spring;
   if (!penalty->forces.touching[i]) return 0;
-  return spring - penalty->damper[i] * (contact->gap[i] - contact->saved_gap[i]) / penalty->step;
+  return spring - penalty->damper[i] * (contact->end.gap[i] - contact->start.gap[i]) / penalty->step;
 }
 
 /* What springs and dampers make of the round-off in gap i, a sum of three lengths that were rounded themselves: no iteration
@@ -51,11 +51,11 @@ static PetscReal WantedForce(Contact contact, PetscInt i)
 static PetscReal RoundOff(Contact contact, PetscInt i)
 {
   const Penalty     *penalty = (const Penalty *)contact->data;
-  const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
+  const ContactPair *pair    = &contact->pairs[contact->rows.pair[i]];
   const PetscScalar *start   = penalty->start[pair->body[0]]; /* displacements */
 
   if (!penalty->pushing[i]) return 0;
-  return 4 * PETSC_MACHINE_EPSILON * penalty->stiffness[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->initial_gap[i]));
+  return 4 * PETSC_MACHINE_EPSILON * penalty->stiffness[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->rows.initial_gap[i]));
 }
 
 /* Advances all bodies under the forces x, and compares these with what springs and dampers ask for */
@@ -72,10 +72,10 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(ForcesIntegrate(contact, &penalty->forces, x, 1));
   PetscCall(VecGetArrayWrite(F, &f));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscReal wanted = WantedForce(contact, i);
 
-    penalty->pushing[i] = (PetscBool)(contact->tied[i] || wanted > 0);
+    penalty->pushing[i] = (PetscBool)(contact->rows.tied[i] || wanted > 0);
     f[i]                = x[i] - (penalty->pushing[i] || PetscIsInfOrNanReal(wanted) ? wanted : 0);
     sums[0] += PetscSqr(f[i]);
     sums[1] += PetscSqr(x[i]);
@@ -83,7 +83,8 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   penalty->residual  = PetscSqrtReal(sums[0]);
   penalty->magnitude = PetscSqrtReal(sums[1]);
   penalty->round_off = PetscSqrtReal(sums[2]);
@@ -135,7 +136,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 PetscErrorCode PenaltySetUp(Contact contact)
 {
   Penalty       *penalty = (Penalty *)contact->data;
-  const PetscInt n       = contact->n_rows;
+  const PetscInt n       = contact->rows.n;
 
   PetscFunctionBegin;
   PetscCall(ForcesGetStep(contact, &penalty->step));
@@ -143,7 +144,7 @@ PetscErrorCode PenaltySetUp(Contact contact)
   PetscCall(PenaltySetUpSprings(contact));
   PetscCall(OuterSolverCreate(contact, "penalty_", n, ComputeResidual, ComputeJacobian, &penalty->outer));
   PetscCall(OuterSolverSetNewton(contact, &penalty->outer, ComputeJacobian, ApplyNewton));
-  PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, CONTACT_FORCE_TOLERANCE * contact->force_scale, 1e-9, 50));
+  PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, CONTACT_FORCE_TOLERANCE * contact->scale.force, 1e-9, 50));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(ForcesCreate(contact, &penalty->forces));
@@ -187,7 +188,7 @@ static PetscErrorCode CheckConverged(Contact contact)
           "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
           " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
           "-contact_penalty (or -contact_penalty_scale) or -time_step",
-          (double)time, contact->counts_made.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
+          (double)time, contact->counts.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
 }
 
 /* The forces of springs and dampers, from the forces as they are as first iterate */
@@ -200,18 +201,19 @@ PetscErrorCode PenaltySolve(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(penalty->outer.x, &x));
-  PetscCall(PetscArraycpy(x, contact->force, contact->n_rows));
+  PetscCall(PetscArraycpy(x, contact->end.force, contact->rows.n));
   PetscCall(VecRestoreArrayWrite(penalty->outer.x, &x));
   while (changed) {
     PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
     PetscCall(CheckConverged(contact));
     PetscCall(VecGetArrayRead(penalty->outer.x, &force));
-    PetscCall(PetscArraycpy(contact->force, force, contact->n_rows));
+    PetscCall(PetscArraycpy(contact->end.force, force, contact->rows.n));
     PetscCall(VecRestoreArrayRead(penalty->outer.x, &force));
     changed = PETSC_FALSE;
-    if (contact->constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ForcesTouch(contact, &penalty->forces, contact->force, &changed));
+    if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)
+      PetscCall(ForcesTouch(contact, &penalty->forces, contact->end.force, &changed));
   }
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = (PetscBool)(contact->tied[i] || contact->force[i] > 0);
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || contact->end.force[i] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,15 +224,16 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
   PetscReal energy = 0;
 
   PetscFunctionBegin;
-  contact->penalty_energy = 0;
+  contact->resultants.penalty_energy = 0;
   PetscCall(ForcesBeginStep(contact, &penalty->forces, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(contact->force, contact->saved_force, contact->n_rows));
+  PetscCall(PetscArraycpy(contact->end.force, contact->start.force, contact->rows.n));
   PetscCall(PenaltySolve(contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    energy += 0.5 * penalty->spring[i] * PetscSqr(contact->tied[i] ? contact->gap[i] : PetscMin(contact->gap[i], 0));
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  contact->penalty_energy = energy;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    energy += 0.5 * penalty->spring[i] * PetscSqr(contact->rows.tied[i] ? contact->end.gap[i] : PetscMin(contact->end.gap[i], 0));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  contact->resultants.penalty_energy = energy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

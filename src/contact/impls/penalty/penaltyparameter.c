@@ -63,7 +63,7 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
   PetscReal     *compliance[2], *bound;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc3(contact->n_rows, &compliance[0], contact->n_rows, &compliance[1], contact->n_rows, &bound));
+  PetscCall(PetscCalloc3(contact->rows.n, &compliance[0], contact->rows.n, &compliance[1], contact->rows.n, &bound));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool is_explicit, massless;
     PetscInt  substeps;
@@ -73,13 +73,13 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
     if (!is_explicit || massless) continue;
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     PetscCall(BodyBoundForwardCompliance(contact->bodies[b], bound));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
       compliance[0][i] += bound[i];
       compliance[1][i] += substeps * substeps * bound[i];
     }
   }
   worst[0] = worst[1] = 0;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
     worst[0] = PetscMax(worst[0], compliance[0][i] * penalty->spring[i]);
     worst[1] = PetscMax(worst[1], compliance[1][i] * penalty->damper[i]);
   }
@@ -124,7 +124,7 @@ PetscErrorCode PenaltySetUpSprings(Contact contact)
 
     PetscCall(GetPairPenalty(contact, pair, &parameter, &scale));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscReal area = contact->dim == 1 ? 1 : contact->area[i] * contact->cross_section[p];
+      const PetscReal area = contact->dim == 1 ? 1 : contact->rows.area[i] * contact->resultants.cross_section[p];
 
       penalty->spring[i]    = parameter * area;
       penalty->damper[i]    = penalty->damping * area;

@@ -11,14 +11,14 @@ PetscErrorCode SchwarzTakeActiveSet(Contact contact, PetscBool *changed)
 
   PetscFunctionBegin;
   ContactArrangeShared(contact);
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt  p   = contact->row_pair[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscInt  p   = contact->rows.pair[i];
     const PetscBool was = (PetscBool)(before && before[i]);
     PetscInt        partner;
 
-    if (contact->active[i] == was) continue;
+    if (contact->end.active[i] == was) continue;
     any = 1;
-    if (!was || !contact->fades) continue;
+    if (!was || !contact->release.fades) continue;
     PetscCall(TraceGetSizes(contact->traces[NeumannBody(&contact->pairs[p])].displacement, NULL, &partner));
     PetscCall(ContactReleaseRow(contact, i, (PetscBool)(contact->pairs[p].by_force ? partner > 1 : schwarz->levels[p] > 1)));
   }

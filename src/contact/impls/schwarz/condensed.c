@@ -103,8 +103,8 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
   PetscCall(CondensationPrevented(contact, prescribes, &reason));
   PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !reason, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_condense 1: %s; leave it at auto", reason);
-  schwarz->exact = PETSC_TRUE;
-  contact->fades = (PetscBool)(schwarz->waveform == WAVEFORM_LINEAR);
+  schwarz->exact         = PETSC_TRUE;
+  contact->release.fades = (PetscBool)(schwarz->waveform == WAVEFORM_LINEAR);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool exact;
     PetscInt  n;
@@ -116,14 +116,14 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(SideHasMass(contact, &contact->pairs[p], 0, &has));
-    if (has) contact->fades = PETSC_FALSE;
+    if (has) contact->release.fades = PETSC_FALSE;
   }
   if (prescribes) schwarz->mode = SCHWARZ_MASS;
   else if (reason || schwarz->condense == CONDENSE_NEVER) schwarz->mode = SCHWARZ_BODIES;
   else schwarz->mode = SCHWARZ_CONDENSED;
   if (!prescribes && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->waveform == WAVEFORM_LINEAR)
     PetscCall(MarkUnshared(contact));
-  if (contact->fades) PetscCall(ContactSetUpRelease(contact));
+  if (contact->release.fades) PetscCall(ContactSetUpRelease(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -145,10 +145,10 @@ static PetscErrorCode MakeBase(Contact contact, PetscInt b)
     PetscScalar *force;
 
     PetscCall(TraceGetLevel(traces->force_in, level, &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const ContactPair *pair = &contact->pairs[contact->row_pair[i]];
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
-      force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * contact->saved_force[i];
+      force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * contact->start.force[i];
     }
   }
   PetscCall(BodyIntegrate(contact->bodies[b]));
@@ -161,8 +161,8 @@ PetscErrorCode SchwarzSetRoles(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->conditions);
-    PetscCall(BodySetRoles(contact->bodies[b], contact->conditions));
+    ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->work.conditions);
+    PetscCall(BodySetRoles(contact->bodies[b], contact->work.conditions));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -190,15 +190,15 @@ static PetscErrorCode LoadSolution(Contact contact, PetscInt b)
   PetscInt          levels;
 
   PetscFunctionBegin;
-  ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->conditions);
+  ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->work.conditions);
   PetscCall(TraceGetSizes(traces->force_in, NULL, &levels));
   for (PetscInt level = 0; level <= levels; level++) {
     PetscScalar *force, *reaction;
 
     PetscCall(TraceGetLevel(traces->force_in, level, &force));
     PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
-    for (PetscInt i = 0; i < contact->n_rows; i++)
-      if (contact->conditions[i] == BODY_PRESCRIBED || contact->conditions[i] == BODY_ROBIN) force[i] = reaction[i];
+    for (PetscInt i = 0; i < contact->rows.n; i++)
+      if (contact->work.conditions[i] == BODY_PRESCRIBED || contact->work.conditions[i] == BODY_ROBIN) force[i] = reaction[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

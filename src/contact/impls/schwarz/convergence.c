@@ -7,7 +7,7 @@ static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *cha
 {
   Schwarz     *schwarz  = (Schwarz *)contact->data;
   PetscReal    sums[2]  = {0, 0};
-  PetscScalar *previous = schwarz->previous + side * contact->n_rows, *end;
+  PetscScalar *previous = schwarz->previous + side * contact->rows.n, *end;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -23,7 +23,8 @@ static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *cha
       previous[i] = end[i];
     }
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   *change   = schwarz->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
   *position = PetscSqrtReal(sums[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -34,7 +35,7 @@ static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *cha
 static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
 {
   const Schwarz     *schwarz = (const Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
+  const ContactPair *pair    = &contact->pairs[contact->rows.pair[i]];
   const Body         body    = contact->bodies[DirichletBody(pair)];
   const Trace        given = contact->traces[DirichletBody(pair)].velocity_in, has = contact->traces[NeumannBody(pair)].velocity;
   PetscInt           given_levels, has_levels;
@@ -44,7 +45,7 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   PetscFunctionBegin;
   *lag = 0;
   PetscCall(BodyIsRedistributed(body, &massless));
-  if (massless || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN || schwarz->kinematic[SideIndex(schwarz, contact->row_pair[i])])
+  if (massless || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN || schwarz->kinematic[SideIndex(schwarz, contact->rows.pair[i])])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetSizes(given, NULL, &given_levels));
   PetscCall(TraceGetSizes(has, NULL, &has_levels));
@@ -61,20 +62,21 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
   PetscReal sums[2] = {0, 0};
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const ContactPair *pair  = &contact->pairs[contact->row_pair[i]];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
     const PetscReal    scale = SchwarzResidualScale(contact, i);
     PetscScalar       *start;
     PetscReal          lag;
 
-    if (!contact->active[i]) continue;
+    if (!contact->end.active[i]) continue;
     PetscCall(MeasureLag(contact, i, &lag));
     sums[0] += PetscSqr(lag);
-    for (PetscInt k = 0; k < schwarz->room[contact->row_pair[i]]; k++) sums[0] += PetscSqr(scale * f[schwarz->offset[i] + k]);
+    for (PetscInt k = 0; k < schwarz->room[contact->rows.pair[i]]; k++) sums[0] += PetscSqr(scale * f[schwarz->offset[i] + k]);
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].displacement, 0, &start));
     sums[1] += PetscSqr(start[i]);
   }
-  if (contact->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   *change   = PetscSqrtReal(sums[0]);
   *position = PetscSqrtReal(sums[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -142,8 +144,8 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
              "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
              " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen "
              "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
-             (double)time, contact->counts_made.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
+             (double)time, contact->counts.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
              (double)schwarz->rtol);
-  contact->counts_made.unconverged_steps++;
+  contact->counts.unconverged_steps++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

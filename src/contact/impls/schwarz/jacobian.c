@@ -76,9 +76,9 @@ static PetscErrorCode GatherLevels(Contact contact, const PetscScalar x[], Petsc
   PetscFunctionBegin;
   for (PetscInt k = 0; k < jacobian->levels; k++)
     for (PetscInt i = 0; i < jacobian->n; i++) {
-      const PetscInt local = jacobian->rows[i] - contact->row_begin;
+      const PetscInt local = jacobian->rows[i] - contact->rows.begin;
 
-      all[k * jacobian->n + i] = local >= 0 && local < contact->n_rows && k < schwarz->levels[contact->row_pair[local]]
+      all[k * jacobian->n + i] = local >= 0 && local < contact->rows.n && k < schwarz->levels[contact->rows.pair[local]]
                                      ? x[schwarz->offset[local] + k]
                                      : 0;
     }
@@ -92,7 +92,7 @@ static PetscErrorCode AssembleChain(Contact contact)
   Schwarz          *schwarz  = (Schwarz *)contact->data;
   Jacobian         *jacobian = &schwarz->jacobian;
   const PetscInt    L = jacobian->levels, size = jacobian->n * L;
-  const PetscInt    sweeps = contact->counts_made.sweeps;
+  const PetscInt    sweeps = contact->counts.sweeps;
   const SchwarzStep before = schwarz->step;
 
   PetscFunctionBegin;
@@ -109,9 +109,9 @@ static PetscErrorCode AssembleChain(Contact contact)
 
     PetscCall(VecZeroEntries(jacobian->probe[0]));
     if (column >= 0) {
-      const PetscInt row = jacobian->rows[column % jacobian->n], local = row - contact->row_begin;
+      const PetscInt row = jacobian->rows[column % jacobian->n], local = row - contact->rows.begin;
 
-      if (local >= 0 && local < contact->n_rows && column / jacobian->n < schwarz->levels[contact->row_pair[local]])
+      if (local >= 0 && local < contact->rows.n && column / jacobian->n < schwarz->levels[contact->rows.pair[local]])
         PetscCall(VecSetValue(jacobian->probe[0], schwarz->all_offset[row] + column / jacobian->n, 1, INSERT_VALUES));
       PetscCall(VecAssemblyBegin(jacobian->probe[0]));
       PetscCall(VecAssemblyEnd(jacobian->probe[0]));
@@ -123,10 +123,10 @@ static PetscErrorCode AssembleChain(Contact contact)
     if (column < 0) continue;
     for (PetscInt i = 0; i < size; i++) out[i] -= jacobian->residual[i];
     /* pairs with fewer unknowns to a row leave the others as they are */
-    if (column / jacobian->n >= schwarz->levels[contact->all_row_pair[jacobian->rows[column % jacobian->n]]]) out[column] = 1;
+    if (column / jacobian->n >= schwarz->levels[contact->ranks.row_pair[jacobian->rows[column % jacobian->n]]]) out[column] = 1;
   }
-  schwarz->step               = before;
-  contact->counts_made.sweeps = sweeps;
+  schwarz->step          = before;
+  contact->counts.sweeps = sweeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,7 +148,7 @@ PetscErrorCode SchwarzUpdateJacobian(Contact contact)
   jacobian->chained.factored = PETSC_FALSE;
   if (!jacobian->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MakeRoom(jacobian, jacobian->n * jacobian->levels, schwarz->dense_limit));
-  for (PetscInt i = 0; i < contact->n_rows; i++)
+  for (PetscInt i = 0; i < contact->rows.n; i++)
     schwarz->known[i] = (PetscBool)(schwarz->known[i] || jacobian->marks[i] != INTERFACE_LEFT_OUT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -206,9 +206,9 @@ static PetscErrorCode ApplyDense(Contact contact, const PetscScalar f[], PetscSc
   else PetscCall(SolveConvolution(jacobian));
   for (PetscInt k = 0; k < jacobian->levels; k++)
     for (PetscInt i = 0; i < jacobian->n; i++) {
-      const PetscInt local = jacobian->rows[i] - contact->row_begin;
+      const PetscInt local = jacobian->rows[i] - contact->rows.begin;
 
-      if (local < 0 || local >= contact->n_rows || k >= schwarz->levels[contact->row_pair[local]]) continue;
+      if (local < 0 || local >= contact->rows.n || k >= schwarz->levels[contact->rows.pair[local]]) continue;
       y[schwarz->offset[local] + k] = !jacobian->chain && ByForce(contact, local)
                                           ? jacobian->force[k * jacobian->n + i] / ContactForceUnit(contact, local)
                                           : jacobian->change[k * jacobian->n + i];
@@ -221,10 +221,10 @@ static void GetLastLevels(Contact contact, PetscInt most, PetscInt k, const Pets
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt at = k - (most - schwarz->levels[contact->row_pair[i]]);
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscInt at = k - (most - schwarz->levels[contact->rows.pair[i]]);
 
-    level[i] = contact->active[i] && at >= 0 ? x[schwarz->offset[i] + at] : 0;
+    level[i] = contact->end.active[i] && at >= 0 ? x[schwarz->offset[i] + at] : 0;
   }
 }
 
@@ -234,7 +234,7 @@ static PetscErrorCode ApplyByLevels(Contact contact, const PetscScalar f[], Pets
 {
   Schwarz     *schwarz  = (Schwarz *)contact->data;
   Jacobian    *jacobian = &schwarz->jacobian;
-  PetscScalar *residual = schwarz->row_work, *force = residual + contact->n_rows, *moved = force + contact->n_rows;
+  PetscScalar *residual = schwarz->row_work, *force = residual + contact->rows.n, *moved = force + contact->rows.n;
   PetscInt     most = 1;
 
   PetscFunctionBegin;
@@ -243,10 +243,10 @@ static PetscErrorCode ApplyByLevels(Contact contact, const PetscScalar f[], Pets
     GetLastLevels(contact, most, k, f, residual);
     PetscCall(InterfaceOperatorSolve(jacobian->S, residual, force));
     PetscCall(InterfaceOperatorMultiply(jacobian->S, INTERFACE_DIRICHLET, force, moved));
-    for (PetscInt i = 0; i < contact->n_rows; i++) {
-      const PetscInt at = k - (most - schwarz->levels[contact->row_pair[i]]);
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const PetscInt at = k - (most - schwarz->levels[contact->rows.pair[i]]);
 
-      if (contact->active[i] && at >= 0)
+      if (contact->end.active[i] && at >= 0)
         y[schwarz->offset[i] + at] = ByForce(contact, i) ? force[i] / ContactForceUnit(contact, i) : moved[i];
     }
   }
@@ -259,7 +259,7 @@ static PetscErrorCode ApplyRobin(Contact contact, const PetscScalar f[], PetscSc
   Schwarz         *schwarz  = (Schwarz *)contact->data;
   Jacobian        *jacobian = &schwarz->jacobian;
   const PetscReal *alpha    = schwarz->weight;
-  PetscScalar     *residual = schwarz->row_work, *force = residual + contact->n_rows, *moved = force + contact->n_rows;
+  PetscScalar     *residual = schwarz->row_work, *force = residual + contact->rows.n, *moved = force + contact->rows.n;
   PetscInt         most = 1;
 
   PetscFunctionBegin;
@@ -267,15 +267,15 @@ static PetscErrorCode ApplyRobin(Contact contact, const PetscScalar f[], PetscSc
   for (PetscInt k = 0; k < most; k++) {
     GetLastLevels(contact, most, k, f, residual);
     PetscCall(InterfaceOperatorMultiply(jacobian->S, INTERFACE_NEUMANN_GAP, residual, moved));
-    for (PetscInt i = 0; i < contact->n_rows; i++) moved[i] = contact->active[i] ? 0.5 * (residual[i] / alpha[i] - moved[i]) : 0;
+    for (PetscInt i = 0; i < contact->rows.n; i++) moved[i] = contact->end.active[i] ? 0.5 * (residual[i] / alpha[i] - moved[i]) : 0;
     PetscCall(InterfaceOperatorSolve(jacobian->S, moved, force));
     for (PetscInt pass = 0; pass < 2; pass++) {
       PetscCall(
           InterfaceOperatorMultiply(jacobian->S, pass ? INTERFACE_NEUMANN_DIRICHLET : INTERFACE_DIRICHLET, pass ? residual : force, moved));
-      for (PetscInt i = 0; i < contact->n_rows; i++) {
-        const PetscInt at = k - (most - schwarz->levels[contact->row_pair[i]]);
+      for (PetscInt i = 0; i < contact->rows.n; i++) {
+        const PetscInt at = k - (most - schwarz->levels[contact->rows.pair[i]]);
 
-        if (!contact->active[i] || at < 0) continue;
+        if (!contact->end.active[i] || at < 0) continue;
         if (pass) y[schwarz->offset[i] + at] += 0.5 * alpha[i] * moved[i];
         else y[schwarz->offset[i] + at] = force[i] + alpha[i] * moved[i];
       }
@@ -355,12 +355,12 @@ PetscErrorCode SchwarzSetUpJacobian(Contact contact)
   PetscFunctionBegin;
   schwarz->stale = PETSC_TRUE;
   PetscCall(InterfaceOperatorCreate(contact, &settings, &jacobian->S));
-  PetscCall(PetscCalloc1(contact->n_rows, &jacobian->marks));
+  PetscCall(PetscCalloc1(contact->rows.n, &jacobian->marks));
   PetscCall(OuterSolverSetNewton(contact, &schwarz->outer, SchwarzComputeJacobian, ApplyNewton));
-  if (contact->n_all_rows > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = contact->opposite[i];
+  if (contact->rows.n_all > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = contact->rows.opposite[i];
   PetscCall(SchwarzUpdateJacobian(contact));
-  for (PetscInt i = 0; i < contact->n_rows; i++) contact->active[i] = PETSC_FALSE;
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = PETSC_FALSE;
   schwarz->stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

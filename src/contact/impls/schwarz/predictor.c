@@ -5,9 +5,9 @@
    row's direction: a gap that is open at its start closes linearly over it, or stays as it is if only its rate is constrained */
 PetscReal SchwarzOffset(Contact contact, PetscInt i, PetscReal part)
 {
-  const PetscReal left = contact->constraint == CONTACT_CONSTRAINT_GAP_RATE ? 1 : 1 - part;
+  const PetscReal left = contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE ? 1 : 1 - part;
 
-  return contact->initial_gap[i] - contact->saved_gap[i] * left;
+  return contact->rows.initial_gap[i] - contact->start.gap[i] * left;
 }
 
 /* All bodies through the step without contact, for where their contact nodes go */
@@ -23,7 +23,7 @@ static PetscErrorCode IntegrateTrial(Contact contact)
 static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time, PetscReal part, PetscScalar *displacement)
 {
   const Schwarz     *schwarz = (const Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[contact->row_pair[i]];
+  const ContactPair *pair    = &contact->pairs[contact->rows.pair[i]];
   const BodyTraces  *neumann = &contact->traces[NeumannBody(pair)], *dirichlet = &contact->traces[DirichletBody(pair)];
   PetscScalar       *u, *v, *other;
 
@@ -63,8 +63,8 @@ PetscErrorCode SchwarzPredict(Contact contact)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
   PetscCall(VecZeroEntries(schwarz->outer.x));
   PetscCall(VecGetArray(schwarz->outer.x, &x));
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscInt     p = contact->rows.pair[i], levels = schwarz->levels[p];
     const ContactPair *pair = &contact->pairs[p];
     const PetscReal    sign = NeumannSign(pair), width = schwarz->controller_step / levels;
     PetscScalar       *unknown = x + schwarz->offset[i], *reaction;
@@ -75,16 +75,16 @@ PetscErrorCode SchwarzPredict(Contact contact)
 
       PetscCall(PredictNeumann(contact, i, level * width, part, &position));
       position += sign * SchwarzOffset(contact, i, part);
-      if (ByForce(contact, i)) unknown[level - 1] = -sign * contact->saved_force[i] / ContactForceUnit(contact, i);
+      if (ByForce(contact, i)) unknown[level - 1] = -sign * contact->start.force[i] / ContactForceUnit(contact, i);
       else if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
-      else unknown[level - 1] = -sign * contact->saved_force[i] + schwarz->weight[i] * position;
+      else unknown[level - 1] = -sign * contact->start.force[i] + schwarz->weight[i] * position;
     }
     /* what has been a Neumann side until now has no reaction yet */
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));
-    reaction[i] = -sign * contact->saved_force[i];
+    reaction[i] = -sign * contact->start.force[i];
     if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) continue;
     PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
-    reaction[i] = sign * contact->saved_force[i];
+    reaction[i] = sign * contact->start.force[i];
   }
   PetscCall(VecRestoreArray(schwarz->outer.x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -53,36 +53,36 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscInt begin, *mine;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->exchange, contact->n_rows, &schwarz->offset, contact->n_all_rows,
-                         &schwarz->all_offset, contact->n_rows, &schwarz->solved_active));
+  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->exchange, contact->rows.n, &schwarz->offset, contact->rows.n_all,
+                         &schwarz->all_offset, contact->rows.n, &schwarz->solved_active));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal dt;
     PetscInt  substeps;
     TS        ts;
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    PetscCall(TraceCreate(contact->n_rows, substeps, &schwarz->exchange[b]));
+    PetscCall(TraceCreate(contact->rows.n, substeps, &schwarz->exchange[b]));
     PetscCall(BodyGetTS(contact->bodies[b], &ts));
     PetscCall(TSGetTimeStep(ts, &dt));
     schwarz->controller_step = substeps * dt;
   }
   *unknowns = 0;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
     schwarz->offset[i] = *unknowns;
-    *unknowns += schwarz->room[contact->row_pair[i]];
+    *unknowns += schwarz->room[contact->rows.pair[i]];
   }
   PetscCallMPI(MPI_Scan(unknowns, &begin, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
   begin -= *unknowns;
-  PetscCall(PetscMalloc1(contact->n_rows, &mine));
-  for (PetscInt i = 0; i < contact->n_rows; i++) mine[i] = begin + schwarz->offset[i];
-  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->n_rows, MPIU_INT, schwarz->all_offset, contact->counts, contact->offsets,
-                              MPIU_INT, PetscObjectComm((PetscObject)contact)));
+  PetscCall(PetscMalloc1(contact->rows.n, &mine));
+  for (PetscInt i = 0; i < contact->rows.n; i++) mine[i] = begin + schwarz->offset[i];
+  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->rows.n, MPIU_INT, schwarz->all_offset, contact->ranks.counts,
+                              contact->ranks.offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc2(contact->n_rows, &schwarz->kept_force, 2 * contact->n_rows, &schwarz->previous));
-  PetscCall(PetscCalloc1(contact->n_rows, &schwarz->known));
-  PetscCall(RoundsCreate(contact, contact->active, contact->force, contact->gap, &schwarz->rounds));
+  PetscCall(PetscMalloc2(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->previous));
+  PetscCall(PetscCalloc1(contact->rows.n, &schwarz->known));
+  PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &schwarz->rounds));
   schwarz->rounds.recheck = schwarz->recheck;
-  PetscCall(PetscCalloc2(contact->n_rows, &schwarz->interpolated, 3 * contact->n_rows, &schwarz->row_work));
+  PetscCall(PetscCalloc2(contact->rows.n, &schwarz->interpolated, 3 * contact->rows.n, &schwarz->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,7 +94,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
-  PetscCheck(contact->constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(contact->options.constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take "
              "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
@@ -107,7 +107,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
   for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
-  PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->length_scale, 1e-15, 50));
+  PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, 1e-15, 50));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
@@ -138,8 +138,8 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    if (contact->changed[i]) schwarz->known[i] = PETSC_FALSE;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (contact->rows.changed[i]) schwarz->known[i] = PETSC_FALSE;
   schwarz->stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

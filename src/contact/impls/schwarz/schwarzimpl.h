@@ -160,7 +160,7 @@ static inline PetscReal NeumannSign(const ContactPair *pair)
 /* Whether the unknown of an active row is the force that holds its Dirichlet side, in units of ContactForceUnit() */
 static inline PetscBool ByForce(Contact contact, PetscInt i)
 {
-  return (PetscBool)(contact->active[i] && contact->by_force[i]);
+  return (PetscBool)(contact->end.active[i] && contact->rows.by_force[i]);
 }
 
 /* Index of a pair in arrays that have an entry for each choice of sides */

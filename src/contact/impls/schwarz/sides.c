@@ -34,13 +34,13 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
 static PetscErrorCode CheckSwappable(Contact contact, Vec row, Vec displacement)
 {
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < contact->n_all_rows; j++) {
-    const ContactPair *pair = &contact->pairs[contact->all_row_pair[j]];
+  for (PetscInt j = 0; j < contact->rows.n_all; j++) {
+    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[j]];
     const Mat          B    = contact->interfaces[pair->body[1]];
     PetscReal          off;
 
     PetscCall(VecZeroEntries(row));
-    if (j >= contact->row_begin && j < contact->row_begin + contact->n_rows) PetscCall(VecSetValue(row, j, 1, INSERT_VALUES));
+    if (j >= contact->rows.begin && j < contact->rows.begin + contact->rows.n) PetscCall(VecSetValue(row, j, 1, INSERT_VALUES));
     PetscCall(VecAssemblyBegin(row));
     PetscCall(VecAssemblyEnd(row));
     {
@@ -84,7 +84,7 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
              ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
   schwarz->kinematic[2 * p + side] = PETSC_TRUE;
   for (PetscInt k = 0; k < 2; k++)
-    if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->n_rows, 1, &schwarz->rate[k]));
+    if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->rows.n, 1, &schwarz->rate[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,7 +107,7 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
       PetscInt *levels = &schwarz->side_levels[side][p];
 
       PetscCall(CountLevels(contact, p, side, levels));
-      PetscCall(TraceCreate(contact->n_rows, *levels, &schwarz->trace[2 * p + side]));
+      PetscCall(TraceCreate(contact->rows.n, *levels, &schwarz->trace[2 * p + side]));
       PetscCall(SetUpReactionTraction(contact, p, side));
       schwarz->room[p] = PetscMax(schwarz->room[p], *levels);
     }

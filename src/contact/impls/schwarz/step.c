@@ -8,10 +8,10 @@ static PetscErrorCode CompareActive(Contact contact)
   int      differs = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) differs |= schwarz->solved_active[i] != contact->active[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) differs |= schwarz->solved_active[i] != contact->end.active[i];
   PetscCall(ContactOr(contact, &differs));
   if (!differs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(schwarz->solved_active, contact->active, contact->n_rows));
+  PetscCall(PetscArraycpy(schwarz->solved_active, contact->end.active, contact->rows.n));
   schwarz->stale = PETSC_TRUE;
   if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_TRUE);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -51,7 +51,7 @@ static PetscErrorCode SolveActive(Contact contact)
 
     PetscCall(TraceGetSizes(reaction, NULL, &levels));
     PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++) contact->force[i] = contact->active[i] ? -NeumannSign(pair) * end[i] : 0;
+    for (PetscInt i = pair->begin; i < pair->end; i++) contact->end.force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i] : 0;
   }
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -86,7 +86,7 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   PetscCall(RoundsNext(&schwarz->rounds));
   if (!condensed)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
-  PetscCall(PetscArraycpy(schwarz->kept_force, contact->force, contact->n_rows));
+  PetscCall(PetscArraycpy(schwarz->kept_force, contact->end.force, contact->rows.n));
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzBreakCycle(contact, &flips));
@@ -94,7 +94,7 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   if (!flips || condensed || schwarz->rounds.single) PetscFunctionReturn(PETSC_SUCCESS);
   *taken_back = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
-  PetscCall(PetscArraycpy(contact->force, schwarz->kept_force, contact->n_rows));
+  PetscCall(PetscArraycpy(contact->end.force, schwarz->kept_force, contact->rows.n));
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,8 +112,8 @@ static PetscErrorCode Finish(Contact contact, PetscBool *changed)
   schwarz->step = STEP_WHOLE;
   PetscCall(ContactAny(contact, PETSC_TRUE, changed));
   if (!*changed) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    if (contact->gap[i] < -contact->tolerance) contact->active[i] = PETSC_TRUE;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (contact->end.gap[i] < -contact->options.tolerance) contact->end.active[i] = PETSC_TRUE;
   PetscCall(SchwarzTakeActiveSet(contact, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -130,8 +130,8 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
-  for (PetscInt i = 0; i < contact->n_rows; i++)
-    contact->active[i] = (PetscBool)(contact->tied[i] || (contact->saved_active[i] && contact->saved_force[i] > 0));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || (contact->start.active[i] && contact->start.force[i] > 0));
   ContactArrangeShared(contact);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
@@ -141,7 +141,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
     PetscCall(SchwarzUpdateActiveSet(contact, &changed));
     if (!changed) PetscCall(Finish(contact, &changed));
     if (!changed) break;
-    contact->counts_made.set_changes++;
+    contact->counts.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
     if (in_contact) PetscCall(SchwarzBreakCycle(contact, &flips));
     else PetscCall(TrialAfterContact(contact, &in_contact, &taken_back));

@@ -113,8 +113,8 @@ static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
 
     PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
     PetscCall(TraceGetLevel(traces->force_in, level, &force));
-    for (PetscInt i = 0; i < contact->n_rows; i++)
-      if (ByForce(contact, i) && DirichletBody(&contact->pairs[contact->row_pair[i]]) == b) reaction[i] = force[i];
+    for (PetscInt i = 0; i < contact->rows.n; i++)
+      if (ByForce(contact, i) && DirichletBody(&contact->pairs[contact->rows.pair[i]]) == b) reaction[i] = force[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -205,7 +205,7 @@ static PetscErrorCode GetAnswer(Contact contact, PetscInt i, PetscReal part, con
                                 PetscScalar *position)
 {
   const Schwarz     *schwarz = (const Schwarz *)contact->data;
-  const PetscInt     p = contact->row_pair[i], levels = schwarz->levels[p];
+  const PetscInt     p = contact->rows.pair[i], levels = schwarz->levels[p];
   const ContactPair *pair = &contact->pairs[p];
   const BodyTraces  *from = &contact->traces[DirichletBody(pair)];
   PetscInt           substeps;
@@ -252,7 +252,7 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
 
       if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) answer = displacement[i] + sign * SchwarzOffset(contact, i, part);
       else answer = r[i] - 2 * force[i] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
-      f[unknown] = contact->active[i] ? x[unknown] - answer : 0;
+      f[unknown] = contact->end.active[i] ? x[unknown] - answer : 0;
       if (!ByForce(contact, i)) continue;
       /* the gap, or what keeps unknowns without an answer in line */
       PetscCall(GetAnswer(contact, i, part, x, &answers, &position));
@@ -289,9 +289,9 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(SchwarzMeasureChange(contact, f));
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
-  contact->counts_made.sweeps++;
+  contact->counts.sweeps++;
   PetscCall(PetscTime(&end));
-  contact->counts_made.seconds += end - begin;
+  contact->counts.seconds += end - begin;
   PetscCall(PetscLogEventEnd(CONTACT_Sweep, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -21,10 +21,10 @@ static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal 
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++) {
-    if (contact->pairs[contact->row_pair[i]].body[1] != b) continue;
-    if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = impedance * contact->area[i] / schwarz->controller_step;
-    else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->area[i] : stiffness[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (contact->pairs[contact->rows.pair[i]].body[1] != b) continue;
+    if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = impedance * contact->rows.area[i] / schwarz->controller_step;
+    else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->rows.area[i] : stiffness[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -36,10 +36,10 @@ static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal s
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->n_rows; i++)
+  for (PetscInt i = 0; i < contact->rows.n; i++)
     for (PetscInt side = 0; side < 2; side++)
-      if (contact->pairs[contact->row_pair[i]].body[side] == b)
-        schwarz->mass[side][i] = schwarz->mode == SCHWARZ_MASS ? PetscSqr(impedance * contact->area[i]) / stiffness[i] : impedance;
+      if (contact->pairs[contact->rows.pair[i]].body[side] == b)
+        schwarz->mass[side][i] = schwarz->mode == SCHWARZ_MASS ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[i] : impedance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -70,9 +70,9 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
   PetscReal      *stiffness;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc3(contact->n_rows, &schwarz->weight, contact->n_rows, &schwarz->mass[0], contact->n_rows, &schwarz->mass[1]));
+  PetscCall(PetscCalloc3(contact->rows.n, &schwarz->weight, contact->rows.n, &schwarz->mass[0], contact->rows.n, &schwarz->mass[1]));
   if (robin) PetscCall(CheckBodies(contact));
-  PetscCall(PetscCalloc1(contact->n_rows, &stiffness));
+  PetscCall(PetscCalloc1(contact->rows.n, &stiffness));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal impedance;
 
