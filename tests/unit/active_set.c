@@ -23,6 +23,7 @@ static void model_create(PetscInt n, Model *m)
 
   memset(m, 0, sizeof(*m));
   ok(ContactCreate(PETSC_COMM_WORLD, &m->contact));
+  ok(ContactSetTolerance(m->contact, 0)); /* nothing is set up that would find one */
   ok(PetscSplitOwnership(PETSC_COMM_WORLD, &local, &n));
   assert_int_equal(MPI_Exscan(&local, &m->contact->row_begin, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
   m->contact->n_rows = local;
