@@ -170,6 +170,16 @@ static const KnownOption options[] = {
      "displacement to compare with at the end of the run [m], formulas in x, y, z, t"},
     {"files", OPTION_OF_RUN, "monitor_interval", "n", "a line on the terminal every n controller steps, default 0: none"},
     {"files", OPTION_OF_RUN, "progress", "true|false", "progress bar on standard error, default where that is a terminal"},
+    {"files", OPTION_OF_RUN, "controller_view", "[viewer]", "prints times and bodies"},
+    {"files", OPTION_OF_BODY, "body_view", "[viewer]", "prints mesh, material, integrator and steps of the body"},
+    {"files", OPTION_OF_BODY, "material_view", "[viewer]", "prints the body's material"},
+    {"files", OPTION_OF_BODY, "element_view", "[viewer]", "prints the body's elements"},
+    {"files", OPTION_OF_OBSTACLE, "obstacle_view", "[viewer]", "prints shape and place of the obstacle"},
+    {"files", OPTION_OF_RUN, "contact_view", "[viewer]", "prints pairs and contact method"},
+    {"files", OPTION_OF_RUN, "contact_surface_view", "[viewer]", "prints the surfaces of all pairs"},
+    {"files", OPTION_OF_RUN, "contact_transfer_view", "[viewer]", "prints the rows between the surfaces of all pairs"},
+    {"files", OPTION_OF_RUN, "exact_view", "[viewer]", "prints the exact solution"},
+    {"files", OPTION_OF_RUN, "output_view", "[viewer]", "prints which files are written"},
 };
 
 const KnownOption *KnownOptionsGet(size_t *n)
