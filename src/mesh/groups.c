@@ -1,5 +1,6 @@
 /* Surfaces and node sets of a mesh by their names. */
 #include "meshimpl.h"
+#include <petsc/private/petscimpl.h>
 #include <petscsf.h>
 
 static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
@@ -202,6 +203,9 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(dm, DM_CLASSID, 1);
+  PetscAssertPointer(n_faces, 3);
+  PetscAssertPointer(faces, 4);
   if (name && name[0]) {
     PetscCall(FindLabel(dm, name, "Face Sets", &selection, &found));
     PetscCall(DMGetCoordinateDim(dm, &dim));
@@ -284,6 +288,9 @@ PetscErrorCode MeshGetNodeSet(DM dm, const char name[], PetscInt *n_vertices, Pe
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(dm, DM_CLASSID, 1);
+  PetscAssertPointer(n_vertices, 3);
+  PetscAssertPointer(vertices, 4);
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
   if (name && name[0]) PetscCall(FindLabel(dm, name, "Vertex Sets", &selection, &found));
   if (found && !selection.by_value) PetscCall(MeshLabelHasPoints(dm, selection.label, vstart, vend, &found));

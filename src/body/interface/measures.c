@@ -125,6 +125,7 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(measures, 2);
   PetscCall(ComputePotential(body, &sums[1]));
   if (body->is_static) PetscCall(SumMassVelocity(body, sums + 8));
   else {
@@ -163,6 +164,7 @@ PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(mass, 2);
   *mass = body->total_mass;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

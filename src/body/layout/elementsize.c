@@ -43,6 +43,7 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(size, 2);
   PetscCall(BodyGetDimension(body, &dim));
   PetscCall(DMPlexIsSimplex(body->dm, &simplex));
   PetscCall(SumCells(body, sums));
@@ -73,6 +74,7 @@ PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(stiffness, 2);
   PetscCall(BodyGetImpedance(body, &impedance));
   PetscCall(MaterialGetDensity(body->material, &density));
   PetscCall(BodyGetElementSize(body, &size));

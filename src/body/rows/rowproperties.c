@@ -70,6 +70,7 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(impedance, 2);
   PetscCall(MaterialGetDensity(body->material, &density));
   if (body->dim == 1) PetscCall(MaterialGetUniaxialModulus(body->material, &modulus));
   else PetscCall(MaterialGetWaveModulus(body->material, &modulus));
@@ -96,6 +97,7 @@ PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(cross_section, 2);
   *cross_section = body->element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
