@@ -46,6 +46,8 @@ PETSC_EXTERN PetscErrorCode ControllerSetTimes(Controller, PetscReal, PetscReal,
 PETSC_EXTERN PetscErrorCode ControllerSetFromOptions(Controller);
 PETSC_EXTERN PetscErrorCode ControllerSetUp(Controller);
 PETSC_EXTERN PetscErrorCode ControllerMonitorSet(Controller, ControllerMonitorFn *, void *, PetscErrorCode (*)(void **));
+PETSC_EXTERN PetscErrorCode ControllerSetMonitorInterval(Controller, PetscInt);
+PETSC_EXTERN PetscErrorCode ControllerSetProgress(Controller);
 PETSC_EXTERN PetscErrorCode ControllerSolve(Controller);
 PETSC_EXTERN PetscErrorCode ControllerView(Controller, PetscViewer);
 PETSC_EXTERN PetscErrorCode ControllerViewFromOptions(Controller, PetscObject, const char[]);

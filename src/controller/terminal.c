@@ -72,33 +72,84 @@ static PetscErrorCode ShowProgress(Controller controller, const ControllerFrame 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads -monitor_interval and -progress, and adds the observers they ask for */
-PetscErrorCode ControllerSetUpTerminal(Controller controller)
+/*@
+  ControllerSetMonitorInterval - prints a line on the terminal every so many controller steps, and at the end
+
+  Collective
+
+  Input Parameters:
++ controller - the `Controller`, before its first step
+- interval   - controller steps from line to line
+
+  Options Database Key:
+. -monitor_interval n - the interval; 0 (default): no lines
+
+  Level: beginner
+
+.seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetProgress()`
+@*/
+PetscErrorCode ControllerSetMonitorInterval(Controller controller, PetscInt interval)
 {
-  MPI_Comm    comm     = PetscObjectComm((PetscObject)controller);
-  PetscInt    interval = 0;
-  PetscBool   show     = (PetscBool)isatty(STDERR_FILENO);
+  Lines *lines;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscValidLogicalCollectiveInt(controller, interval, 2);
+  PetscCheck(interval > 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
+             "An interval of %" PetscInt_FMT " steps must be positive", interval);
+  PetscCall(PetscNew(&lines));
+  lines->interval = interval;
+  PetscCall(ControllerMonitorSet(controller, PrintLine, lines, FreeContext));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerSetProgress - shows a progress bar on standard error
+
+  Logically Collective
+
+  Input Parameter:
+. controller - the `Controller`, before its first step
+
+  Options Database Key:
+. -progress (true|false) - whether there is one, default where standard error is a terminal
+
+  Level: beginner
+
+  Note:
+  The first rank draws it, of runs that take more than a second.
+
+.seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetMonitorInterval()`
+@*/
+PetscErrorCode ControllerSetProgress(Controller controller)
+{
+  Progress   *progress;
   PetscMPIInt rank;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)controller), &rank));
+  if (rank) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&progress));
+  PetscCall(ControllerMonitorSet(controller, ShowProgress, progress, FreeContext));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads -monitor_interval and -progress, and adds the observers they ask for */
+PetscErrorCode ControllerSetUpTerminal(Controller controller)
+{
+  PetscInt  interval = 0;
+  PetscBool show     = (PetscBool)isatty(STDERR_FILENO);
+
+  PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)controller);
-  PetscCall(PetscOptionsInt("-monitor_interval", "Steps from line to line on the terminal, 0 for none", "", interval, &interval, NULL));
-  PetscCall(PetscOptionsBool("-progress", "Progress bar on standard error", "", show, &show, NULL));
+  PetscCall(PetscOptionsInt("-monitor_interval", "Steps from line to line on the terminal, 0 for none", "ControllerSetMonitorInterval",
+                            interval, &interval, NULL));
+  PetscCall(PetscOptionsBool("-progress", "Progress bar on standard error", "ControllerSetProgress", show, &show, NULL));
   PetscOptionsEnd();
-  PetscCheck(interval >= 0, comm, PETSC_ERR_USER_INPUT, "-monitor_interval %" PetscInt_FMT " must not be negative", interval);
-  if (interval) {
-    Lines *lines;
-
-    PetscCall(PetscNew(&lines));
-    lines->interval = interval;
-    PetscCall(ControllerMonitorSet(controller, PrintLine, lines, FreeContext));
-  }
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (show && rank == 0) {
-    Progress *progress;
-
-    PetscCall(PetscNew(&progress));
-    PetscCall(ControllerMonitorSet(controller, ShowProgress, progress, FreeContext));
-  }
+  PetscCheck(interval >= 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT,
+             "-monitor_interval %" PetscInt_FMT " must not be negative", interval);
+  if (interval) PetscCall(ControllerSetMonitorInterval(controller, interval));
+  if (show) PetscCall(ControllerSetProgress(controller));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

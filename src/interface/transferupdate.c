@@ -218,6 +218,11 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   PetscReal reach;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  if (u_dirichlet) PetscValidHeaderSpecific(u_dirichlet, VEC_CLASSID, 2);
+  if (u_neumann) PetscValidHeaderSpecific(u_neumann, VEC_CLASSID, 3);
+  PetscValidLogicalCollectiveReal(transfer, near, 4);
+  PetscAssertPointer(rebuilt, 5);
   PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
              (double)near);
   PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));

@@ -1,5 +1,6 @@
 /* Surfaces and node sets of a mesh by their names. */
 #include "meshimpl.h"
+#include <petsc/private/petscimpl.h>
 #include <petscsf.h>
 
 /* A face is on a side of the bounding box if none of its vertices is further from it, in parts of the box's edge across that side:
@@ -206,6 +207,9 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(dm, DM_CLASSID, 1);
+  PetscAssertPointer(n_faces, 3);
+  PetscAssertPointer(faces, 4);
   if (name && name[0]) {
     PetscCall(FindLabel(dm, name, "Face Sets", &selection, &found));
     PetscCall(DMGetCoordinateDim(dm, &dim));
@@ -288,6 +292,9 @@ PetscErrorCode MeshGetNodeSet(DM dm, const char name[], PetscInt *n_vertices, Pe
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(dm, DM_CLASSID, 1);
+  PetscAssertPointer(n_vertices, 3);
+  PetscAssertPointer(vertices, 4);
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
   if (name && name[0]) PetscCall(FindLabel(dm, name, "Vertex Sets", &selection, &found));
   if (found && !selection.by_value) PetscCall(MeshLabelHasPoints(dm, selection.label, vstart, vend, &found));

@@ -1,5 +1,6 @@
 /* The mesh of a body from its options. */
 #include "meshimpl.h"
+#include <petsc/private/petscimpl.h>
 #include <sys/names.h>
 #include <sys/stat.h>
 
@@ -152,6 +153,7 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   PetscBool from_file, blocks, ball = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscAssertPointer(dm, 4);
   *dm = NULL;
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_filename", path, sizeof(path), &from_file));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_blocks", &blocks));

@@ -1,5 +1,6 @@
 /* Waveforms: values of rows at equally spaced times of a controller step. */
 #include <impakt/trace.h>
+#include <petsc/private/petscimpl.h>
 
 struct _n_Trace {
   PetscInt     size, levels;
@@ -25,6 +26,7 @@ struct _n_Trace {
 PetscErrorCode TraceCreate(PetscInt size, PetscInt levels, Trace *trace)
 {
   PetscFunctionBegin;
+  PetscAssertPointer(trace, 3);
   PetscCheck(levels > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "A trace needs at least one interval, not %" PetscInt_FMT, levels);
   PetscCall(PetscNew(trace));
   (*trace)->size   = size;
@@ -73,6 +75,7 @@ PetscErrorCode TraceDestroy(Trace *trace)
 PetscErrorCode TraceGetSizes(Trace trace, PetscInt *size, PetscInt *levels)
 {
   PetscFunctionBegin;
+  PetscAssertPointer(trace, 1);
   if (size) *size = trace->size;
   if (levels) *levels = trace->levels;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -93,6 +96,7 @@ PetscErrorCode TraceGetSizes(Trace trace, PetscInt *size, PetscInt *levels)
 PetscErrorCode TraceZero(Trace trace)
 {
   PetscFunctionBegin;
+  PetscAssertPointer(trace, 1);
   PetscCall(PetscArrayzero(trace->values, (trace->levels + 1) * trace->size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -116,6 +120,8 @@ PetscErrorCode TraceZero(Trace trace)
 PetscErrorCode TraceGetLevel(Trace trace, PetscInt level, PetscScalar **values)
 {
   PetscFunctionBegin;
+  PetscAssertPointer(trace, 1);
+  PetscAssertPointer(values, 3);
   PetscAssert(level >= 0 && level <= trace->levels, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
               "Level %" PetscInt_FMT " of a trace with %" PetscInt_FMT " intervals", level, trace->levels);
   *values = trace->values + level * trace->size;
@@ -148,6 +154,7 @@ PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, Pet
   const PetscScalar *lower = trace->values + level * trace->size, *upper = lower + trace->size;
 
   PetscFunctionBegin;
+  PetscAssertPointer(trace, 1);
   /* at both ends of an interval the result is the value there, bit for bit */
   for (PetscInt i = begin; i < end; i++) values[i] = weight == 1 ? upper[i] : lower[i] + weight * (upper[i] - lower[i]);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -292,14 +292,15 @@ static void options_come_over_the_program(void **state)
 
 static void what_comes_too_late_is_refused(void **state)
 {
-  const PetscInt  faces[1] = {4};
-  const PetscReal lower[1] = {0}, upper[1] = {1}, zero[1] = {0};
-  Material        m  = material(MATERIAL_LINEAR_ELASTIC, 1, 1, 0);
-  DM              dm = box(1, faces, lower, upper);
-  Controller      controller;
-  Contact         contact;
-  Body            b;
-  Vec             positions;
+  const PetscInt   faces[1] = {4};
+  const PetscReal  lower[1] = {0}, upper[1] = {1}, zero[1] = {0};
+  Material         m  = material(MATERIAL_LINEAR_ELASTIC, 1, 1, 0);
+  DM               dm = box(1, faces, lower, upper);
+  ContactPairState state;
+  Controller       controller;
+  Contact          contact;
+  Body             b;
+  Vec              positions;
 
   (void)state;
   ok(ControllerCreate(PETSC_COMM_WORLD, &controller));
@@ -340,6 +341,8 @@ static void what_comes_too_late_is_refused(void **state)
   ok(ControllerGetContact(controller, &contact));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetLaw()|before ContactSetUp()", ContactSetLaw(contact, CONTACT_LAW_TIED));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetTolerance()", ContactSetTolerance(contact, 1));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 0; there are 0", ContactGetPairState(contact, 0, &state));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "interval of 0 steps must be positive", ControllerSetMonitorInterval(controller, 0));
   ok(BodyGetReferencePositions(b, &positions));
   ok(BodyDestroy(&b));
   ok(ControllerDestroy(&controller));

@@ -34,6 +34,9 @@ PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscRe
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(exact, 2);
+  PetscAssertPointer(difference, 3);
+  PetscAssertPointer(norm, 4);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   for (PetscInt e = 0; e < element->count; e++) {

@@ -138,6 +138,7 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(measures, 2);
   PetscCall(ComputePotential(body, &sums[1]));
   if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
   else {

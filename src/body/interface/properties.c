@@ -45,6 +45,7 @@ PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(mass, 2);
   *mass = body->mass.total;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -68,6 +69,7 @@ PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(cross_section, 2);
   *cross_section = body->model.element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -144,6 +146,7 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(impedance, 2);
   PetscCall(MaterialGetDensity(body->model.material, &density));
   if (body->mesh.dim == 1) PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
   else PetscCall(MaterialGetWaveModulus(body->model.material, &modulus));

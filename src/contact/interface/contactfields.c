@@ -47,6 +47,7 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(fields, 2);
   PetscCheck(contact->setup, comm, PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetUp() first");
   PetscCall(PetscNew(&f));
   *fields    = f;
@@ -155,6 +156,7 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   PetscInt           dim, n;
 
   PetscFunctionBegin;
+  PetscAssertPointer(fields, 1);
   PetscCheck(body >= 0 && body < contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no body %" PetscInt_FMT "; there are %" PetscInt_FMT, body, contact->n_bodies);
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));

@@ -169,6 +169,8 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(normal, 3);
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
   PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

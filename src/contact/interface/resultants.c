@@ -169,6 +169,9 @@ PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairSt
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(state, 3);
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
   PetscCall(ComputeStates(contact, pair, pair + 1, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -192,6 +195,7 @@ PetscErrorCode ContactGetPairStates(Contact contact, ContactPairState states[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (contact->n_pairs) PetscAssertPointer(states, 2);
   PetscCall(ComputeStates(contact, 0, contact->n_pairs, states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
