@@ -53,6 +53,20 @@ typedef struct {
   PetscBool loaded;              /* whether forces from outside, held displacements or obstacles act at all */
 } BodyMeasures;
 
+/*E
+   BodyTractionType - which nodal force of the prescribed nodes is handed to the partner
+
+   Values:
++ `BODY_TRACTION_INTERNAL` - internal force only (Hoy, Tezaur, Mota)
+- `BODY_TRACTION_REACTION` - with the inertia of the nodes: the force that really holds them
+
+   Level: intermediate
+
+.seealso: `BodySetTractionType()`
+E*/
+typedef enum { BODY_TRACTION_INTERNAL, BODY_TRACTION_REACTION } BodyTractionType;
+PETSC_EXTERN const char *const BodyTractionTypes[];
+
 PETSC_EXTERN PetscErrorCode BodyInitializePackage(void);
 PETSC_EXTERN PetscErrorCode BodyFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode BodyCreate(MPI_Comm, const char[], Body *);

@@ -79,6 +79,114 @@ E*/
 typedef enum { CONTACT_STABILIZATION_NONE, CONTACT_STABILIZATION_NAIVE, CONTACT_STABILIZATION_CONTACT_STABILIZED } ContactStabilization;
 PETSC_EXTERN const char *const ContactStabilizations[];
 
+/*E
+   SchwarzTransmission - what Schwarz's method prescribes on both sides of the contact boundary
+
+   Values:
++ `SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN` - displacements one way, tractions the other
+. `SCHWARZ_TRANSMISSION_ROBIN`             - both ways traction and displacement, weighted by a stiffness
+- `SCHWARZ_TRANSMISSION_IMPEDANCE`         - both ways traction and velocity, weighted by an impedance
+
+   Level: intermediate
+
+.seealso: `ContactSchwarzSetTransmission()`
+E*/
+typedef enum { SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN, SCHWARZ_TRANSMISSION_ROBIN, SCHWARZ_TRANSMISSION_IMPEDANCE } SchwarzTransmission;
+
+/*E
+   SchwarzPredictor - where the first sweep of a controller step starts from
+
+   Values:
++ `SCHWARZ_PREDICTOR_LAST`        - where the contact nodes were at its start
+. `SCHWARZ_PREDICTOR_TRIAL`       - where they go without contact
+. `SCHWARZ_PREDICTOR_EXTRAPOLATE` - where they go with their velocity
+- `SCHWARZ_PREDICTOR_INELASTIC`   - where they go with the common velocity after an inelastic collision
+
+   Level: intermediate
+
+.seealso: `ContactSchwarzSetPredictor()`
+E*/
+typedef enum {
+  SCHWARZ_PREDICTOR_LAST,
+  SCHWARZ_PREDICTOR_TRIAL,
+  SCHWARZ_PREDICTOR_EXTRAPOLATE,
+  SCHWARZ_PREDICTOR_INELASTIC
+} SchwarzPredictor;
+
+/*E
+   SchwarzWaveform - how the traction of a partner with longer substeps varies in the course of them
+
+   Values:
++ `SCHWARZ_WAVEFORM_LINEAR`   - linearly, which keeps momentum
+- `SCHWARZ_WAVEFORM_CONSTANT` - not at all
+
+   Level: advanced
+
+.seealso: `ContactSchwarzSetTractionWaveform()`
+E*/
+typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWaveform;
+
+/*E
+   SchwarzRelaxation - relaxation of the plain alternation
+
+   Values:
++ `SCHWARZ_RELAXATION_FIXED`  - by a given factor
+- `SCHWARZ_RELAXATION_AITKEN` - by Aitken's, from the last two residuals
+
+   Level: advanced
+
+.seealso: `ContactSchwarzSetRelaxation()`
+E*/
+typedef enum { SCHWARZ_RELAXATION_FIXED, SCHWARZ_RELAXATION_AITKEN } SchwarzRelaxation;
+
+/*E
+   SchwarzConvergence - what change of position is compared with the tolerances of the outer iteration
+
+   Values:
++ `SCHWARZ_CONVERGENCE_AUTO`             - the first of those below for the plain alternation with fixed relaxation and sweeps of whole
+                                           bodies, the last otherwise
+. `SCHWARZ_CONVERGENCE_POSITION`         - of all nodes of every body, from one sweep to the next (Hoy, Tezaur, Mota)
+. `SCHWARZ_CONVERGENCE_CONTACT_POSITION` - of the contact nodes of every body, from one sweep to the next
+- `SCHWARZ_CONVERGENCE_MISMATCH`         - of the contact nodes, that one more plain sweep would bring
+
+   Level: advanced
+
+.seealso: `ContactSchwarzSetConvergence()`
+E*/
+typedef enum {
+  SCHWARZ_CONVERGENCE_AUTO,
+  SCHWARZ_CONVERGENCE_POSITION,
+  SCHWARZ_CONVERGENCE_CONTACT_POSITION,
+  SCHWARZ_CONVERGENCE_MISMATCH
+} SchwarzConvergence;
+
+/*E
+   SchwarzUnconverged - what becomes of a controller step whose outer iteration does not converge
+
+   Values:
++ `SCHWARZ_UNCONVERGED_ERROR`  - the run ends with an error
+- `SCHWARZ_UNCONVERGED_ACCEPT` - it is accepted and counted
+
+   Level: advanced
+
+.seealso: `ContactSchwarzSetUnconverged()`
+E*/
+typedef enum { SCHWARZ_UNCONVERGED_ERROR, SCHWARZ_UNCONVERGED_ACCEPT } SchwarzUnconverged;
+
+/*E
+   SchwarzCondense - whether sweeps run on the interface compliance of the bodies
+
+   Values:
++ `SCHWARZ_CONDENSE_NEVER`  - they integrate every body
+. `SCHWARZ_CONDENSE_ALWAYS` - they do, and it is an error where the compliance does not tell all
+- `SCHWARZ_CONDENSE_AUTO`   - they do where it tells all
+
+   Level: advanced
+
+.seealso: `ContactSchwarzSetCondense()`
+E*/
+typedef enum { SCHWARZ_CONDENSE_NEVER, SCHWARZ_CONDENSE_ALWAYS, SCHWARZ_CONDENSE_AUTO } SchwarzCondense;
+
 PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 
 /*S
@@ -164,6 +272,23 @@ PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
+
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetTransmission(Contact, SchwarzTransmission);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetRobinParameter(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetTraction(Contact, BodyTractionType);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetTractionWaveform(Contact, SchwarzWaveform);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetPredictor(Contact, SchwarzPredictor);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetSwapSides(Contact, PetscBool);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetRelaxation(Contact, SchwarzRelaxation);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetConvergence(Contact, SchwarzConvergence);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetUnconverged(Contact, SchwarzUnconverged);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetRecheck(Contact, PetscBool);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetCondense(Contact, SchwarzCondense);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetDenseLimit(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactPenaltySetParameter(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactPenaltySetScale(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactPenaltySetDamping(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactPenaltySetAugmentation(Contact, PetscReal, PetscInt);
 
 PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Body *, Body *);

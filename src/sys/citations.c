@@ -43,8 +43,8 @@ static const char *const texts[CITE_COUNT] = {
                                  "  volume  = {73},\n"
                                  "  year    = {2008}\n}\n",
     [CITE_SECANTS]             = "@Article{DegrooteBatheVierendeels2009,\n"
-                                 "  title   = {Performance of a new partitioned procedure versus a monolithic procedure in fluid--structure "
-                                 "interaction},\n"
+                                 "  title   = {Performance of a new partitioned procedure versus a monolithic procedure in "
+                                 "fluid--structure interaction},\n"
                                  "  author  = {J. Degroote and K.-J. Bathe and J. Vierendeels},\n"
                                  "  journal = {Computers \\& Structures},\n"
                                  "  volume  = {87},\n"

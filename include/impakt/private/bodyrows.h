@@ -21,20 +21,6 @@
 E*/
 typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyCondition;
 
-/*E
-   BodyTractionType - which nodal force of the prescribed nodes is handed to the partner
-
-   Values:
-+ `BODY_TRACTION_INTERNAL` - internal force only (Hoy, Tezaur, Mota)
-- `BODY_TRACTION_REACTION` - with the inertia of the nodes: the force that really holds them
-
-   Level: intermediate
-
-.seealso: `BodySetTractionType()`
-E*/
-typedef enum { BODY_TRACTION_INTERNAL, BODY_TRACTION_REACTION } BodyTractionType;
-PETSC_EXTERN const char *const BodyTractionTypes[];
-
 /*S
    BodyTraces - what goes into the rows of a body and comes out of them in a controller step, at the ends of its substeps
 

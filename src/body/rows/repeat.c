@@ -1,6 +1,6 @@
 /*
-   Sweeps of one controller step integrate a body again and again from one state, with other inputs at its rows. Where it makes one substep, its
-   integrator may find what a change of the inputs changes at the end of the step without another whole step.
+   Sweeps of one controller step integrate a body again and again from one state, with other inputs at its rows. Where it makes one substep,
+   its integrator may find what a change of the inputs changes at the end of the step without another whole step.
 */
 #include <body/layout/bodyimpl.h>
 

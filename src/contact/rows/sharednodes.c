@@ -1,9 +1,9 @@
 /*
-   Shared nodes have rows of several pairs, whose normals may depend on each other: nodes of a block that stands astride two others, or on two
-   plane obstacles side by side. Whatever the method, the conditions of each pair must hold: no gap is negative, no force pulls, and there
-   is a force only where a gap is closed. These conditions define the gaps; they define the forces too, if all partners of the node but one
-   give way. But the displacement of a node can be prescribed only along independent normals. So, if Schwarz's method runs on the bodies'
-   compliance, of the active rows of a node
+   Shared nodes have rows of several pairs, whose normals may depend on each other: nodes of a block that stands astride two others, or on
+   two plane obstacles side by side. Whatever the method, the conditions of each pair must hold: no gap is negative, no force pulls, and
+   there is a force only where a gap is closed. These conditions define the gaps; they define the forces too, if all partners of the node
+   but one give way. But the displacement of a node can be prescribed only along independent normals. So, if Schwarz's method runs on the
+   bodies' compliance, of the active rows of a node
 
    - the first independent rows are prescribed;
    - of the others, rows whose partner moves under forces have their force as an unknown, on both sides, with the condition that their gap

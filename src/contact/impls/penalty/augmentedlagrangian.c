@@ -16,10 +16,10 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
              ContactConstraints[contact->options.constraint]);
   PetscCall(PenaltyReadParameter(contact));
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "", penalty->augmentation_tolerance,
-                             &penalty->augmentation_tolerance, NULL));
-  PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "", penalty->augmentation_max_it,
-                            &penalty->augmentation_max_it, NULL));
+  PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "ContactPenaltySetAugmentation",
+                             penalty->augmentation_tolerance, &penalty->augmentation_tolerance, NULL));
+  PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "ContactPenaltySetAugmentation",
+                            penalty->augmentation_max_it, &penalty->augmentation_max_it, NULL));
   PetscOptionsEnd();
   PetscCheck(penalty->augmentation_tolerance == (PetscReal)PETSC_DEFAULT || penalty->augmentation_tolerance > 0, comm, PETSC_ERR_USER_INPUT,
              "-contact_augmentation_tolerance %g m must be positive", (double)penalty->augmentation_tolerance);

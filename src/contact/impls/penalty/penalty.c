@@ -23,10 +23,10 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP_RATE) PetscCall(PenaltyReadParameter(contact));
   if (contact->options.constraint == CONTACT_CONSTRAINT_GAP) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "", penalty->damping,
-                             &penalty->damping, &set));
+  PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "ContactPenaltySetDamping",
+                             penalty->damping, &penalty->damping, &set));
   PetscOptionsEnd();
-  PetscCheck(set, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(set || penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "
              "of a bar, sqrt(E rho) times its area, is its scale",
              ContactConstraints[contact->options.constraint]);

@@ -18,11 +18,11 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
   PetscFunctionBegin;
   penalty->springs = PETSC_TRUE;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(
-      PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "", penalty->penalty, &penalty->penalty, &set));
+  PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "ContactPenaltySetParameter",
+                             penalty->penalty, &penalty->penalty, &set));
   if (!set)
-    PetscCall(PetscOptionsReal("-contact_penalty_scale", "Penalty parameter relative to the stiffness of the elements", "", penalty->scale,
-                               &penalty->scale, &scaled));
+    PetscCall(PetscOptionsReal("-contact_penalty_scale", "Penalty parameter relative to the stiffness of the elements",
+                               "ContactPenaltySetScale", penalty->scale, &penalty->scale, &scaled));
   PetscOptionsEnd();
   PetscCheck(!set || penalty->penalty > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive", (double)penalty->penalty);
   PetscCheck(!scaled || penalty->scale > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty_scale %g must be positive",

@@ -5,7 +5,7 @@
 */
 #include "schwarzimpl.h"
 
-static const char *const Condenses[] = {"0", "1", "auto", "Condense", "CONDENSE_", NULL};
+static const char *const Condenses[] = {"0", "1", "auto", "SchwarzCondense", "SCHWARZ_CONDENSE_", NULL};
 
 PetscErrorCode SchwarzReadCondensation(Contact contact)
 {
@@ -13,10 +13,10 @@ PetscErrorCode SchwarzReadCondensation(Contact contact)
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEnum("-schwarz_condense", "Sweeps on the interface compliance", "", Condenses, (PetscEnum)schwarz->condense,
-                             (PetscEnum *)&schwarz->condense, NULL));
-  PetscCall(PetscOptionsInt("-schwarz_dense_limit", "Interface unknowns up to which its matrices are dense", "", schwarz->dense_limit,
-                            &schwarz->dense_limit, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_condense", "Sweeps on the interface compliance", "ContactSchwarzSetCondense", Condenses,
+                             (PetscEnum)schwarz->condense, (PetscEnum *)&schwarz->condense, NULL));
+  PetscCall(PetscOptionsInt("-schwarz_dense_limit", "Interface unknowns up to which its matrices are dense", "ContactSchwarzSetDenseLimit",
+                            schwarz->dense_limit, &schwarz->dense_limit, NULL));
   PetscOptionsEnd();
   PetscCheck(schwarz->dense_limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_dense_limit %" PetscInt_FMT " must not be negative", schwarz->dense_limit);
@@ -43,7 +43,7 @@ static PetscErrorCode PrescribesMass(Contact contact, PetscBool *prescribes)
 
   PetscFunctionBegin;
   *prescribes = PETSC_FALSE;
-  if (schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  if (schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++) {
       PetscBool has;
@@ -62,7 +62,7 @@ static PetscErrorCode CondensationPrevented(Contact contact, PetscBool mass, con
   PetscFunctionBegin;
   *reason = NULL;
   if (mass) *reason = "the contact nodes of a Dirichlet side have mass (-<body>_mass_redistribute false)";
-  else if (schwarz->convergence == CONVERGENCE_POSITION) *reason = "-schwarz_convergence position wants all nodes after each sweep";
+  else if (schwarz->convergence == SCHWARZ_CONVERGENCE_POSITION) *reason = "-schwarz_convergence position wants all nodes after each sweep";
   for (PetscInt b = 0; b < contact->n_bodies && !*reason; b++) {
     PetscBool exact;
 
@@ -101,10 +101,10 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
   PetscFunctionBegin;
   PetscCall(PrescribesMass(contact, &prescribes));
   PetscCall(CondensationPrevented(contact, prescribes, &reason));
-  PetscCheck(schwarz->condense != CONDENSE_ALWAYS || !reason, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(schwarz->condense != SCHWARZ_CONDENSE_ALWAYS || !reason, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_condense 1: %s; leave it at auto", reason);
   schwarz->exact         = PETSC_TRUE;
-  contact->release.fades = (PetscBool)(schwarz->waveform == WAVEFORM_LINEAR);
+  contact->release.fades = (PetscBool)(schwarz->waveform == SCHWARZ_WAVEFORM_LINEAR);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool exact;
     PetscInt  n;
@@ -119,9 +119,9 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
     if (has) contact->release.fades = PETSC_FALSE;
   }
   if (prescribes) schwarz->mode = SCHWARZ_MASS;
-  else if (reason || schwarz->condense == CONDENSE_NEVER) schwarz->mode = SCHWARZ_BODIES;
+  else if (reason || schwarz->condense == SCHWARZ_CONDENSE_NEVER) schwarz->mode = SCHWARZ_BODIES;
   else schwarz->mode = SCHWARZ_CONDENSED;
-  if (!prescribes && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && schwarz->waveform == WAVEFORM_LINEAR)
+  if (!prescribes && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN && schwarz->waveform == SCHWARZ_WAVEFORM_LINEAR)
     PetscCall(MarkUnshared(contact));
   if (contact->release.fades) PetscCall(ContactSetUpRelease(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -45,7 +45,8 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   PetscFunctionBegin;
   *lag = 0;
   PetscCall(BodyIsRedistributed(body, &massless));
-  if (massless || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN || schwarz->kinematic[SideIndex(schwarz, contact->rows.pair[i])])
+  if (massless || schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ||
+      schwarz->kinematic[SideIndex(schwarz, contact->rows.pair[i])])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetSizes(given, NULL, &given_levels));
   PetscCall(TraceGetSizes(has, NULL, &has_levels));
@@ -86,9 +87,9 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
 {
   Schwarz       *schwarz  = (Schwarz *)contact->data;
-  const PetscInt measures = schwarz->convergence == CONVERGENCE_MISMATCH           ? 1
-                            : schwarz->convergence == CONVERGENCE_CONTACT_POSITION ? 2
-                                                                                   : contact->n_bodies;
+  const PetscInt measures = schwarz->convergence == SCHWARZ_CONVERGENCE_MISMATCH           ? 1
+                            : schwarz->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION ? 2
+                                                                                           : contact->n_bodies;
   PetscReal      worst    = -1;
 
   PetscFunctionBegin;
@@ -96,8 +97,8 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
   for (PetscInt k = 0; k < measures; k++) {
     PetscReal change, position;
 
-    if (schwarz->convergence == CONVERGENCE_MISMATCH) PetscCall(MeasureMismatch(contact, f, &change, &position));
-    else if (schwarz->convergence == CONVERGENCE_CONTACT_POSITION) PetscCall(MeasureRows(contact, k, &change, &position));
+    if (schwarz->convergence == SCHWARZ_CONVERGENCE_MISMATCH) PetscCall(MeasureMismatch(contact, f, &change, &position));
+    else if (schwarz->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION) PetscCall(MeasureRows(contact, k, &change, &position));
     else PetscCall(BodyGetPositionChange(contact->bodies[k], &change, &position));
     if (!(change <= schwarz->atol || change <= schwarz->rtol * position)) schwarz->converged = PETSC_FALSE;
     if (change <= worst) continue;
@@ -139,7 +140,7 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTime(ts, &time));
-  PetscCheck(schwarz->unconverged == UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact),
+  PetscCheck(schwarz->unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_NOT_CONVERGED,
              "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
              " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen "

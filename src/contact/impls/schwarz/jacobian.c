@@ -45,7 +45,7 @@ static PetscErrorCode MakeRoom(Jacobian *jacobian, PetscInt size, PetscInt most)
 static PetscErrorCode CountLevels(Contact contact, PetscInt *levels, PetscBool *chain)
 {
   const Schwarz  *schwarz = (const Schwarz *)contact->data;
-  const PetscBool robin   = (PetscBool)(schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN);
+  const PetscBool robin   = (PetscBool)(schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
   PetscInt        first = 0, most = 1;
   PetscBool       equal = PETSC_TRUE, single = PETSC_TRUE;
 
@@ -300,7 +300,7 @@ static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
   PetscCall(VecZeroEntries(Y));
   PetscCall(VecGetArrayRead(F, &f));
   PetscCall(VecGetArray(Y, &y));
-  if (schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN && !(jacobian->dense && jacobian->chain))
+  if (schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN && !(jacobian->dense && jacobian->chain))
     PetscCall(ApplyRobin(contact, f, y));
   else if (jacobian->dense) PetscCall(ApplyDense(contact, f, y));
   else PetscCall(ApplyByLevels(contact, f, y));

@@ -33,13 +33,13 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   PetscCall(TraceGetLevel(dirichlet->velocity, 0, &other));
   *displacement = u[i];
   if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
-  if (schwarz->predictor == PREDICTOR_EXTRAPOLATE) *displacement += time * v[i];
-  if (schwarz->predictor == PREDICTOR_INELASTIC) {
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE) *displacement += time * v[i];
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_INELASTIC) {
     const PetscReal m_d = schwarz->mass[pair->dirichlet][i], m_n = schwarz->mass[1 - pair->dirichlet][i];
 
     *displacement += time * (m_d * other[i] + m_n * v[i]) / (m_d + m_n);
   }
-  if (schwarz->predictor == PREDICTOR_TRIAL) {
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) {
     PetscInt levels;
 
     /* a level of the trace: it has as many as the unknowns, or these are its last one alone */
@@ -58,7 +58,7 @@ PetscErrorCode SchwarzPredict(Contact contact)
   PetscScalar *x;
 
   PetscFunctionBegin;
-  if (schwarz->predictor == PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
   else
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
   PetscCall(VecZeroEntries(schwarz->outer.x));
@@ -76,13 +76,13 @@ PetscErrorCode SchwarzPredict(Contact contact)
       PetscCall(PredictNeumann(contact, i, level * width, part, &position));
       position += sign * SchwarzOffset(contact, i, part);
       if (ByForce(contact, i)) unknown[level - 1] = -sign * contact->start.force[i] / ContactForceUnit(contact, i);
-      else if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
+      else if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
       else unknown[level - 1] = -sign * contact->start.force[i] + schwarz->weight[i] * position;
     }
     /* what has been a Neumann side until now has no reaction yet */
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));
     reaction[i] = -sign * contact->start.force[i];
-    if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) continue;
+    if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) continue;
     PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
     reaction[i] = sign * contact->start.force[i];
   }

@@ -2,12 +2,14 @@
 #include "schwarzimpl.h"
 #include <sys/citations.h>
 
-static const char *const ConvergenceTests[] = {"auto", "position", "contact_position", "mismatch", "ConvergenceTest", "CONVERGENCE_", NULL};
-static const char *const Relaxations[]      = {"fixed", "aitken", "Relaxation", "RELAXATION_", NULL};
-static const char *const Transmissions[]    = {"dirichlet_neumann", "robin", "impedance", "Transmission", "TRANSMISSION_", NULL};
-static const char *const Predictors[]       = {"last", "trial", "extrapolate", "inelastic", "Predictor", "PREDICTOR_", NULL};
-static const char *const Waveforms[]        = {"linear", "constant", "TractionWaveform", "WAVEFORM_", NULL};
-static const char *const Unconvergeds[]     = {"error", "accept", "Unconverged", "UNCONVERGED_", NULL};
+static const char *const ConvergenceTests[] = {
+    "auto", "position", "contact_position", "mismatch", "SchwarzConvergence", "SCHWARZ_CONVERGENCE_", NULL};
+static const char *const Relaxations[]   = {"fixed", "aitken", "SchwarzRelaxation", "SCHWARZ_RELAXATION_", NULL};
+static const char *const Transmissions[] = {"dirichlet_neumann",     "robin", "impedance", "SchwarzTransmission",
+                                            "SCHWARZ_TRANSMISSION_", NULL};
+static const char *const Predictors[]    = {"last", "trial", "extrapolate", "inelastic", "SchwarzPredictor", "SCHWARZ_PREDICTOR_", NULL};
+static const char *const Waveforms[]     = {"linear", "constant", "SchwarzWaveform", "SCHWARZ_WAVEFORM_", NULL};
+static const char *const Unconvergeds[]  = {"error", "accept", "SchwarzUnconverged", "SCHWARZ_UNCONVERGED_", NULL};
 
 static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 {
@@ -16,29 +18,31 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "", Transmissions,
+  PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "ContactSchwarzSetTransmission", Transmissions,
                              (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
   /* only where it has an effect, so that it is an unused option elsewhere */
-  if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) {
-    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "BodySetTractionType", BodyTractionTypes,
-                               (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
-    PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course", "", Waveforms,
-                               (PetscEnum)schwarz->waveform, (PetscEnum *)&schwarz->waveform, NULL));
+  if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
+    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "ContactSchwarzSetTraction",
+                               BodyTractionTypes, (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
+    PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course",
+                               "ContactSchwarzSetTractionWaveform", Waveforms, (PetscEnum)schwarz->waveform,
+                               (PetscEnum *)&schwarz->waveform, NULL));
   }
-  if (schwarz->transmission == TRANSMISSION_ROBIN)
-    PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]", "",
-                               schwarz->robin_parameter, &schwarz->robin_parameter, &set));
-  PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "", Predictors, (PetscEnum)schwarz->predictor,
-                             (PetscEnum *)&schwarz->predictor, NULL));
-  PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "", schwarz->swap, &schwarz->swap, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "", Relaxations, (PetscEnum)schwarz->relaxation,
-                             (PetscEnum *)&schwarz->relaxation, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "", ConvergenceTests,
+  if (schwarz->transmission == SCHWARZ_TRANSMISSION_ROBIN)
+    PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]",
+                               "ContactSchwarzSetRobinParameter", schwarz->robin_parameter, &schwarz->robin_parameter, &set));
+  PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "ContactSchwarzSetPredictor", Predictors,
+                             (PetscEnum)schwarz->predictor, (PetscEnum *)&schwarz->predictor, NULL));
+  PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "ContactSchwarzSetSwapSides", schwarz->swap,
+                             &schwarz->swap, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "ContactSchwarzSetRelaxation", Relaxations,
+                             (PetscEnum)schwarz->relaxation, (PetscEnum *)&schwarz->relaxation, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "ContactSchwarzSetConvergence", ConvergenceTests,
                              (PetscEnum)schwarz->convergence, (PetscEnum *)&schwarz->convergence, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "", Unconvergeds,
-                             (PetscEnum)schwarz->unconverged, (PetscEnum *)&schwarz->unconverged, NULL));
-  PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "", schwarz->recheck, &schwarz->recheck,
-                             NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "ContactSchwarzSetUnconverged",
+                             Unconvergeds, (PetscEnum)schwarz->unconverged, (PetscEnum *)&schwarz->unconverged, NULL));
+  PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "ContactSchwarzSetRecheck",
+                             schwarz->recheck, &schwarz->recheck, NULL));
   PetscOptionsEnd();
   PetscCall(SchwarzReadCondensation(contact));
   PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -103,7 +107,8 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(SetUpUnknowns(contact, &unknowns));
   PetscCall(SchwarzSetUpTransmission(contact));
   PetscCall(ContactSetUpSharedNodes(
-      contact, (PetscBool)(schwarz->mode != SCHWARZ_MASS && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN && !schwarz->swap)));
+      contact,
+      (PetscBool)(schwarz->mode != SCHWARZ_MASS && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN && !schwarz->swap)));
   schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
   for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
@@ -112,7 +117,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
-  if (schwarz->relaxation == RELAXATION_AITKEN) {
+  if (schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN) {
     SNESLineSearch line_search;
 
     PetscCheck(richardson, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -123,10 +128,10 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
   /* on the compliance alone bodies stay where they are from sweep to sweep, whatever the rows do */
-  if (schwarz->convergence == CONVERGENCE_AUTO)
-    schwarz->convergence = richardson && schwarz->relaxation == RELAXATION_FIXED && schwarz->mode != SCHWARZ_CONDENSED
-                               ? CONVERGENCE_POSITION
-                               : CONVERGENCE_MISMATCH;
+  if (schwarz->convergence == SCHWARZ_CONVERGENCE_AUTO)
+    schwarz->convergence = richardson && schwarz->relaxation == SCHWARZ_RELAXATION_FIXED && schwarz->mode != SCHWARZ_CONDENSED
+                               ? SCHWARZ_CONVERGENCE_POSITION
+                               : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscCall(SchwarzSetUpJacobian(contact));
   if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -151,11 +156,11 @@ static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(SNESGetType(schwarz->outer.snes, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g m and %g relative\n",
-                                   type, schwarz->relaxation == RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[schwarz->transmission],
-                                   schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole",
-                                   Predictors[schwarz->predictor], (double)schwarz->atol, (double)schwarz->rtol));
+  PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g m and %g relative\n", type,
+      schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[schwarz->transmission],
+      schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole",
+      Predictors[schwarz->predictor], (double)schwarz->atol, (double)schwarz->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -232,9 +237,9 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscNew(&schwarz));
   schwarz->traction            = BODY_TRACTION_INTERNAL;
-  schwarz->predictor           = PREDICTOR_INELASTIC;
+  schwarz->predictor           = SCHWARZ_PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
-  schwarz->condense            = CONDENSE_AUTO;
+  schwarz->condense            = SCHWARZ_CONDENSE_AUTO;
   schwarz->dense_limit         = 2000;
   contact->prescribes          = PETSC_TRUE;
   contact->data                = schwarz;

@@ -4,43 +4,6 @@
 #include <contact/compliance/outersolver.h>
 #include <solver/densefactor.h>
 
-/* What "change of position" is compared with the tolerances */
-typedef enum {
-  CONVERGENCE_AUTO,             /* the first for nrichardson with fixed relaxation and sweeps of whole bodies, the last otherwise */
-  CONVERGENCE_POSITION,         /* of all nodes of every body, from one sweep to the next (the paper's) */
-  CONVERGENCE_CONTACT_POSITION, /* of the contact nodes of every body, from one sweep to the next */
-  CONVERGENCE_MISMATCH          /* of the contact nodes, that one more plain sweep would bring: |x - G(x)| */
-} ConvergenceTest;
-
-typedef enum { RELAXATION_FIXED, RELAXATION_AITKEN } Relaxation;
-
-typedef enum { UNCONVERGED_ERROR, UNCONVERGED_ACCEPT } Unconverged;
-
-/* What is prescribed on both sides of the contact boundary */
-typedef enum {
-  TRANSMISSION_DIRICHLET_NEUMANN, /* displacements one way, tractions the other */
-  TRANSMISSION_ROBIN,             /* both ways traction and displacement, weighted by a stiffness */
-  TRANSMISSION_IMPEDANCE          /* both ways traction and velocity, weighted by an impedance */
-} Transmission;
-
-/* Where the first sweep of a step starts from */
-typedef enum {
-  PREDICTOR_LAST,        /* where the contact nodes were at its start */
-  PREDICTOR_TRIAL,       /* where they go without contact */
-  PREDICTOR_EXTRAPOLATE, /* where they go with their velocity */
-  PREDICTOR_INELASTIC    /* where they go with the common velocity after an inelastic collision */
-} Predictor;
-
-/* How the traction of a partner with longer substeps varies in the course of them */
-typedef enum { WAVEFORM_LINEAR, WAVEFORM_CONSTANT } TractionWaveform;
-
-/* Whether the sweeps of a controller step run on the interface compliance of the bodies */
-typedef enum {
-  CONDENSE_NEVER,
-  CONDENSE_ALWAYS,
-  CONDENSE_AUTO /* in two and three dimensions, where it gives the same */
-} Condense;
-
 /* How controller steps in contact are made: chosen at set-up from the bodies and the options */
 typedef enum {
   SCHWARZ_MASS,     /* contact nodes of a Dirichlet side have mass: sweeps integrate the bodies, rows are let go all at once */
@@ -81,19 +44,19 @@ typedef struct {
 
 typedef struct {
   /* options */
-  ConvergenceTest  convergence;
-  Relaxation       relaxation;
-  Unconverged      unconverged;
-  BodyTractionType traction;
-  Transmission     transmission;
-  Predictor        predictor;
-  TractionWaveform waveform;
-  Condense         condense;
-  PetscReal        robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
-  PetscInt         dense_limit;     /* unknowns of the interface up to which its matrices are dense */
-  PetscBool        recheck;         /* tensile reactions leave the active set within the step */
-  PetscBool        swap;            /* sides change with every controller step */
-  PetscReal        atol, rtol;      /* on the change of position [m], relative */
+  SchwarzConvergence  convergence;
+  SchwarzRelaxation   relaxation;
+  SchwarzUnconverged  unconverged;
+  BodyTractionType    traction;
+  SchwarzTransmission transmission;
+  SchwarzPredictor    predictor;
+  SchwarzWaveform     waveform;
+  SchwarzCondense     condense;
+  PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
+  PetscInt            dense_limit;     /* unknowns of the interface up to which its matrices are dense */
+  PetscBool           recheck;         /* tensile reactions leave the active set within the step */
+  PetscBool           swap;            /* sides change with every controller step */
+  PetscReal           atol, rtol;      /* on the change of position [m], relative */
   /* chosen at set-up */
   SchwarzMode mode;
   PetscBool   exact;           /* the compliance of all bodies tells all that sweeps do */
@@ -172,7 +135,7 @@ static inline PetscInt SideIndex(const Schwarz *schwarz, PetscInt p)
 /* What active rows mean to the bodies */
 static inline ContactConditions SchwarzConditions(const Schwarz *schwarz)
 {
-  return schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ : CONDITIONS_ROBIN;
+  return schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ : CONDITIONS_ROBIN;
 }
 
 PETSC_INTERN PetscErrorCode ContactStep_Schwarz(Contact);

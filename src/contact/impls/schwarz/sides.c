@@ -72,7 +72,7 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
   PetscInt           substeps;
 
   PetscFunctionBegin;
-  if (pair->obstacle || schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN)
+  if (pair->obstacle || schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIsRedistributed(dirichlet, &massless));
   if (massless) PetscFunctionReturn(PETSC_SUCCESS);
@@ -95,7 +95,7 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCheck(!contact->pairs[p].obstacle || (!schwarz->swap && schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN),
+    PetscCheck(!contact->pairs[p].obstacle || (!schwarz->swap && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN),
                PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_pairs %s: an obstacle has no other side, neither for -contact_swap_sides nor for -schwarz_transmission robin or "
                "impedance",

@@ -125,7 +125,7 @@ static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
 PetscErrorCode SchwarzResampleForce(const Schwarz *schwarz, Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
 {
   PetscFunctionBegin;
-  if (schwarz->waveform == WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, end, scale, to));
+  if (schwarz->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, end, scale, to));
   else PetscCall(TraceResample(from, begin, end, scale, to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,7 +181,7 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) {
+    if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
       if (DirichletBody(pair) == b) {
         PetscCall(PrescribePair(contact, p, x));
         if (contact->shared.n || pair->by_force) PetscCall(LoadByForce(contact, p, x));
@@ -250,7 +250,8 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
       const PetscInt unknown = schwarz->offset[i] + level - 1;
       PetscScalar    answer;
 
-      if (schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN) answer = displacement[i] + sign * SchwarzOffset(contact, i, part);
+      if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
+        answer = displacement[i] + sign * SchwarzOffset(contact, i, part);
       else answer = r[i] - 2 * force[i] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
       f[unknown] = contact->end.active[i] ? x[unknown] - answer : 0;
       if (!ByForce(contact, i)) continue;

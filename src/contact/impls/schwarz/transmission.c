@@ -23,7 +23,8 @@ static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (contact->pairs[contact->rows.pair[i]].body[1] != b) continue;
-    if (schwarz->transmission == TRANSMISSION_IMPEDANCE) schwarz->weight[i] = impedance * contact->rows.area[i] / schwarz->controller_step;
+    if (schwarz->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
+      schwarz->weight[i] = impedance * contact->rows.area[i] / schwarz->controller_step;
     else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->rows.area[i] : stiffness[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,7 +67,7 @@ static PetscErrorCode CheckBodies(Contact contact)
 PetscErrorCode SchwarzSetUpTransmission(Contact contact)
 {
   Schwarz        *schwarz = (Schwarz *)contact->data;
-  const PetscBool robin   = (PetscBool)(schwarz->transmission != TRANSMISSION_DIRICHLET_NEUMANN);
+  const PetscBool robin   = (PetscBool)(schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
   PetscReal      *stiffness;
 
   PetscFunctionBegin;
@@ -91,5 +92,5 @@ PetscReal SchwarzResidualScale(Contact contact, PetscInt i)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
-  return schwarz->transmission == TRANSMISSION_DIRICHLET_NEUMANN ? 1 : 1 / (2 * schwarz->weight[i]);
+  return schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? 1 : 1 / (2 * schwarz->weight[i]);
 }

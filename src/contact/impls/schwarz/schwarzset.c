@@ -1,0 +1,343 @@
+/* Setters of the Schwarz alternating method, beside its options. */
+#include "schwarzimpl.h"
+
+static PetscErrorCode GetSchwarz(Contact contact, Schwarz **method)
+{
+  PetscBool is_it;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)contact, &is_it, CONTACT_SCHWARZ, ""));
+  PetscCheck(is_it, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetType(contact, CONTACT_SCHWARZ) first");
+  *method = (Schwarz *)contact->data;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetTransmission - sets what is prescribed on both sides of the contact boundary
+
+  Logically Collective
+
+  Input Parameters:
++ contact      - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- transmission - the conditions
+
+  Options Database Key:
+. -schwarz_transmission (dirichlet_neumann|robin|impedance) - what is prescribed on both sides of the contact boundary
+
+  Level: intermediate
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzTransmission`
+@*/
+PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmission transmission)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, transmission, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->transmission = transmission;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetRobinParameter - sets the stiffness of Robin conditions
+
+  Logically Collective
+
+  Input Parameters:
++ contact   - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- stiffness - [N/m for each unit of area]; by default E/h of the Neumann side's contact elements
+
+  Options Database Key:
+. -schwarz_robin_parameter alpha - the stiffness of Robin conditions
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`
+@*/
+PetscErrorCode ContactSchwarzSetRobinParameter(Contact contact, PetscReal stiffness)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveReal(contact, stiffness, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  PetscCheck(stiffness > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A Robin parameter of %g must be positive",
+             (double)stiffness);
+  schwarz->robin_parameter = stiffness;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetTraction - sets the nodal force that is handed to the Neumann side
+
+  Logically Collective
+
+  Input Parameters:
++ contact  - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- traction - without or with the inertia of the nodes
+
+  Options Database Key:
+. -schwarz_traction (internal|reaction) - the nodal force that is handed to the Neumann side
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `BodyTractionType`
+@*/
+PetscErrorCode ContactSchwarzSetTraction(Contact contact, BodyTractionType traction)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, traction, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->traction = traction;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetTractionWaveform - sets how the traction of a partner with longer substeps varies in the course of them
+
+  Logically Collective
+
+  Input Parameters:
++ contact  - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- waveform - the waveform
+
+  Options Database Key:
+. -schwarz_traction_waveform (linear|constant) - how the traction of a partner with longer substeps varies in the course of them
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzWaveform`
+@*/
+PetscErrorCode ContactSchwarzSetTractionWaveform(Contact contact, SchwarzWaveform waveform)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, waveform, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->waveform = waveform;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetPredictor - sets where the first sweep of a controller step starts from
+
+  Logically Collective
+
+  Input Parameters:
++ contact   - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- predictor - the predictor
+
+  Options Database Key:
+. -schwarz_predictor (last|trial|extrapolate|inelastic) - where the first sweep of a controller step starts from
+
+  Level: intermediate
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzPredictor`
+@*/
+PetscErrorCode ContactSchwarzSetPredictor(Contact contact, SchwarzPredictor predictor)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, predictor, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->predictor = predictor;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetSwapSides - sets whether the sides change with every controller step
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- swap    - whether they do
+
+  Options Database Key:
+. -contact_swap_sides (true|false) - whether the sides change with every controller step
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`
+@*/
+PetscErrorCode ContactSchwarzSetSwapSides(Contact contact, PetscBool swap)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveBool(contact, swap, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->swap = swap;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetRelaxation - sets the relaxation of the plain alternation
+
+  Logically Collective
+
+  Input Parameters:
++ contact    - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- relaxation - the relaxation
+
+  Options Database Key:
+. -schwarz_relaxation (fixed|aitken) - the relaxation of the plain alternation
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzRelaxation`
+@*/
+PetscErrorCode ContactSchwarzSetRelaxation(Contact contact, SchwarzRelaxation relaxation)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, relaxation, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->relaxation = relaxation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetConvergence - sets what change of position is compared with the tolerances
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- test    - the test
+
+  Options Database Key:
+. -schwarz_convergence (auto|position|contact_position|mismatch) - what change of position is compared with the tolerances
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzConvergence`
+@*/
+PetscErrorCode ContactSchwarzSetConvergence(Contact contact, SchwarzConvergence test)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, test, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->convergence = test;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetUnconverged - sets what becomes of a controller step that does not converge
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- what    - what becomes of it
+
+  Options Database Key:
+. -schwarz_unconverged (error|accept) - what becomes of a controller step that does not converge
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzUnconverged`
+@*/
+PetscErrorCode ContactSchwarzSetUnconverged(Contact contact, SchwarzUnconverged what)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, what, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->unconverged = what;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetRecheck - sets whether tensile nodes leave contact within the controller step
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- recheck - whether they do; else they leave at its end
+
+  Options Database Key:
+. -schwarz_recheck (true|false) - whether tensile nodes leave contact within the controller step
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`
+@*/
+PetscErrorCode ContactSchwarzSetRecheck(Contact contact, PetscBool recheck)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveBool(contact, recheck, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->recheck = recheck;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetCondense - sets whether sweeps run on the interface compliance of the bodies
+
+  Logically Collective
+
+  Input Parameters:
++ contact  - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- condense - whether they do
+
+  Options Database Key:
+. -schwarz_condense (0|1|auto) - whether sweeps run on the interface compliance of the bodies
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzCondense`
+@*/
+PetscErrorCode ContactSchwarzSetCondense(Contact contact, SchwarzCondense condense)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveEnum(contact, condense, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  schwarz->condense = condense;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetDenseLimit - sets the number of interface unknowns up to which their matrices are dense
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- limit   - the number
+
+  Options Database Key:
+. -schwarz_dense_limit n - the number of interface unknowns up to which their matrices are dense
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`
+@*/
+PetscErrorCode ContactSchwarzSetDenseLimit(Contact contact, PetscInt limit)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveInt(contact, limit, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  PetscCheck(limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "A dense limit of %" PetscInt_FMT " must not be negative", limit);
+  schwarz->dense_limit = limit;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
