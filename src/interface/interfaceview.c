@@ -86,17 +86,18 @@ PetscErrorCode SurfaceViewFromOptions(Surface surface, PetscObject object, const
 @*/
 PetscErrorCode TransferView(Transfer transfer, PetscViewer viewer)
 {
-  const char *partner;
-  PetscInt    counts[2] = {0, 0};
-  PetscBool   printed;
+  TransferRows rows;
+  const char  *partner;
+  PetscInt     counts[2] = {0, 0};
+  PetscBool    printed;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCall(IsPrinted((PetscObject)transfer, &viewer, &printed));
   if (!printed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
-  counts[0] = transfer->n;
-  for (PetscInt i = 0; i < transfer->n; i++) counts[1] += transfer->rows.opposite[i] ? 1 : 0;
+  PetscCall(TransferGetRows(transfer, &rows));
+  counts[0] = rows.n;
+  for (PetscInt i = 0; i < rows.n; i++) counts[1] += rows.opposite[i] ? 1 : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)transfer)));
   PetscCall(PetscObjectGetName(transfer->neumann ? (PetscObject)transfer->neumann : (PetscObject)transfer->obstacle, &partner));
   PetscCall(PetscViewerASCIIPrintf(viewer,

@@ -1,6 +1,7 @@
 /* Start and end of the library: the packages of its classes. */
 #include <impakt.h>
 #include "errors.h"
+#include "package.h"
 #include "petsccompat.h"
 
 static const char help[] = "Impakt: dynamic contact by the Schwarz alternating method.\n"
@@ -12,6 +13,22 @@ static struct {
   PetscInt  depth;       /* calls of ImpaktInitialize() not yet undone by ImpaktFinalize() */
   PetscBool began_petsc; /* the first of them has started PETSc */
 } library = {0, PETSC_FALSE};
+
+/* The end of every XxxInitializePackage(), after class id, events and registry: `-info` and `-log_exclude` may name the class, and
+   PetscFinalize() calls the counterpart */
+PetscErrorCode ImpaktFinishPackage(const char name[], PetscClassId id, PetscErrorCode (*finalize)(void))
+{
+  char      excluded[256];
+  PetscBool set, listed = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscInfoProcessClass(name, 1, &id));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-log_exclude", excluded, sizeof(excluded), &set));
+  if (set) PetscCall(PetscStrInList(name, excluded, ',', &listed));
+  if (listed) PetscCall(PetscLogEventExcludeClass(id));
+  PetscCall(PetscRegisterFinalize(finalize));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   ImpaktRegisterAll - registers all classes, integrators, materials, elements and contact methods
