@@ -296,7 +296,7 @@ static void what_comes_too_late_is_refused(void **state)
   const PetscReal  lower[1] = {0}, upper[1] = {1}, zero[1] = {0};
   Material         m  = material(MATERIAL_LINEAR_ELASTIC, 1, 1, 0);
   DM               dm = box(1, faces, lower, upper);
-  ContactPairState state;
+  ContactPairState end;
   Controller       controller;
   Contact          contact;
   Body             b;
@@ -341,7 +341,7 @@ static void what_comes_too_late_is_refused(void **state)
   ok(ControllerGetContact(controller, &contact));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetLaw()|before ContactSetUp()", ContactSetLaw(contact, CONTACT_LAW_TIED));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetTolerance()", ContactSetTolerance(contact, 1));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 0; there are 0", ContactGetPairState(contact, 0, &state));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 0; there are 0", ContactGetPairState(contact, 0, &end));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "interval of 0 steps must be positive", ControllerSetMonitorInterval(controller, 0));
   ok(BodyGetReferencePositions(b, &positions));
   ok(BodyDestroy(&b));

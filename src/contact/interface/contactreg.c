@@ -2,9 +2,6 @@
 #include <impakt/private/contactimpl.h>
 #include <sys/package.h>
 
-PetscClassId  CONTACT_CLASSID = 0;
-PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
-
 PetscFunctionList ContactList = NULL;
 
 static PetscBool ContactPackageInitialized = PETSC_FALSE;
