@@ -75,8 +75,14 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TakeInputs(body, &any));
   PetscCall(BodyAnyRank(body, &any));
-  /* without a change the state stays as it is, bit for bit; nodes with mass may yet be given another velocity */
-  if (any || body->rows.have_mass) PetscCall((*body->integrator->ops.repeat)(body, body->repeat->changes[0], body->repeat->changes[1]));
+  /* Without a change the state stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and acceleration,
+     which others feel through a mass matrix that is not diagonal alone. */
+  if (any || (body->rows.have_mass && body->mass.matrix))
+    PetscCall((*body->integrator->ops.repeat)(body, body->repeat->changes[0], body->repeat->changes[1]));
+  else if (body->rows.have_mass) {
+    PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
+    PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));
+  }
   PetscCall(BodyWriteTraces(body, body->time.substeps));
   body->statistics.substeps += body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
