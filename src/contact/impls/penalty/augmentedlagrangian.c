@@ -11,9 +11,6 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
   MPI_Comm comm    = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_USER_INPUT,
-             "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty",
-             ContactConstraints[contact->options.constraint]);
   PetscCall(PenaltyReadParameter(contact));
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "ContactPenaltySetAugmentation",
@@ -33,6 +30,9 @@ static PetscErrorCode ContactSetUp_AugmentedLagrangian(Contact contact)
   Penalty *penalty = (Penalty *)contact->data;
 
   PetscFunctionBegin;
+  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty",
+             ContactConstraints[contact->options.constraint]);
   PetscCall(ForcesCheckBodies(contact, CONTACT_AUGMENTED_LAGRANGIAN));
   if (penalty->augmentation_tolerance == (PetscReal)PETSC_DEFAULT)
     penalty->augmentation_tolerance = CONTACT_AUGMENTATION_TOLERANCE * contact->scale.length;

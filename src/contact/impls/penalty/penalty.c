@@ -26,11 +26,7 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
   PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "ContactPenaltySetDamping",
                              penalty->damping, &penalty->damping, &set));
   PetscOptionsEnd();
-  PetscCheck(set || penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "
-             "of a bar, sqrt(E rho) times its area, is its scale",
-             ContactConstraints[contact->options.constraint]);
-  PetscCheck(penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(!set || penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_penalty_damping %g must be positive", (double)penalty->damping);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -139,6 +135,12 @@ PetscErrorCode PenaltySetUp(Contact contact)
   const PetscInt n       = contact->rows.n;
 
   PetscFunctionBegin;
+  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP || penalty->damping > 0, PetscObjectComm((PetscObject)contact),
+             PETSC_ERR_USER_INPUT,
+             "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "
+             "of a bar, sqrt(E rho) times its area, is its scale",
+             ContactConstraints[contact->options.constraint]);
+  penalty->springs = (PetscBool)(contact->options.constraint != CONTACT_CONSTRAINT_GAP_RATE);
   PetscCall(ForcesGetStep(contact, &penalty->step));
   PetscCall(PetscCalloc5(n, &penalty->multiplier, n, &penalty->pushing, n, &penalty->spring, n, &penalty->damper, n, &penalty->stiffness));
   PetscCall(PenaltySetUpSprings(contact));

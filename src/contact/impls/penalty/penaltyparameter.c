@@ -16,7 +16,6 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
   PetscBool set, scaled = PETSC_FALSE;
 
   PetscFunctionBegin;
-  penalty->springs = PETSC_TRUE;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "ContactPenaltySetParameter",
                              penalty->penalty, &penalty->penalty, &set));
