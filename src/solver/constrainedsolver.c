@@ -54,6 +54,8 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
 #define MAX_DIRECT_SIZE_3D 150000
 /* of multigrid: what is left of the residual must not show in energies and momenta */
 #define ITERATIVE_TOLERANCE 1e-12
+/* and iterations of it, of which bodies of 10^4 to 3e5 unknowns take 18 to 20 */
+#define ITERATIVE_MAX_IT 1000
 /* Constraint forces up to this number by a dense matrix, whose factors take 64 MB then; and of columns up to so many numbers in all, 800 MB
  */
 #define MAX_DENSE_CONSTRAINTS 2000
@@ -81,7 +83,7 @@ static PetscErrorCode ChooseSolver(KSP ksp, Mat A, PetscInt dim)
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
   PetscCall(MatGetSize(A, &n, NULL));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(KSPSetTolerances(ksp, ITERATIVE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 1000));
+  PetscCall(KSPSetTolerances(ksp, ITERATIVE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, ITERATIVE_MAX_IT));
   if (dim == 3 && n > MAX_DIRECT_SIZE_3D) {
     PetscCall(KSPSetType(ksp, KSPCG));
     PetscCall(PCSetType(pc, PCGAMG));

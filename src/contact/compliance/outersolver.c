@@ -99,7 +99,7 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
   /* after the type, which brings a line search of its own */
   PetscCall(SNESGetLineSearch(solver->snes, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESSetTolerances(solver->snes, atol, rtol, 0, max_it, 1000000));
+  PetscCall(SNESSetTolerances(solver->snes, atol, rtol, 0, max_it, OUTER_MAX_EVALUATIONS));
   if (anderson) {
     PetscCall(InsertDefault(prefix, "-snes_anderson_beta", "0.5", &beta));
     PetscCall(InsertDefault(prefix, "-snes_anderson_m", "8", &size));

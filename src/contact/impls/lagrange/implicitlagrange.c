@@ -160,7 +160,8 @@ static PetscErrorCode SetUpOuter(Contact contact)
     PetscCall(SNESGetLineSearch(snes, &line_search));
     PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   }
-  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->scale.length, 1e-15, 0, 50, 1000000));
+  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL, 0, OUTER_MAX_ITERATIONS,
+                              OUTER_MAX_EVALUATIONS));
   PetscCall(PetscOptionsHasName(NULL, "lagrange_", "-snes_vi_zero_tolerance", &tolerance_set));
   if (!tolerance_set) PetscCall(PetscOptionsSetValue(NULL, "-lagrange_snes_vi_zero_tolerance", "0"));
   PetscCall(SNESSetFromOptions(snes));

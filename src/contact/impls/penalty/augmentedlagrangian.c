@@ -5,6 +5,9 @@
 */
 #include "penaltyimpl.h"
 
+/* Each augmentation makes the gap smaller by 1 / (1 + tau A W): where a soft spring has tau A W = 1/10, 200 of them do by 2e8 */
+#define AUGMENTATION_MAX_IT 200
+
 static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
 {
   Penalty *penalty = (Penalty *)contact->data;
@@ -115,7 +118,7 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscNew(&penalty));
   penalty->augmentation_tolerance = PETSC_DEFAULT;
-  penalty->augmentation_max_it    = 200;
+  penalty->augmentation_max_it    = AUGMENTATION_MAX_IT;
   contact->data                   = penalty;
   contact->ops->setfromoptions    = ContactSetFromOptions_AugmentedLagrangian;
   contact->ops->setup             = ContactSetUp_AugmentedLagrangian;

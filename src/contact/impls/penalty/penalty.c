@@ -14,6 +14,9 @@
 #include "penaltyimpl.h"
 #include <sys/petsccompat.h>
 
+/* Relative tolerance on contact forces, for which the method itself leaves 1e-3 and more of penetration */
+#define FORCE_RTOL 1e-9
+
 static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
 {
   Penalty  *penalty = (Penalty *)contact->data;
@@ -146,7 +149,8 @@ PetscErrorCode PenaltySetUp(Contact contact)
   PetscCall(PenaltySetUpSprings(contact));
   PetscCall(OuterSolverCreate(contact, "penalty_", n, ComputeResidual, ComputeJacobian, &penalty->outer));
   PetscCall(OuterSolverSetNewton(contact, &penalty->outer, ComputeJacobian, ApplyNewton));
-  PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, CONTACT_FORCE_TOLERANCE * contact->scale.force, 1e-9, 50));
+  PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, CONTACT_FORCE_TOLERANCE * contact->scale.force, FORCE_RTOL,
+                                      OUTER_MAX_ITERATIONS));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(ForcesCreate(contact, &penalty->forces));

@@ -2,6 +2,9 @@
 #include "schwarzimpl.h"
 #include <sys/citations.h>
 
+/* Interface unknowns up to which matrices are dense: their factors take 32 MB on every rank then */
+#define DENSE_LIMIT 2000
+
 static const char *const ConvergenceTests[] = {
     "auto", "position", "contact_position", "mismatch", "SchwarzConvergence", "SCHWARZ_CONVERGENCE_", NULL};
 static const char *const Relaxations[]   = {"fixed", "aitken", "SchwarzRelaxation", "SCHWARZ_RELAXATION_", NULL};
@@ -112,7 +115,8 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
   for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
-  PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, 1e-15, 50));
+  PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL,
+                                      OUTER_MAX_ITERATIONS));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
@@ -240,7 +244,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   schwarz->predictor           = SCHWARZ_PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
   schwarz->condense            = SCHWARZ_CONDENSE_AUTO;
-  schwarz->dense_limit         = 2000;
+  schwarz->dense_limit         = DENSE_LIMIT;
   contact->prescribes          = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;

@@ -1,6 +1,9 @@
 /* Which body of a pair takes displacements, and what the unknowns of the outer iteration are then. */
 #include "schwarzimpl.h"
 
+/* By how much the weight of a node that lies opposite may be off one, and those of others off zero: round-off of geometry */
+#define OPPOSITE 1e-9
+
 static PetscInt CommonDivisor(PetscInt a, PetscInt b)
 {
   while (b) {
@@ -53,7 +56,7 @@ static PetscErrorCode CheckSwappable(Contact contact, Vec row, Vec displacement)
     }
     PetscCall(VecAXPY(displacement, -1, row));
     PetscCall(VecNorm(displacement, NORM_INFINITY, &off));
-    PetscCheck(off < 1e-9, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+    PetscCheck(off < OPPOSITE, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_swap_sides: in pair %s the nodes of the two bodies do not lie opposite each other, and only one side can take "
                "displacements; leave the option out",
                pair->name);
