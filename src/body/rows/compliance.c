@@ -149,6 +149,9 @@ PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *plac
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(place, 3);
+  PetscAssertPointer(leading, 4);
+  PetscAssertPointer(matrix, 5);
   PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyExtendCompliance() first");
   PetscCheck(level >= -1 && level < body->time.substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->time.substeps);
@@ -177,6 +180,7 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(exact, 2);
   *exact = (PetscBool)(body->model.linear && body->integrator->affine);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -232,6 +236,7 @@ PetscErrorCode BodyCountUnknown(Body body, PetscInt n, const PetscInt rows[], Pe
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(unknown, 4);
   *unknown = 0;
   for (PetscInt i = 0; i < n; i++) *unknown += !ComplianceKnows(body->compliance->matrices, rows[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -256,6 +261,7 @@ PetscErrorCode BodyGetComplianceFlops(Body body, PetscLogDouble *flops)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(flops, 2);
   *flops = body->solver ? ConstrainedSolverGetFlops(body->solver) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -21,6 +21,7 @@ PetscErrorCode BodyFeelsEndForce(Body body, PetscBool *feels)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(feels, 2);
   *feels = body->integrator->feels_end_force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

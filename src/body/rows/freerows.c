@@ -20,6 +20,7 @@ PetscErrorCode BodyHasFreeRows(Body body, PetscBool *has)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(has, 2);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   *has = (PetscBool)(body->integrator->ops.freerows != NULL);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -87,6 +87,7 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(matrix, 2);
   if (body->mass.inverse && body->integrator->has_inertia) {
     PetscCall(MultiplyRows(body, body->mass.inverse, matrix));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -71,6 +71,7 @@ PetscErrorCode BodyGetTraces(Body body, BodyTraces *traces)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(traces, 2);
   *traces = body->traces;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
