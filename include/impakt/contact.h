@@ -221,6 +221,9 @@ typedef struct {
   PetscInt       unconverged_steps; /* accepted by -schwarz_unconverged accept */
   PetscInt       set_changes;       /* rounds of the active set beyond the first, all steps */
   PetscInt       set_cycles;        /* steps in which a set came up twice and a rule ended the alternation */
+  PetscInt       limited_steps;     /* made again since contact would have gained energy in them */
+  PetscInt       unlimited_steps;   /* of these, in which it gained energy all the same */
+  PetscInt64     energy_attempts;   /* how often these were made again */
   PetscInt64     inner_iterations;  /* of conjugate gradients on the interface */
   PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
   PetscLogDouble seconds;           /* in sweeps */
@@ -262,6 +265,8 @@ PETSC_EXTERN PetscErrorCode ContactSetFacing(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetFacing(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetBounds(Contact, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetBounds(Contact, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactSetEnergyCap(Contact, PetscBool, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGetEnergyCap(Contact, PetscBool *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);

@@ -101,6 +101,9 @@ static PetscErrorCode AddSchwarz(json_t *root, Contact contact, const Statistics
   PetscCall(SetInteger(object, "unconverged_steps", counts.unconverged_steps));
   PetscCall(SetInteger(object, "set_changes", counts.set_changes));
   PetscCall(SetInteger(object, "set_cycles", counts.set_cycles));
+  PetscCall(SetInteger(object, "limited_steps", counts.limited_steps));
+  PetscCall(SetInteger(object, "unlimited_steps", counts.unlimited_steps));
+  PetscCall(SetInteger(object, "energy_attempts", counts.energy_attempts));
   PetscCall(SetInteger(object, "inner_iterations", counts.inner_iterations));
   PetscCall(SetInteger(object, "rebuilds", counts.rebuilds));
   PetscFunctionReturn(PETSC_SUCCESS);

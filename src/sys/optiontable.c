@@ -97,6 +97,10 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_angle_bound", "a",
      "turn of a contact normal after which its row is built again [rad], default 0.1"},
     {"contact", OPTION_OF_RUN, "contact_tolerance", "g", "depth that does not yet count as penetration [m]"},
+    {"contact", OPTION_OF_RUN, "contact_energy_cap", "true|false",
+     "whether steps in which contact would gain energy are made again with less force at their start, default true"},
+    {"contact", OPTION_OF_RUN, "contact_energy_excess", "e",
+     "part of the energy that contact may gain in the whole run all the same, default 1e-3"},
 
     {"obstacles", OPTION_OF_RUN, "obstacles", "o,p", "names of rigid obstacles; options of obstacle o begin with -o_"},
     {"obstacles", OPTION_OF_OBSTACLE, "obstacle_type", "plane|sphere|cylinder", "shape of the obstacle"},

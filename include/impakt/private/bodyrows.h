@@ -59,6 +59,8 @@ PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
 PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
 PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
+PETSC_EXTERN PetscErrorCode BodyGetRowForces(Body, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyComputeEnergy(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
@@ -81,6 +83,7 @@ PETSC_EXTERN PetscErrorCode BodyRespond(Body);
 PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 
 /* Forces and impulses on rows that act at one end of a step, and corrections of the state there */
+PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);

@@ -148,6 +148,43 @@ typedef struct {
   PetscReal *maxima;         /* work space */
 } ContactResultants;
 
+/* The search for a start of the step that keeps the energy of a group of bodies within its room, see src/contact/energy/limit.c */
+typedef struct {
+  PetscInt  stage;     /* 0: not limited; 1: rows that leave start with less force; 2: all rows start with what they end with */
+  PetscInt  tries;     /* of this stage */
+  PetscBool done;      /* the last attempt is the step */
+  PetscReal part;      /* of the force that leaving rows start with in the last attempt */
+  PetscReal low, high; /* parts with which the energy stays within the room, and does not */
+  PetscReal gain[2];   /* energy that contact has brought with them [J] */
+} ContactSearch;
+
+/* Energy that contact brings and takes, see src/contact/energy/README.md. Work on bodies is positive. */
+typedef struct {
+  PetscBool      limits;                  /* steps must not gain more than there is room for */
+  const char    *unlimited;               /* why the method cannot have that, or NULL */
+  PetscReal      excess;                  /* part of the energy that contact may bring out of nothing in the whole run */
+  PetscReal      scale;                   /* that energy [J] */
+  PetscBool      begun;                   /* it is known */
+  PetscBool      at_rest;                 /* there is none at the start */
+  PetscBool      known;                   /* the work of the present step has been computed */
+  PetscBool      changed;                 /* the step has begun with other forces than those that the last one ended with */
+  PetscBool      again;                   /* the step is made again, with other contact forces at its start */
+  PetscReal      work;                    /* of all accepted steps [J] */
+  PetscReal      step_work;               /* of the present step [J] */
+  PetscReal     *room;                    /* per body: what contact may bring it [J] */
+  PetscInt      *group;                   /* per body: the first body of the group that touches in this step */
+  PetscReal     *group_work;              /* per group, by its first body: work of contact in the step [J] */
+  PetscReal     *pair_sums;               /* per pair, of all ranks: work in the step as made first [J]; whether any row has a force */
+  PetscReal     *first_energy;            /* per body: at the end of the step as made first [J] */
+  PetscReal     *energies;                /* the same, of the last attempt [J] */
+  PetscReal     *first_springs, *springs; /* per pair, of all ranks: gain of the springs in the step [J]; whether any row has a force */
+  PetscReal     *last_force;              /* per row: at the end of the last step [N] */
+  PetscReal     *start_force;             /* per row: that with which the step begins instead [N] */
+  PetscReal     *last, *now;              /* work space, per row */
+  PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
+  ContactSearch *search;                  /* per group, by its first body */
+} ContactEnergy;
+
 /* Work space */
 typedef struct {
   PetscReal     *speeds;     /* per body */
@@ -182,6 +219,7 @@ struct _p_Contact {
   ContactState      end;
   ContactState      start;
   ContactRelease    release;
+  ContactEnergy     energy;
   ContactRanks      ranks;
   ContactResultants resultants;
   ContactCounts     counts;
@@ -235,6 +273,12 @@ PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
+
+PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);

@@ -34,6 +34,7 @@ PetscErrorCode BodySave(Body body)
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
   if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
   PetscCall(BodyStateCopy(&body->state, &body->saved));
+  body->start.changed = PETSC_FALSE;
   /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));

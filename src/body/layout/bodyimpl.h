@@ -7,6 +7,7 @@
 #include <body/layout/integrator.h>
 
 typedef struct _n_LayerElements *LayerElements;
+typedef struct _n_LayerSolver   *LayerSolver;
 typedef struct _n_BodyGram      *BodyGram;
 
 /* Nodes of this rank are numbered owned first, then ghosts */
@@ -52,7 +53,8 @@ typedef struct {
   PetscBool    *contains; /* per local node: it belongs to a contact surface */
   PetscInt      n_dofs;   /* owned */
   PetscInt     *dofs;     /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
-  LayerElements elements; /* those that touch massless nodes; NULL unless the integrator balances them */
+  LayerElements elements; /* those that touch massless nodes; NULL until somebody balances them */
+  LayerSolver   solver;   /* NULL until BodySolveLayer() */
 } BodyLayer;
 
 typedef struct {
@@ -115,6 +117,12 @@ struct _p_Body {
   BodyState         state, saved;  /* as it is; at the start of the controller step */
   BodyState         kept;          /* put aside by BodyKeep() */
   BodyState         substep_start; /* u and v, which are NULL unless loads or the integrator read them */
+  /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
+  struct {
+    Vec       a;              /* the saved acceleration as it was [m/s^2]; NULL until needed */
+    Vec       internal_force; /* work space; NULL for linear bodies [N] */
+    PetscBool changed;        /* the saved acceleration is not that of the last step's end */
+  } start;
   /* interface */
   BodyRows                rows;
   BodyTraces              traces;
@@ -185,6 +193,8 @@ PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySolveLayer(Body, Vec, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyLayerSolverDestroy(LayerSolver *);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[], Vec);

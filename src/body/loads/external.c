@@ -63,19 +63,63 @@ PetscErrorCode BodySetUpWork(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The work from displacement `start` to the present one, by the trapezoidal rule; collective only where there are loads */
+/* The work from displacement `start` to the present one, by the trapezoidal rule; `applied`: what does it at the end [N] */
+static PetscErrorCode ComputeWork(Body body, Vec start, Vec applied, PetscReal *work)
+{
+  Vec sum = body->work.nodes[0], way = body->work.nodes[1];
+
+  PetscFunctionBegin;
+  PetscCall(ComputeApplied(body, applied));
+  PetscCall(VecWAXPY(sum, 1, body->state.applied, applied));
+  PetscCall(VecWAXPY(way, -1, start, body->state.u));
+  PetscCall(VecDot(sum, way, work));
+  *work *= 0.5;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the work from displacement `start` to the present one; collective only where there are loads */
 PetscErrorCode BodyAddWork(Body body, Vec start)
 {
-  Vec       sum = body->work.nodes[2], way = body->work.nodes[1];
+  Vec       applied = body->work.nodes[2];
   PetscReal work;
 
   PetscFunctionBegin;
   if (!body->loads || body->unloaded) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(body->state.applied, sum));
-  PetscCall(ComputeApplied(body, body->state.applied));
-  PetscCall(VecAXPY(sum, 1, body->state.applied));
-  PetscCall(VecWAXPY(way, -1, start, body->state.u));
-  PetscCall(VecDot(sum, way, &work));
-  body->state.external_work += 0.5 * work;
+  PetscCall(ComputeWork(body, start, applied, &work));
+  PetscCall(VecCopy(applied, body->state.applied));
+  body->state.external_work += work;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeEnergy - kinetic and potential energy, less the work of loads, of the present state
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, integrated or saved
+
+  Output Parameter:
+. energy - of all ranks; what only contact and errors of the integrator change [J]
+
+  Level: developer
+
+  Note:
+  Unlike `BodyGetMeasures()`, it has the work of a step that has not been accepted yet.
+
+.seealso: `Body`, `BodyGetMeasures()`, `BodySave()`
+@*/
+PetscErrorCode BodyComputeEnergy(Body body, PetscReal *energy)
+{
+  PetscReal    pending = 0;
+  BodyMeasures measures;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(energy, 2);
+  PetscCall(BodyGetMeasures(body, &measures));
+  if (body->loads && body->time.substeps == 1 && body->state.step != body->saved.step)
+    PetscCall(ComputeWork(body, body->substep_start.u, body->work.nodes[2], &pending));
+  *energy = measures.kinetic + measures.potential - measures.external_work - pending;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

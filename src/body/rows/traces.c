@@ -75,3 +75,36 @@ PetscErrorCode BodyGetTraces(Body body, BodyTraces *traces)
   *traces = body->traces;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodyGetRowForces - contact force along each row at the end of a substep
+
+  Not Collective
+
+  Input Parameters:
++ body    - the `Body`, integrated
+- substep - 1 to the number of substeps
+
+  Output Parameter:
+. force - for each row of this rank: what acts on forced rows, the reaction of prescribed and Robin ones, zero on free ones [N]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetTraces()`, `BodySetConditions()`
+@*/
+PetscErrorCode BodyGetRowForces(Body body, PetscInt substep, PetscReal force[])
+{
+  PetscScalar *reaction, *force_in;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->rows.local) PetscAssertPointer(force, 3);
+  PetscCall(TraceGetLevel(body->traces.reaction, substep, &reaction));
+  PetscCall(TraceGetLevel(body->traces.force_in, substep, &force_in));
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    const BodyCondition condition = body->rows.conditions[i];
+
+    force[i] = condition == BODY_FREE ? 0 : PetscRealPart(condition == BODY_FORCED ? force_in[i] : reaction[i]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

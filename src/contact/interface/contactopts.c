@@ -21,10 +21,16 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.slip_bound, &contact->options.slip_bound, NULL));
   PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "ContactSetBounds",
                              contact->options.angle_bound, &contact->options.angle_bound, NULL));
+  PetscCall(PetscOptionsBool("-contact_energy_cap", "Steps that would gain energy at contact are made again", "ContactSetEnergyCap",
+                             contact->energy.limits, &contact->energy.limits, NULL));
+  PetscCall(PetscOptionsReal("-contact_energy_excess", "Part of the energy that contact may gain in the whole run", "ContactSetEnergyCap",
+                             contact->energy.excess, &contact->energy.excess, NULL));
   PetscOptionsEnd();
   PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
              (double)contact->options.slip_bound, (double)contact->options.angle_bound);
+  PetscCheck(contact->energy.excess >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_energy_excess %g must not be negative", (double)contact->energy.excess);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,7 +96,9 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do
 . -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
-- -contact_tolerance g                                          - depth that does not yet count as penetration [m]
+. -contact_tolerance g                                          - depth that does not yet count as penetration [m]
+. -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
+- -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
 
   Level: beginner
 
@@ -99,7 +107,7 @@ static PetscErrorCode ReadPairs(Contact contact)
   the two bodies are a pair by themselves only where none has been.
 
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
-          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`
+          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`, `ContactSetEnergyCap()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

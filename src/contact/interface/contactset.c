@@ -326,6 +326,70 @@ PetscErrorCode ContactGetBounds(Contact contact, PetscReal *slip, PetscReal *ang
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ContactSetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+. cap     - whether steps are made again; true by default
+- excess  - part of the system's energy that contact may gain in the whole run, 1e-3 by default
+
+  Options Database Keys:
++ -contact_energy_cap (true|false) - whether steps are made again
+- -contact_energy_excess e         - the part
+
+  Level: intermediate
+
+  Notes:
+  A controller step that does not resolve the contact gains energy where rows open: with the trapezoidal rule half the force at the start of
+  the step times the gap at its end. Beyond what contact has lost before and the excess, such a step is made again, with less force at its
+  start on the rows that open, on both bodies.
+
+  The energy is that at the start or, where all starts at rest without strain, the largest one so far.
+
+.seealso: `Contact`, `ContactGetEnergyCap()`, `ContactCounts`
+@*/
+PetscErrorCode ContactSetEnergyCap(Contact contact, PetscBool cap, PetscReal excess)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, cap, 2);
+  PetscValidLogicalCollectiveReal(contact, excess, 3);
+  CheckNotSetUp(contact);
+  PetscCheck(excess >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "The energy excess %g must not be negative",
+             (double)excess);
+  contact->energy.limits = cap;
+  contact->energy.excess = excess;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameters:
++ cap    - whether steps are made again, or `NULL`
+- excess - part of the system's energy, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetEnergyCap()`
+@*/
+PetscErrorCode ContactGetEnergyCap(Contact contact, PetscBool *cap, PetscReal *excess)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (cap) *cap = contact->energy.limits;
+  if (excess) *excess = contact->energy.excess;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Pairs find bodies and obstacles by their names */
 PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])
 {

@@ -45,6 +45,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   }
   PetscCall(ContactSetUpObstacleTraces(contact));
   PetscCall(ContactSetUpResultants(contact));
+  PetscCall(ContactSetUpEnergy(contact));
   PetscCall(ContactSetUpStabilization(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
   contact->setup = PETSC_TRUE;

@@ -36,11 +36,11 @@ PetscErrorCode ContactDestroyResultants(Contact contact)
 }
 
 /* This rank's share of the resultant of a pair on its second body [N] */
-static void SumForces(Contact contact, const ContactPair *pair, PetscReal force[])
+static void SumForces(Contact contact, const ContactPair *pair, const PetscReal rows[], PetscReal force[])
 {
   for (PetscInt d = 0; d < 3; d++) force[d] = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++)
-    for (PetscInt d = 0; d < 3; d++) force[d] += contact->end.force[i] * contact->rows.normal[3 * i + d];
+    for (PetscInt d = 0; d < 3; d++) force[d] += rows[i] * contact->rows.normal[3 * i + d];
 }
 
 /* Adds the controller step that has been accepted to the impulses */
@@ -50,7 +50,8 @@ PetscErrorCode ContactAddImpulses(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal *impulse = contact->resultants.impulse + 6 * p, *last = impulse + 3, force[3];
 
-    SumForces(contact, &contact->pairs[p], force);
+    if (contact->energy.changed) SumForces(contact, &contact->pairs[p], contact->start.force, last);
+    SumForces(contact, &contact->pairs[p], contact->end.force, force);
     for (PetscInt d = 0; d < 3; d++) {
       impulse[d] += 0.5 * contact->step * (last[d] + force[d]);
       last[d] = force[d];
@@ -115,7 +116,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
     if (!contact->held.merger) sums[SUM_AREA] += contact->rows.area[i] * contact->resultants.cross_section[p];
     counted = contact->rows.dof[i];
   }
-  SumForces(contact, pair, sums + SUM_VECTOR);
+  SumForces(contact, pair, contact->end.force, sums + SUM_VECTOR);
   PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
   PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + 6 * p, 3));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -34,6 +34,7 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
                "contact force in them yet, so that to set them to zero would take away internal forces; they do not chatter either. Leave "
                "it at none, or choose -contact_type schwarz or penalty");
   }
+  if (forward) contact->energy.unlimited = "forward increments are known only after the step that they begin";
   if (forward) PetscCall(LagrangeSetUpForward(contact));
   else PetscCall(LagrangeSetUpImplicit(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

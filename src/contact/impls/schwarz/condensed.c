@@ -118,6 +118,7 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
     PetscCall(SideHasMass(contact, &contact->pairs[p], 0, &has));
     if (has) contact->release.fades = PETSC_FALSE;
   }
+  if (prescribes) contact->energy.unlimited = "nodes with mass take velocity and acceleration from their partner";
   if (prescribes) schwarz->mode = SCHWARZ_MASS;
   else if (reason || schwarz->condense == SCHWARZ_CONDENSE_NEVER) schwarz->mode = SCHWARZ_BODIES;
   else schwarz->mode = SCHWARZ_CONDENSED;

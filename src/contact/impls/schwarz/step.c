@@ -127,7 +127,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscCall(RoundsBegin(&schwarz->rounds));
   PetscCall(ContactBeginRelease(contact));
   schwarz->have_base = PETSC_FALSE;
-  if (schwarz->swap && schwarz->started) PetscCall(SchwarzSwapSides(contact));
+  if (schwarz->swap && schwarz->started && !contact->energy.again) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
   for (PetscInt i = 0; i < contact->rows.n; i++)

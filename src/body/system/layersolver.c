@@ -1,0 +1,98 @@
+/*
+   The massless layer of a body under a small force on it, whatever the integrator: with the rest of the body held,
+
+     K_LL du = f_L,   K_LL at the displacement at which it was factored last.
+
+   Explicit bodies have these factors in any case (body/integrator/layerbalance.c), others get them when they are asked for the first time.
+*/
+#include <body/layout/bodyimpl.h>
+
+struct _n_LayerSolver {
+  IS                dofs;          /* of the layer, numbers in the vectors of the body */
+  Vec               rhs, solution; /* of the layer */
+  Vec               point;         /* displacement at which the tangent is taken, on the nodes near the layer [m] */
+  VecScatter        scatter;       /* from a vector of the body */
+  ConstrainedSolver own;           /* factors, where the integrator has none */
+  Mat               K;             /* what they are of */
+};
+
+/* Factors of a layer whose integrator has none of its own */
+static PetscErrorCode CreateFactors(Body body, LayerSolver layer)
+{
+  char prefix[128];
+  Mat  empty;
+
+  PetscFunctionBegin;
+  PetscCall(BodySetUpLayerElements(body, layer->rhs));
+  PetscCall(BodyCreateLayerMatrix(body, &layer->K));
+  PetscCall(BodyCreateLayerVec(body, &layer->point));
+  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)body), 0, body->layer.n_dofs, 0, PETSC_DETERMINE, 0, NULL, 0, NULL, &empty));
+  PetscCall(MatAssemblyBegin(empty, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(empty, MAT_FINAL_ASSEMBLY));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
+  PetscCall(ConstrainedSolverCreate(layer->K, empty, body->mesh.dim, prefix, NULL, &layer->own));
+  PetscCall(MatDestroy(&empty));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Collective; for a body with massless nodes on some rank */
+static PetscErrorCode CreateLayerSolver(Body body)
+{
+  PetscInt    rstart, *global;
+  LayerSolver layer;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&body->layer.solver));
+  layer = body->layer.solver;
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(body->layer.n_dofs, &global));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) global[i] = rstart + body->layer.dofs[i];
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), body->layer.n_dofs, global, PETSC_OWN_POINTER, &layer->dofs));
+  PetscCall(VecCreate(PetscObjectComm((PetscObject)body), &layer->rhs));
+  PetscCall(VecSetSizes(layer->rhs, body->layer.n_dofs, PETSC_DETERMINE));
+  PetscCall(VecSetType(layer->rhs, VECSTANDARD));
+  PetscCall(VecDuplicate(layer->rhs, &layer->solution));
+  PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
+  if (!body->layer.elements) PetscCall(CreateFactors(body, layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* du = K_LL^{-1} f_L on the layer, zero elsewhere; f, laid out as displacements, is left alone. The tangent of a nonlinear body is that at
+   displacement u, but for an explicit one, whose factors are those of its balance. */
+PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du)
+{
+  LayerSolver layer = body->layer.solver;
+  KSP         ksp;
+
+  PetscFunctionBegin;
+  if (!layer) PetscCall(CreateLayerSolver(body));
+  layer = body->layer.solver;
+  if (layer->own && !body->model.linear) {
+    PetscCall(BodyGatherLayer(body, u, layer->point));
+    PetscCall(BodyAssembleLayer(body, layer->point, layer->K));
+    PetscCall(ConstrainedSolverRefactor(layer->own));
+  }
+  PetscCall(VecScatterBegin(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(ConstrainedSolverGetKSP(layer->own ? layer->own : body->solver, &ksp));
+  PetscCall(KSPSolve(ksp, layer->rhs, layer->solution));
+  PetscCall(VecZeroEntries(du));
+  PetscCall(VecScatterBegin(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyLayerSolverDestroy(LayerSolver *layer)
+{
+  PetscFunctionBegin;
+  if (!*layer) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ISDestroy(&(*layer)->dofs));
+  PetscCall(VecDestroy(&(*layer)->rhs));
+  PetscCall(VecDestroy(&(*layer)->solution));
+  PetscCall(VecDestroy(&(*layer)->point));
+  PetscCall(VecScatterDestroy(&(*layer)->scatter));
+  PetscCall(ConstrainedSolverDestroy(&(*layer)->own));
+  PetscCall(MatDestroy(&(*layer)->K));
+  PetscCall(PetscFree(*layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,9 @@
+/* Energy that contact gains and loses. Private to src/contact/energy. */
+#pragma once
+#include <impakt/private/contactimpl.h>
+
+PETSC_INTERN PetscErrorCode ContactComputeWork(Contact);
+PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscReal[]);
+PETSC_INTERN void           ContactFindGroups(Contact);
+PETSC_INTERN PetscReal      ContactGroupRoom(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode ContactGrowRoom(Contact, PetscBool *);

@@ -1,0 +1,234 @@
+/*
+   Steps that would gain energy at contact are made again with other contact forces at their start.
+
+   The trapezoidal rule lets the force on a row do the work 1/2 (l0 + l1) dg: nothing while the row stays closed, -1/2 l1 g0 where it
+   closes, and 1/2 l0 g1 where it opens, which is energy out of nothing. With the force x in place of l0 at the start of the step, on both
+   bodies,
+
+     dE = 1/2 (x + l1) dg - 1/2 (x - l0) C (l1 - l0),
+
+   C being the compliance of the massless layers: exact for linear bodies under Newmark's rule. Where a group of bodies would gain more than
+   it has room for (room.c),
+
+   1. rows that leave start with x = s l0, the largest s in [0, 1] that keeps the energy within the room;
+   2. where s = 0 does not, x of all rows goes to l1, which gives dE = l1 dg - 1/2 (l1 - l0) C (l1 - l0) <= 0 at any step. As l1 answers to
+      x, it is approached by halves: the answer is minus a part of x between 0 and 1, so that what is missing at least halves each time.
+
+   Any x is a step in which the gaps hold at the end, and momentum. So the first attempt that is within the room is as good as the limit. In
+   the energies themselves, which attempts are compared by, the errors of the bodies' own integrators cancel.
+*/
+#include "energyimpl.h"
+
+/* Attempts that look for s, beside s = 0, and for x */
+#define MAX_PARTS  6
+#define MAX_HALVES 40
+/* s is good where what is left of the room is below this part of what has been too much */
+#define PART_LEFT 0.05
+/* Energy that is round-off of the step's energies, in parts of the energy of the run */
+#define ROUND_OFF 1e-11
+
+/* The step from the saved states, with the start forces as they are */
+static PetscErrorCode MakeStep(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+
+      energy->now[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * (energy->start_force[i] - energy->last_force[i]);
+    }
+    PetscCall(BodySetStartForce(contact->bodies[b], energy->now));
+  }
+  PetscCall(PetscArraycpy(contact->start.force, energy->start_force, contact->rows.n));
+  energy->again = energy->changed = PETSC_TRUE;
+  PetscUseTypeMethod(contact, step);
+  energy->again = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Work of contact on each group in the last attempt: that of the first, and by how much more the bodies and springs have now */
+static PetscErrorCode ComputeGroupWork(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(ContactComputeEnergies(contact, energy->energies, energy->springs));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    energy->pair_sums[2 * p + 1] = PetscMax(energy->pair_sums[2 * p + 1], energy->springs[2 * p + 1]);
+  ContactFindGroups(contact);
+  PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group_work[energy->group[b]] += energy->energies[b] - energy->first_energy[b];
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->pair_sums[2 * p] + energy->springs[2 * p] -
+                                                                    energy->first_springs[2 * p];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a group has gained more than it has room for */
+static PetscBool GainsTooMuch(Contact contact, PetscInt g)
+{
+  const ContactEnergy *energy = &contact->energy;
+
+  return (PetscBool)(energy->group_work[g] > ContactGroupRoom(contact, g) + ROUND_OFF * energy->scale);
+}
+
+/* Rows of a group that have left since the start of the step, and have not been marked; on all ranks. Those that end without force but not
+   open have nothing to gain. */
+static PetscErrorCode MarkLeaving(Contact contact, PetscInt g, PetscBool *any)
+{
+  ContactEnergy *energy = &contact->energy;
+  int            found  = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (energy->leaves[i] || energy->group[contact->pairs[contact->rows.pair[i]].body[0]] != g) continue;
+    if (energy->last_force[i] > 0 && contact->end.force[i] <= 0) {
+      energy->leaves[i] = PETSC_TRUE;
+      found             = 1;
+    }
+  }
+  PetscCall(ContactOr(contact, &found));
+  *any = (PetscBool)(found > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Leaving rows of a group start with a part of their force */
+static void StartWithPart(Contact contact, PetscInt g, PetscReal part)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  energy->search[g].part = part;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (energy->leaves[i] && energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g)
+      energy->start_force[i] = part * energy->last_force[i];
+}
+
+/* All rows of a group start half way from what they have started with to what they have ended with */
+static void StartHalfWay(Contact contact, PetscInt g)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g)
+      energy->start_force[i] += 0.5 * (contact->end.force[i] - energy->start_force[i]);
+}
+
+/* Where to look next: energies are nearly a parabola, so that a secant finds its way; well inside the bracket */
+static PetscReal NextPart(const ContactSearch *search, PetscReal room)
+{
+  const PetscReal slope = (search->gain[1] - search->gain[0]) / (search->high - search->low);
+  const PetscReal part = search->low + (room - search->gain[0]) / slope * (1 - 0.5 * PART_LEFT), width = search->high - search->low;
+
+  return PetscMin(PetscMax(part, search->low + 0.05 * width), search->high - 0.05 * width);
+}
+
+/* The next start of a group whose energy has to be kept, from how the last attempt went; done: it is the step */
+static PetscErrorCode SearchOn(Contact contact, PetscInt g)
+{
+  ContactEnergy  *energy = &contact->energy;
+  ContactSearch  *search = &energy->search[g];
+  const PetscReal room = ContactGroupRoom(contact, g), gain = energy->group_work[g];
+  const PetscBool too_much = GainsTooMuch(contact, g);
+  PetscBool       any;
+
+  PetscFunctionBegin;
+  search->tries++;
+  if (search->stage == 0) {
+    if (!too_much) PetscFunctionReturn(PETSC_SUCCESS);
+    *search = (ContactSearch){.stage = 1, .low = -1, .high = 1, .gain = {0, gain}};
+    PetscCall(MarkLeaving(contact, g, &any));
+    if (any) StartWithPart(contact, g, 0);
+    else {
+      search->stage = 2;
+      StartHalfWay(contact, g);
+    }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (search->stage == 1 && search->low < 0 && too_much) { /* s = 0 is not enough for the rows that have left so far */
+    PetscCall(MarkLeaving(contact, g, &any));
+    if (any) StartWithPart(contact, g, 0);
+    else {
+      search->stage = 2;
+      search->tries = 0;
+      StartHalfWay(contact, g);
+    }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (search->stage == 1) {
+    const PetscReal excess = search->gain[1] - room;
+
+    search->gain[too_much ? 1 : 0]             = gain;
+    *(too_much ? &search->high : &search->low) = search->part;
+    if (search->tries < MAX_PARTS && (too_much || room - gain > PART_LEFT * excess)) StartWithPart(contact, g, NextPart(search, room));
+    else if (too_much) StartWithPart(contact, g, search->low);
+    else search->done = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (too_much && search->tries < MAX_HALVES) StartHalfWay(contact, g);
+  else search->done = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Attempts until no group gains more than it has room for */
+static PetscErrorCode Attempt(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+  PetscBool      going  = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  PetscCall(ContactComputeEnergies(contact, energy->first_energy, energy->first_springs));
+  PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
+  PetscCall(PetscArrayzero(energy->leaves, contact->rows.n));
+  PetscCall(PetscArrayzero(energy->search, contact->n_bodies));
+  while (going) {
+    going = PETSC_FALSE;
+    for (PetscInt g = 0; g < contact->n_bodies; g++) {
+      ContactSearch *search = &energy->search[g];
+      const PetscInt before = search->stage;
+
+      if (energy->group[g] != g || search->done) continue;
+      PetscCall(SearchOn(contact, g));
+      if ((search->stage || before) && !search->done) going = PETSC_TRUE;
+    }
+    if (!going) break;
+    PetscCall(MakeStep(contact));
+    PetscCall(ComputeGroupWork(contact));
+    contact->counts.energy_attempts++;
+  }
+  contact->counts.limited_steps++;
+  for (PetscInt g = 0; g < contact->n_bodies; g++)
+    if (energy->group[g] == g && GainsTooMuch(contact, g)) {
+      contact->counts.unlimited_steps++;
+      break;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After the step has been made: makes it again where it has gained energy at contact beyond what there is room for. Collective. */
+PetscErrorCode ContactLimitEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+  PetscBool      any    = PETSC_FALSE, grown;
+
+  PetscFunctionBegin;
+  energy->known     = (PetscBool)!energy->unlimited;
+  energy->changed   = PETSC_FALSE;
+  energy->step_work = 0;
+  if (energy->unlimited) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(energy->last_force, contact->start.force, contact->rows.n));
+  PetscCall(ContactComputeWork(contact));
+  PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group[b] = b;
+  ContactFindGroups(contact);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->pair_sums[2 * p];
+  for (PetscInt g = 0; g < contact->n_bodies && energy->limits; g++)
+    any = (PetscBool)(any || (energy->group[g] == g && GainsTooMuch(contact, g)));
+  if (any) {
+    PetscCall(ContactGrowRoom(contact, &grown));
+    PetscCall(Attempt(contact));
+  }
+  for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

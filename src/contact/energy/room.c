@@ -1,0 +1,150 @@
+/*
+   Accounts of what contact has lost, body by body: the room within which later steps may gain energy again.
+
+   A body begins with an equal share of the excess that is allowed in all. What a pair loses is credited to its two bodies in halves, or to
+   the body alone where its partner is an obstacle. Bodies that touch each other, directly or by others, form a group for as long as
+   they do so; a group may gain what its bodies have room for, and takes it from them in proportion to what each has. So no room becomes
+   negative, and bodies that part have room for what they have lost, whoever they meet next.
+*/
+#include "energyimpl.h"
+
+/* The body that stands for the group of body b */
+static PetscInt Root(const PetscInt group[], PetscInt b)
+{
+  while (group[b] != b) b = group[b];
+  return b;
+}
+
+/* Which bodies have been in one group in this step, in the attempts so far: those whose pairs touch are joined to it */
+void ContactFindGroups(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscInt           first, second;
+
+    if (energy->pair_sums[2 * p + 1] == 0 || pair->obstacle) continue;
+    first                                  = Root(energy->group, pair->body[0]);
+    second                                 = Root(energy->group, pair->body[1]);
+    energy->group[PetscMax(first, second)] = PetscMin(first, second);
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group[b] = Root(energy->group, b);
+}
+
+/* What the group of a body may gain [J] */
+PetscReal ContactGroupRoom(Contact contact, PetscInt group)
+{
+  PetscReal room = 0;
+
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (contact->energy.group[b] == group) room += contact->energy.room[b];
+  return room;
+}
+
+/* The excess is a part of the energy at the start or, where all starts at rest without strain, of the largest that there has been; asked
+   for before a step is limited. Collective. */
+PetscErrorCode ContactGrowRoom(Contact contact, PetscBool *grown)
+{
+  ContactEnergy *energy = &contact->energy;
+  PetscReal      now    = 0;
+
+  PetscFunctionBegin;
+  *grown = PETSC_FALSE;
+  if (!energy->at_rest) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    BodyMeasures measures;
+
+    PetscCall(BodyGetMeasures(contact->bodies[b], &measures));
+    now += measures.kinetic + measures.potential;
+  }
+  if (now <= energy->scale) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += energy->excess * (now - energy->scale) / contact->n_bodies;
+  energy->scale = now;
+  *grown        = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Books the work of the accepted step, which is known for each group, and shares losses among pairs as they were first */
+PetscErrorCode ContactBookWork(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  if (!energy->known) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt g = 0; g < contact->n_bodies; g++) {
+    const PetscReal work = energy->group_work[g];
+    PetscReal       lost = 0, room;
+
+    if (energy->group[g] != g || work == 0) continue;
+    energy->work += work;
+    if (work > 0) {
+      room = ContactGroupRoom(contact, g);
+      for (PetscInt b = 0; b < contact->n_bodies; b++)
+        if (energy->group[b] == g) energy->room[b] *= room > 0 ? PetscMax(1 - work / room, 0) : 0;
+      continue;
+    }
+    for (PetscInt p = 0; p < contact->n_pairs; p++)
+      if (energy->group[contact->pairs[p].body[0]] == g) lost += PetscMax(-energy->pair_sums[2 * p], 0);
+    for (PetscInt b = 0, n = 0; lost == 0 && b < contact->n_bodies; b++) /* not by a pair: to all of the group alike */
+      if (energy->group[b] == g) {
+        for (PetscInt c = n = 0; c < contact->n_bodies; c++) n += energy->group[c] == g;
+        energy->room[b] -= work / n;
+      }
+    for (PetscInt p = 0; lost > 0 && p < contact->n_pairs; p++) {
+      const ContactPair *pair  = &contact->pairs[p];
+      const PetscReal    share = -work * PetscMax(-energy->pair_sums[2 * p], 0) / lost;
+
+      if (energy->group[pair->body[0]] != g) continue;
+      energy->room[pair->body[0]] += pair->obstacle ? share : 0.5 * share;
+      if (!pair->obstacle) energy->room[pair->body[1]] += 0.5 * share;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for what is kept of each body, pair and row */
+PetscErrorCode ContactSetUpEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+  const PetscInt n = contact->n_bodies, rows = contact->rows.n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc6(n, &energy->room, n, &energy->group, n, &energy->group_work, 2 * contact->n_pairs, &energy->pair_sums, n,
+                         &energy->first_energy, n, &energy->energies));
+  PetscCall(PetscCalloc6(rows, &energy->last_force, rows, &energy->start_force, rows, &energy->last, rows, &energy->now, rows,
+                         &energy->leaves, n, &energy->search));
+  PetscCall(PetscCalloc2(2 * contact->n_pairs, &energy->first_springs, 2 * contact->n_pairs, &energy->springs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before the first step: the room that bodies begin with, from the energies of their initial states; collective */
+PetscErrorCode ContactBeginEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  if (energy->begun) PetscFunctionReturn(PETSC_SUCCESS);
+  energy->begun = PETSC_TRUE;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    BodyMeasures measures;
+
+    PetscCall(BodyGetMeasures(contact->bodies[b], &measures));
+    energy->scale += measures.kinetic + measures.potential;
+  }
+  energy->at_rest = (PetscBool)(energy->scale <= 0);
+  energy->scale   = PetscMax(energy->scale, 0);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] = energy->excess * energy->scale / contact->n_bodies;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree6(energy->room, energy->group, energy->group_work, energy->pair_sums, energy->first_energy, energy->energies));
+  PetscCall(PetscFree6(energy->last_force, energy->start_force, energy->last, energy->now, energy->leaves, energy->search));
+  PetscCall(PetscFree2(energy->first_springs, energy->springs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
