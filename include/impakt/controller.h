@@ -32,7 +32,7 @@ typedef struct {
   const PetscReal        *contact_positions;  /* per body: mean position of its contact nodes, 3 numbers [m] */
   const PetscReal        *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
   const ContactPairState *pairs;              /* per pair */
-  PetscInt                sweeps;             /* of this step */
+  PetscInt                sweeps;             /* of this step, or of that part of it which took most */
   PetscReal               penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
 } ControllerFrame;
 
@@ -44,6 +44,8 @@ PETSC_EXTERN PetscErrorCode ControllerCreate(MPI_Comm, Controller *);
 PETSC_EXTERN PetscErrorCode ControllerAddBody(Controller, Body);
 PETSC_EXTERN PetscErrorCode ControllerSetTimes(Controller, PetscReal, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode ControllerSetFromOptions(Controller);
+PETSC_EXTERN PetscErrorCode ControllerSetEnergyGuard(Controller, PetscReal);
+PETSC_EXTERN PetscErrorCode ControllerGetEnergyGuard(Controller, PetscReal *);
 PETSC_EXTERN PetscErrorCode ControllerSetUp(Controller);
 PETSC_EXTERN PetscErrorCode ControllerMonitorSet(Controller, ControllerMonitorFn *, void *, PetscErrorCode (*)(void **));
 PETSC_EXTERN PetscErrorCode ControllerSetMonitorInterval(Controller, PetscInt);

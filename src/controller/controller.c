@@ -25,6 +25,7 @@ PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
   PetscCall(ControllerInitializePackage());
   PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm,
                               ControllerDestroy, ControllerView));
+  (*controller)->guard.part = ENERGY_GUARD;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,6 +61,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
   PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
                          &controller->contact_velocities, n_pairs, &controller->pair_states));
+  PetscCall(PetscCalloc1(n, &controller->guard.start));
   for (PetscInt p = 0; p < n_pairs; p++) {
     Body first, second;
 
@@ -97,6 +99,7 @@ PetscErrorCode ControllerSolve(Controller controller)
 {
   PetscLogDouble wall[2];
   struct rusage  cpu[2];
+  PetscInt       parts;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
@@ -104,9 +107,17 @@ PetscErrorCode ControllerSolve(Controller controller)
   PetscCall(PetscTime(&wall[0]));
   getrusage(RUSAGE_SELF, &cpu[0]);
   PetscCall(ControllerNotify(controller, 0));
+  PetscCall(ContactGetParts(controller->contact, &parts));
   for (PetscInt step = 1; step <= controller->steps; step++) {
-    PetscCall(ContactStep(controller->contact));
-    PetscCall(ContactAccept(controller->contact));
+    controller->sweeps = 0;
+    for (PetscInt part = 0; part < parts; part++) {
+      ContactCounts counts;
+
+      PetscCall(ContactStep(controller->contact));
+      PetscCall(ContactAccept(controller->contact));
+      PetscCall(ContactGetCounts(controller->contact, &counts));
+      controller->sweeps = PetscMax(controller->sweeps, counts.sweeps);
+    }
     PetscCall(ControllerNotify(controller, step));
   }
   PetscCall(PetscTime(&wall[1]));
@@ -201,6 +212,7 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscCall(ContactDestroy(&c->contact));
   for (PetscInt b = 0; b < c->n_bodies; b++) PetscCall(BodyDestroy(&c->bodies[b]));
   PetscCall(PetscFree(c->bodies));
+  PetscCall(PetscFree(c->guard.start));
   PetscCall(PetscFree5(c->measures, c->has_obstacle, c->contact_positions, c->contact_velocities, c->pair_states));
   PetscCall(PetscHeaderDestroy(controller));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -27,11 +27,22 @@ struct _p_Controller {
   PetscBool        *has_obstacle; /* per body: it may touch an obstacle, whose force is one from outside */
   PetscReal        *contact_positions, *contact_velocities;
   ContactPairState *pair_states;
+  PetscInt          sweeps;
+  /* energy guard */
+  struct {
+    PetscReal  part;    /* of the energy, that a run may gain; 0: no guard */
+    PetscReal *start;   /* energy of each body at the start [J] */
+    PetscReal  largest; /* energy of all bodies so far [J] */
+  } guard;
   /* cost */
   PetscLogDouble setup_seconds, wall_seconds, cpu_seconds;
   PetscBool      setup;
 };
 
-/* controller.c calls terminal.c and monitors.c, terminal.c calls monitors.c */
+#define ENERGY_GUARD 0.05 /* by default */
+
+/* controller.c calls the others; terminal.c calls monitors.c, which calls guard.c; controllerset.c calls guard.c */
+PETSC_INTERN PetscErrorCode ControllerReadEnergyGuard(Controller);
+PETSC_INTERN PetscErrorCode ControllerGuardEnergy(Controller, const ControllerFrame *);
 PETSC_INTERN PetscErrorCode ControllerNotify(Controller, PetscInt);
 PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);

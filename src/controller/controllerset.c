@@ -173,6 +173,7 @@ static PetscErrorCode ReadTimes(Controller controller)
   PetscCheck((set_end && set_step) || known, comm, PETSC_ERR_USER_INPUT, "-time_end and -time_step are needed, in s");
   PetscCall(CheckTimes(comm, PETSC_ERR_USER_INPUT, start, end, step));
   PetscCall(ControllerSetTimes(controller, start, end, step));
+  PetscCall(ControllerReadEnergyGuard(controller));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -39,7 +39,6 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .contact_positions  = controller->contact_positions,
                            .contact_velocities = controller->contact_velocities,
                            .pairs              = controller->pair_states};
-  ContactCounts   counts;
 
   PetscFunctionBegin;
   /* not summed up, so that round-off does not pile up over many steps */
@@ -51,9 +50,9 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
   }
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
-  PetscCall(ContactGetCounts(controller->contact, &counts));
-  frame.sweeps = step ? counts.sweeps : 0;
+  frame.sweeps = controller->sweeps;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
+  PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)
     PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -52,6 +52,8 @@ PETSC_EXTERN PetscErrorCode BodySetTractionType(Body, BodyTractionType);
 PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
 
 /* One controller step */
+PETSC_EXTERN PetscErrorCode BodySetUpSteps(Body);
+PETSC_EXTERN PetscErrorCode BodyShareControllerStep(Body, PetscInt);
 PETSC_EXTERN PetscErrorCode BodySave(Body);
 PETSC_EXTERN PetscErrorCode BodyRestore(Body);
 PETSC_EXTERN PetscErrorCode BodyKeep(Body);

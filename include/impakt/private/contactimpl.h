@@ -68,10 +68,12 @@ typedef struct {
   ContactLaw           law;
   ContactConstraint    constraint;
   ContactStabilization stabilization;
-  PetscBool            facing;      /* pairs of whole bodies keep only the faces that see each other at the start */
-  PetscReal            slip_bound;  /* slip after which rows are built again [parts of a face] */
-  PetscReal            angle_bound; /* turn of a normal after which they are [rad] */
-  PetscReal            tolerance;   /* depth that does not yet count as penetration [m] */
+  PetscBool            facing;         /* pairs of whole bodies keep only the faces that see each other at the start */
+  PetscReal            slip_bound;     /* slip after which rows are built again [parts of a face] */
+  PetscReal            angle_bound;    /* turn of a normal after which they are [rad] */
+  PetscBool            allow_unstable; /* what is known to gain energy runs all the same */
+  PetscBool            shared_times;   /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
+  PetscReal            tolerance;      /* depth that does not yet count as penetration [m] */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -204,7 +206,8 @@ struct _p_Contact {
   ContactPair   *pairs;
   PetscInt       n_obstacles;
   Obstacle      *obstacles;
-  PetscReal      step; /* controller step [s] */
+  PetscInt       parts; /* of a controller step, see ContactGetParts() */
+  PetscReal      step;  /* one part of the controller step [s] */
   ContactOptions options;
   ContactScale   scale;
   /* What goes between contact and bodies */
@@ -285,6 +288,8 @@ PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
+PETSC_INTERN PetscErrorCode ContactRefuseUnstable(Contact, PetscBool, const char[]);
+PETSC_INTERN PetscErrorCode ContactHasMass(Contact, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactStabilize(Contact);
 
 PETSC_INTERN PetscErrorCode ContactCreate_Schwarz(Contact);

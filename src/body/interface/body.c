@@ -158,6 +158,73 @@ static PetscErrorCode SetUpRows(Body body)
 }
 
 /*@
+  BodySetUpSteps - finds out how many substeps the body makes in a controller step
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with mesh, material, interface and controller step
+
+  Level: developer
+
+  Note:
+  The first part of `BodySetUp()`: makes the mass, on which stable steps depend.
+
+.seealso: `Body`, `BodySetUp()`, `BodyGetSubsteps()`, `BodyShareControllerStep()`
+@*/
+PetscErrorCode BodySetUpSteps(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->time.substeps) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodySetUpDiscretization(body));
+  PetscCall(SetUpRows(body));
+  if (body->mass.redistribute && body->rows.global) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
+  PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));
+  PetscCall(BodyStateCreate(body, PETSC_FALSE, &body->saved));
+  for (PetscInt k = 0; k < 3; k++) PetscCall(BodyCreateVec(body, &body->work.nodes[k]));
+  if (body->rows.global) { /* else nobody repeats a step */
+    PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->kept));
+    PetscCall(BodyCreateVec(body, &body->iterate.u));
+  }
+  PetscCall(BodySetUpFreeRows(body));
+  PetscCall(BodySetUpMass(body));
+  PetscCall(BodyCheckHeld(body));
+  body->time.shared = 1;
+  PetscCall(BodySetUpSubsteps(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyShareControllerStep - divides the controller step at times that all bodies have
+
+  Logically Collective
+
+  Input Parameters:
++ body - the `Body`, after `BodySetUpSteps()`, before `BodySetUp()`
+- n    - number of parts, of which each has a whole number of the body's substeps
+
+  Level: developer
+
+  Note:
+  From then on `BodyIntegrate()` advances the body through one part, and `BodyGetSubsteps()` counts the substeps of one.
+
+.seealso: `Body`, `BodySetUpSteps()`
+@*/
+PetscErrorCode BodyShareControllerStep(Body body, PetscInt n)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(!body->setup && n > 0 && body->time.substeps % n == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Body '%s': %" PetscInt_FMT " substeps cannot be divided into %" PetscInt_FMT " parts", body->hdr.name, body->time.substeps,
+             n);
+  body->time.shared *= n;
+  body->time.substeps /= n;
+  body->time.controller_step /= n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodySetUp - makes mass, matrices, integrator and initial state
 
   Collective
@@ -174,20 +241,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodySetUpDiscretization(body));
-  PetscCall(SetUpRows(body));
-  if (body->mass.redistribute && body->rows.global) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
-  PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));
-  PetscCall(BodyStateCreate(body, PETSC_FALSE, &body->saved));
-  for (PetscInt k = 0; k < 3; k++) PetscCall(BodyCreateVec(body, &body->work.nodes[k]));
-  if (body->rows.global) { /* else nobody repeats a step */
-    PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->kept));
-    PetscCall(BodyCreateVec(body, &body->iterate.u));
-  }
-  PetscCall(BodySetUpFreeRows(body));
-  PetscCall(BodySetUpMass(body));
-  PetscCall(BodyCheckHeld(body));
-  PetscCall(BodySetUpSubsteps(body));
+  PetscCall(BodySetUpSteps(body));
   PetscCall(CreateTraces(body));
   PetscCall(BodyCreateCompliance(body));
   PetscCall(BodySetUpTime(body));

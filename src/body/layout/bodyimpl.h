@@ -59,10 +59,11 @@ typedef struct {
 
 typedef struct {
   TS        ts;
-  PetscReal start, controller_step, step; /* of the simulation; from one synchronisation of all bodies to the next; substep [s] */
+  PetscReal start, controller_step, step; /* of the simulation; one part of the controller step; substep [s] */
   PetscReal requested_step;               /* 0: the controller step; < 0: automatic */
   PetscReal stable_step;                  /* 0 until BodyComputeStableStep() */
-  PetscInt  substeps;                     /* of a controller step */
+  PetscInt  shared;                       /* parts of the controller step, at whose ends all bodies have a time in common */
+  PetscInt  substeps;                     /* of one part */
   PetscInt  substep;                      /* the one that is being made, 0 to substeps - 1 */
 } BodyTime;
 

@@ -33,12 +33,13 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCall(
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
-  (*contact)->options.facing      = PETSC_TRUE;
-  (*contact)->options.slip_bound  = SLIP_BOUND;
-  (*contact)->energy.limits       = PETSC_TRUE;
-  (*contact)->energy.excess       = ENERGY_EXCESS;
-  (*contact)->options.angle_bound = ANGLE_BOUND;
-  (*contact)->options.tolerance   = PETSC_DEFAULT;
+  (*contact)->options.facing       = PETSC_TRUE;
+  (*contact)->options.shared_times = PETSC_TRUE;
+  (*contact)->options.slip_bound   = SLIP_BOUND;
+  (*contact)->energy.limits        = PETSC_TRUE;
+  (*contact)->energy.excess        = ENERGY_EXCESS;
+  (*contact)->options.angle_bound  = ANGLE_BOUND;
+  (*contact)->options.tolerance    = PETSC_DEFAULT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,7 +143,7 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 }
 
 /*@
-  ContactStep - advances all bodies from their saved states through one controller step, under contact
+  ContactStep - advances all bodies from their saved states through one controller step, or one part of it, under contact
 
   Collective
 
@@ -152,7 +153,7 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
   Level: developer
 
   Note:
-  The step becomes final by `ContactAccept()`.
+  The step becomes final by `ContactAccept()`. `ContactGetParts()` tells how many make a controller step.
 
 .seealso: `Contact`, `ContactAccept()`, `BodySave()`
 @*/

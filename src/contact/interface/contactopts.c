@@ -21,6 +21,10 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.slip_bound, &contact->options.slip_bound, NULL));
   PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "ContactSetBounds",
                              contact->options.angle_bound, &contact->options.angle_bound, NULL));
+  PetscCall(PetscOptionsBool("-contact_allow_unstable", "What is known to gain energy runs all the same", "ContactSetAllowUnstable",
+                             contact->options.allow_unstable, &contact->options.allow_unstable, NULL));
+  PetscCall(PetscOptionsBool("-contact_shared_times", "Contact holds at all times that all bodies have", "ContactSetSharedTimes",
+                             contact->options.shared_times, &contact->options.shared_times, NULL));
   PetscCall(PetscOptionsBool("-contact_energy_cap", "Steps that would gain energy at contact are made again", "ContactSetEnergyCap",
                              contact->energy.limits, &contact->energy.limits, NULL));
   PetscCall(PetscOptionsReal("-contact_energy_excess", "Part of the energy that contact may gain in the whole run", "ContactSetEnergyCap",
@@ -97,6 +101,9 @@ static PetscErrorCode ReadPairs(Contact contact)
                                                                  start (default); false where bodies move round each other, as balls do
 . -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
 . -contact_tolerance g                                          - depth that does not yet count as penetration [m]
+. -contact_allow_unstable (true|false)                          - whether choices that are known to gain energy run all the same
+. -contact_shared_times (true|false)                            - whether contact holds at all times that all bodies have in common, or
+                                                                 at the ends of controller steps alone
 . -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
 - -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
 
@@ -107,7 +114,8 @@ static PetscErrorCode ReadPairs(Contact contact)
   the two bodies are a pair by themselves only where none has been.
 
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
-          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`, `ContactSetEnergyCap()`
+          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`, `ContactSetSharedTimes()`,
+`ContactSetEnergyCap()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

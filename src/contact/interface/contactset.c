@@ -327,6 +327,114 @@ PetscErrorCode ContactGetBounds(Contact contact, PetscReal *slip, PetscReal *ang
 }
 
 /*@
+  ContactSetAllowUnstable - whether choices that are known to gain energy run all the same
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- allow   - false by default
+
+  Options Database Key:
+. -contact_allow_unstable (true|false) - whether they do
+
+  Level: intermediate
+
+  Note:
+  Refused otherwise, where contact nodes have mass: Robin and impedance conditions, and Lagrange multipliers at the end of the step without
+a stabilization. To compare with.
+
+.seealso: `Contact`, `ContactGetAllowUnstable()`, `ContactSetEnergyCap()`
+@*/
+PetscErrorCode ContactSetAllowUnstable(Contact contact, PetscBool allow)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, allow, 2);
+  CheckNotSetUp(contact);
+  contact->options.allow_unstable = allow;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetAllowUnstable - whether choices that are known to gain energy run all the same
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. allow - whether they do
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetAllowUnstable()`
+@*/
+PetscErrorCode ContactGetAllowUnstable(Contact contact, PetscBool *allow)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(allow, 2);
+  *allow = contact->options.allow_unstable;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetSharedTimes - whether contact holds at all times that all bodies have in common, or at the ends of controller steps alone
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- shared  - true by default
+
+  Options Database Key:
+. -contact_shared_times (true|false) - whether it does
+
+  Level: intermediate
+
+  Note:
+  Where the substeps of all bodies have a common divisor, a controller step is made in so many parts, each like a controller step of its own
+  for the contact: rows join and leave, and monitors see the end of the last one.
+
+.seealso: `Contact`, `ContactGetSharedTimes()`, `ContactGetParts()`
+@*/
+PetscErrorCode ContactSetSharedTimes(Contact contact, PetscBool shared)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, shared, 2);
+  CheckNotSetUp(contact);
+  contact->options.shared_times = shared;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetSharedTimes - whether contact holds at all times that all bodies have in common
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. shared - whether it does
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetSharedTimes()`
+@*/
+PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(shared, 2);
+  *shared = contact->options.shared_times;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
 
   Logically Collective

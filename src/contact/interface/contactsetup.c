@@ -13,6 +13,55 @@ static PetscErrorCode AllocateBodies(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Parts of the controller step at whose ends all bodies have a time in common: contact holds at each of them, and rows join and leave */
+static PetscErrorCode ShareControllerStep(Contact contact)
+{
+  PetscInt common = 0;
+
+  PetscFunctionBegin;
+  contact->parts = 1;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt substeps;
+
+    PetscCall(BodySetUpSteps(contact->bodies[b]));
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    while (substeps) { /* the greatest common divisor */
+      const PetscInt rest = common % substeps;
+
+      common   = substeps;
+      substeps = rest;
+    }
+  }
+  if (!contact->options.shared_times || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->parts = common;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyShareControllerStep(contact->bodies[b], common));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetParts - number of parts that a controller step has, at whose ends all bodies have a time in common
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameter:
+. parts - calls of `ContactStep()` and `ContactAccept()` that make a controller step
+
+  Level: developer
+
+.seealso: `Contact`, `ContactStep()`, `ContactSetSharedTimes()`
+@*/
+PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(parts, 2);
+  *parts = contact->parts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSetUp - finds the contact rows, sets up the bodies and the method
 
@@ -39,6 +88,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactFindDimension(contact));
   PetscCall(ContactSetUpRows(contact));
   PetscCall(ContactSetUpScales(contact));
+  PetscCall(ShareControllerStep(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));

@@ -29,8 +29,39 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
                "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose "
                "these, or -contact_stabilization naive",
                ((PetscObject)contact)->type_name);
+  contact->energy.unlimited = "a stabilization changes accelerations or forces between steps";
   if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(ImpaktCite(CITE_CONTACT_STABILIZED));
   PetscCall(PetscCalloc1(contact->rows.n, &contact->work.stabilized));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends with an error where a choice is known to gain energy, unless the user wants it all the same; what: the choice, and what to do */
+PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const char what[])
+{
+  PetscFunctionBegin;
+  PetscCheck(!unstable || contact->options.allow_unstable, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "%s; -contact_allow_unstable true lets it run all the same", what);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes */
+PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *has)
+{
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const PetscInt sides = contact->pairs[p].obstacle ? 1 : 2;
+    PetscInt       with  = 0;
+
+    for (PetscInt side = 0; side < sides; side++) {
+      PetscBool massless, without_inertia;
+
+      PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[side]], &massless));
+      PetscCall(BodyIsStatic(contact->bodies[contact->pairs[p].body[side]], &without_inertia));
+      with += !massless && !without_inertia;
+    }
+    *has = (PetscBool)(*has || (all_sides ? with == sides : with > 0));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

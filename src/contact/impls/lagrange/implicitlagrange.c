@@ -362,10 +362,19 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   /* SNESVI wants all of S as a matrix: dense whatever its size, which ForcesCheckDense() bounds; nothing is iterated for */
   const InterfaceSettings settings = {.prefix = "lagrange_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
   ImplicitLagrange       *lagrange;
+  PetscBool               has_mass;
 
   PetscFunctionBegin;
   PetscCall(ForcesCheckBodies(contact, "lagrange"));
   PetscCall(ForcesCheckDense(contact, "lagrange"));
+  PetscCall(ContactHasMass(contact, PETSC_TRUE, &has_mass));
+  PetscCall(ContactRefuseUnstable(
+      contact,
+      (PetscBool)(has_mass && contact->options.constraint == CONTACT_CONSTRAINT_GAP &&
+                  contact->options.stabilization == CONTACT_STABILIZATION_NONE),
+      "-contact_type lagrange: where the contact nodes of both sides have mass, multipliers at the end of the step swing and gain energy; "
+      "set "
+      "-<body>_mass_redistribute true, or choose -contact_stabilization contact_stabilized, or -contact_type schwarz"));
   PetscCheck(contact->options.law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and "
              "without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");

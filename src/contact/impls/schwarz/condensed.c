@@ -72,8 +72,8 @@ static PetscErrorCode CondensationPrevented(Contact contact, PetscBool mass, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the pairs whose Dirichlet side makes substeps that its partner does not share: their forces are the unknowns, see
- * SchwarzSetUpSides() */
+/* Marks the pairs whose Dirichlet side makes substeps that its partner does not share, or at whose ends contact does not hold: their forces
+   are the unknowns, see SchwarzSetUpSides() */
 static PetscErrorCode MarkUnshared(Contact contact)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
@@ -85,7 +85,8 @@ static PetscErrorCode MarkUnshared(Contact contact)
 
     if (pair->obstacle) continue;
     for (PetscInt side = 0; side < 2; side++) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[side]], &substeps[side]));
-    pair->by_force = (PetscBool)(substeps[1] % substeps[0] != 0 || (schwarz->swap && substeps[0] % substeps[1] != 0));
+    if (contact->options.shared_times) pair->by_force = (PetscBool)(substeps[0] > 1 || (schwarz->swap && substeps[1] > 1));
+    else pair->by_force = (PetscBool)(substeps[1] % substeps[0] != 0 || (schwarz->swap && substeps[0] % substeps[1] != 0));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

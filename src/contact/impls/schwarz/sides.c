@@ -28,7 +28,7 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
   PetscCall(BodyGetSubsteps(contact->bodies[pair->body[0]], &substeps[0]));
   substeps[1] = substeps[0]; /* of an obstacle */
   if (!pair->obstacle) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1]], &substeps[1]));
-  if (pair->by_force) *levels = CommonDivisor(substeps[0], substeps[1]);
+  if (pair->by_force) *levels = contact->options.shared_times ? 1 : CommonDivisor(substeps[0], substeps[1]);
   else *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

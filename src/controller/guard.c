@@ -1,0 +1,127 @@
+/* The energy guard: a run that gains energy ends. */
+#include "controllerimpl.h"
+
+/* Energy at the start that is below this part of the largest since then is round-off: all starts at rest without strain */
+#define NOTHING_AT_START 1e-9
+
+/*@
+  ControllerSetEnergyGuard - sets how much energy a run may gain before it ends with an error
+
+  Logically Collective
+
+  Input Parameters:
++ controller - the `Controller`, not yet set up
+- part       - of the energy at the start or, where all starts at rest without strain, of the largest since then; 0 for no guard; 0.05 by
+               default
+
+  Options Database Key:
+. -energy_guard part - how much
+
+  Level: intermediate
+
+  Note:
+  What is compared is kinetic and potential energy of all bodies and energy of penalty springs, less the work of loads and of held
+  displacements, at the end of each controller step. Where a body is static there is no guard: what its contact forces have done is known up
+  to their lag behind it by a step.
+
+.seealso: `Controller`, `ControllerGetEnergyGuard()`, `ContactSetEnergyCap()`
+@*/
+PetscErrorCode ControllerSetEnergyGuard(Controller controller, PetscReal part)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(controller, part, 2);
+  PetscCheck(!controller->setup, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE, "Call before ControllerSetUp()");
+  PetscCheck(part >= 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE, "The energy guard %g must not be negative",
+             (double)part);
+  controller->guard.part = part;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetEnergyGuard - how much energy a run may gain before it ends with an error
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameter:
+. part - of the energy; 0: no guard
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerSetEnergyGuard()`
+@*/
+PetscErrorCode ControllerGetEnergyGuard(Controller controller, PetscReal *part)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(part, 2);
+  *part = controller->guard.part;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -energy_guard */
+PetscErrorCode ControllerReadEnergyGuard(Controller controller)
+{
+  PetscReal part = controller->guard.part;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)controller);
+  PetscCall(PetscOptionsReal("-energy_guard", "Energy that a run may gain before it ends", "ControllerSetEnergyGuard", part, &part, NULL));
+  PetscOptionsEnd();
+  PetscCheck(part >= 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT,
+             "-energy_guard %g must not be negative; 0 switches it off", (double)part);
+  controller->guard.part = part;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal BodyEnergy(const BodyMeasures *measures)
+{
+  return measures->kinetic + measures->potential - measures->external_work;
+}
+
+/* The body that has gained most since the start, and the pair with the largest force, for whoever looks for the cause */
+static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame, PetscReal gain)
+{
+  PetscInt    body = 0, pair = 0;
+  const char *pair_name = "none", *body_name;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 1; b < frame->n_bodies; b++)
+    if (BodyEnergy(&frame->bodies[b]) - controller->guard.start[b] > BodyEnergy(&frame->bodies[body]) - controller->guard.start[body])
+      body = b;
+  for (PetscInt p = 1; p < frame->n_pairs; p++)
+    if (PetscAbsReal(frame->pairs[p].force) > PetscAbsReal(frame->pairs[pair].force)) pair = p;
+  if (frame->n_pairs) PetscCall(ContactGetPair(controller->contact, pair, &pair_name, NULL, NULL));
+  PetscCall(PetscObjectGetName((PetscObject)controller->bodies[body], &body_name));
+  SETERRQ(PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
+          "The energy has grown by %.3g %% at time %.9g s (controller step %" PetscInt_FMT
+          "), most of it in body '%s'; the pair with the largest force is %s. Choose a smaller -time_step, or let "
+          "-contact_energy_cap be true; -energy_guard %g ends runs that gain more than this part of their energy, 0 none",
+          (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, (double)controller->guard.part);
+}
+
+/* Ends the run where energies have grown beyond the guard; collective, with the same frame on every rank */
+PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFrame *frame)
+{
+  PetscReal now = frame->penalty_energy, start = 0, size = 0, scale;
+
+  PetscFunctionBegin;
+  if (controller->guard.part == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < frame->n_bodies; b++) {
+    PetscBool without_inertia;
+
+    PetscCall(BodyIsStatic(controller->bodies[b], &without_inertia));
+    if (without_inertia) PetscFunctionReturn(PETSC_SUCCESS);
+    if (frame->step == 0) controller->guard.start[b] = BodyEnergy(&frame->bodies[b]);
+    now += BodyEnergy(&frame->bodies[b]);
+    start += controller->guard.start[b];
+    size += frame->bodies[b].kinetic + frame->bodies[b].potential;
+  }
+  controller->guard.largest = PetscMax(controller->guard.largest, size);
+  scale                     = start > NOTHING_AT_START * controller->guard.largest ? start : controller->guard.largest;
+  if (now - start > controller->guard.part * scale) PetscCall(EndRun(controller, frame, (now - start) / scale));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
