@@ -11,6 +11,9 @@ struct _ContactOps {
   PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
   PetscErrorCode (*rowschanged)(Contact); /* called after rows have been built again: those marked as changed have new entries */
   PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of a step, before the next step starts from them */
+  /* (NULL) energy that the method's springs store on a row at a gap [J]; without it nobody knows what contact gains, and it is not limited
+   */
+  PetscReal (*stored)(Contact, PetscInt, PetscReal);
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -169,6 +172,7 @@ typedef struct {
   PetscBool      begun;                   /* it is known */
   PetscBool      at_rest;                 /* there is none at the start */
   PetscBool      known;                   /* the work of the present step has been computed */
+  PetscBool      rebuilt;                 /* rows have been built again at the start of the present step */
   PetscBool      changed;                 /* the step has begun with other forces than those that the last one ended with */
   PetscBool      again;                   /* the step is made again, with other contact forces at its start */
   PetscReal      work;                    /* of all accepted steps [J] */
@@ -176,11 +180,15 @@ typedef struct {
   PetscReal     *room;                    /* per body: what contact may bring it [J] */
   PetscInt      *group;                   /* per body: the first body of the group that touches in this step */
   PetscReal     *group_work;              /* per group, by its first body: work of contact in the step [J] */
+  PetscReal     *first_work;              /* the same in the step as made first, by the first bodies of the groups then [J] */
   PetscReal     *pair_sums;               /* per pair, of all ranks: work in the step as made first [J]; whether any row has a force */
+  PetscReal     *start_energy;            /* per body: at the start of the step, where rows have been built again [J] */
   PetscReal     *first_energy;            /* per body: at the end of the step as made first [J] */
   PetscReal     *energies;                /* the same, of the last attempt [J] */
   PetscReal     *first_springs, *springs; /* per pair, of all ranks: gain of the springs in the step [J]; whether any row has a force */
   PetscReal     *last_force;              /* per row: at the end of the last step [N] */
+  PetscReal     *accepted_force;          /* the same, also of rows that have been let go since, with their surfaces [N] */
+  PetscReal     *last_stored;             /* per row: what springs had stored then [J] */
   PetscReal     *start_force;             /* per row: that with which the step begins instead [N] */
   PetscReal     *last, *now;              /* work space, per row */
   PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
@@ -245,6 +253,7 @@ PETSC_EXTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_EXTERN PetscErrorCode ContactComputeGaps(Contact);
 PETSC_EXTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactOr(Contact, int *);
+PETSC_EXTERN PetscReal      ContactStoresNothing(Contact, PetscInt, PetscReal);
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
@@ -279,6 +288,7 @@ PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
 
 PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactNoteRebuild(Contact);
 PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);

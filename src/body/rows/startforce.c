@@ -57,7 +57,7 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
 
   Input Parameters:
 + body  - the `Body`, saved
-- force - by how much more than at the end of the last step acts along each row of this rank [N]; `NULL`: no change
+- force - by how much more than at the end of the last step acts along each row of this rank [N]
 
   Level: developer
 
@@ -72,16 +72,15 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
-  if (!body->integrator->has_inertia || (!force && !body->start.changed)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.a) {
     PetscCall(BodyCreateVec(body, &body->start.a));
     if (!body->model.linear) PetscCall(BodyCreateVec(body, &body->start.internal_force));
   }
   if (body->start.changed) PetscCall(VecCopy(body->start.a, body->saved.a));
   else PetscCall(VecCopy(body->saved.a, body->start.a));
-  body->start.changed = (PetscBool)(force != NULL);
+  body->start.changed = PETSC_TRUE;
   PetscCall(BodyRestore(body));
-  if (!force) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComputeChange(body, force, body->state.a));
   PetscCall(VecAXPY(body->saved.a, 1, body->state.a));
   PetscCall(BodyRestore(body));

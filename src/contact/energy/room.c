@@ -71,7 +71,10 @@ PetscErrorCode ContactBookWork(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
+  energy->rebuilt = PETSC_FALSE;
   if (!energy->known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(energy->accepted_force, contact->end.force, contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) energy->last_stored[i] = (*contact->ops->stored)(contact, i, contact->end.gap[i]);
   for (PetscInt g = 0; g < contact->n_bodies; g++) {
     const PetscReal work = energy->group_work[g];
     PetscReal       lost = 0, room;
@@ -110,6 +113,7 @@ PetscErrorCode ContactSetUpEnergy(Contact contact)
   const PetscInt n = contact->n_bodies, rows = contact->rows.n;
 
   PetscFunctionBegin;
+  PetscCall(PetscCalloc4(n, &energy->start_energy, n, &energy->first_work, rows, &energy->last_stored, rows, &energy->accepted_force));
   PetscCall(PetscCalloc6(n, &energy->room, n, &energy->group, n, &energy->group_work, 2 * contact->n_pairs, &energy->pair_sums, n,
                          &energy->first_energy, n, &energy->energies));
   PetscCall(PetscCalloc6(rows, &energy->last_force, rows, &energy->start_force, rows, &energy->last, rows, &energy->now, rows,
@@ -143,6 +147,7 @@ PetscErrorCode ContactDestroyEnergy(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
+  PetscCall(PetscFree4(energy->start_energy, energy->first_work, energy->last_stored, energy->accepted_force));
   PetscCall(PetscFree6(energy->room, energy->group, energy->group_work, energy->pair_sums, energy->first_energy, energy->energies));
   PetscCall(PetscFree6(energy->last_force, energy->start_force, energy->last, energy->now, energy->leaves, energy->search));
   PetscCall(PetscFree2(energy->first_springs, energy->springs));

@@ -4,10 +4,13 @@
 */
 #include "energyimpl.h"
 
-/* What a spring that pushes with this force has stored, in parts of whose compression the gap is negative [J] */
-static PetscReal SpringEnergy(PetscReal force, PetscReal gap)
+/* For methods whose forces close gaps and store nothing */
+PetscReal ContactStoresNothing(Contact contact, PetscInt row, PetscReal gap)
 {
-  return 0.5 * force * PetscMax(-gap, 0);
+  (void)contact;
+  (void)row;
+  (void)gap;
+  return 0;
 }
 
 /* Adds the work on body b to that of the pairs */
@@ -39,13 +42,11 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Energy that the springs of all pairs have gained in the step, into `work` of each pair, where there is one of springs */
-static void AddSprings(Contact contact, PetscReal sums[], PetscInt stride)
+/* Adds the energy that the springs of each pair have gained in the step */
+static void AddSprings(Contact contact, PetscReal sums[])
 {
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (!contact->rows.tied[i])
-      sums[stride * contact->rows.pair[i]] += SpringEnergy(contact->end.force[i], contact->end.gap[i]) -
-                                              SpringEnergy(contact->energy.last_force[i], contact->start.gap[i]);
+    sums[2 * contact->rows.pair[i]] += (*contact->ops->stored)(contact, i, contact->end.gap[i]) - contact->energy.last_stored[i];
 }
 
 /* Work of contact on the bodies in the step as it has been made without changes at its start, and which pairs touch: for each pair, on all
@@ -57,9 +58,9 @@ PetscErrorCode ContactComputeWork(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(energy->pair_sums, 2 * contact->n_pairs));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddWorkOn(contact, b));
-  AddSprings(contact, energy->pair_sums, 2);
+  AddSprings(contact, energy->pair_sums);
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->end.force[i] != 0 || energy->last_force[i] != 0) energy->pair_sums[2 * contact->rows.pair[i] + 1] = 1;
+    if (contact->end.force[i] != 0 || energy->accepted_force[i] != 0) energy->pair_sums[2 * contact->rows.pair[i] + 1] = 1;
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy->pair_sums, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
@@ -74,11 +75,23 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeEnergy(contact->bodies[b], &bodies[b]));
   PetscCall(PetscArrayzero(springs, 2 * contact->n_pairs));
-  AddSprings(contact, springs, 2);
+  AddSprings(contact, springs);
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->end.force[i] != 0 || energy->last_force[i] != 0) springs[2 * contact->rows.pair[i] + 1] = 1;
+    if (contact->end.force[i] != 0 || energy->accepted_force[i] != 0) springs[2 * contact->rows.pair[i] + 1] = 1;
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, springs, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After rows have been built again, at the start of the step: what is done along the old rows and along the new ones is not the same, so
+   that energies tell what the rows do not. Collective. */
+PetscErrorCode ContactNoteRebuild(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  energy->rebuilt = PETSC_TRUE;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeEnergy(contact->bodies[b], &energy->start_energy[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

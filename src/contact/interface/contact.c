@@ -159,13 +159,17 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 @*/
 PetscErrorCode ContactStep(Contact contact)
 {
+  PetscInt rebuilds;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
   contact->counts.sweeps = 0;
   PetscCall(ContactBeginEnergy(contact));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
+  rebuilds = contact->counts.rebuilds;
   PetscCall(ContactUpdateRows(contact));
+  if (contact->counts.rebuilds > rebuilds && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) {
     PetscUseTypeMethod(contact, step);

@@ -98,6 +98,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpEnergy(contact));
   PetscCall(ContactSetUpStabilization(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
+  if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";
   contact->setup = PETSC_TRUE;
   PetscCall(ContactCheckInitialGap(contact));
   PetscCall(ContactViewFromOptions(contact, NULL, "-contact_view"));

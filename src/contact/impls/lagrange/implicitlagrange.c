@@ -381,6 +381,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   PetscCall(PetscNew(&lagrange));
   contact->data             = lagrange;
   contact->ops->step        = ContactStep_ImplicitLagrange;
+  contact->ops->stored      = ContactStoresNothing;
   contact->ops->view        = ContactView_ImplicitLagrange;
   contact->ops->rowschanged = ContactRowsChanged_ImplicitLagrange;
   contact->ops->destroy     = ContactDestroy_ImplicitLagrange;

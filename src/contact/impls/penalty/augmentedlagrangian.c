@@ -123,6 +123,7 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   contact->ops->setfromoptions    = ContactSetFromOptions_AugmentedLagrangian;
   contact->ops->setup             = ContactSetUp_AugmentedLagrangian;
   contact->ops->step              = ContactStep_AugmentedLagrangian;
+  contact->ops->stored            = ContactStoresNothing;
   contact->ops->rowschanged       = PenaltyRowsChanged;
   contact->ops->view              = ContactView_AugmentedLagrangian;
   contact->ops->destroy           = PenaltyDestroy;

@@ -45,6 +45,14 @@ static PetscReal WantedForce(Contact contact, PetscInt i)
   return spring - penalty->damper[i] * (contact->end.gap[i] - contact->start.gap[i]) / penalty->step;
 }
 
+/* Energy of the spring of a row [J] */
+static PetscReal StoredEnergy(Contact contact, PetscInt i, PetscReal gap)
+{
+  const Penalty *penalty = (const Penalty *)contact->data;
+
+  return contact->rows.tied[i] || gap < 0 ? 0.5 * penalty->spring[i] * PetscSqr(gap) : 0;
+}
+
 /* What springs and dampers make of the round-off in gap i, a sum of three lengths that were rounded themselves: no iteration
    gets below */
 static PetscReal RoundOff(Contact contact, PetscInt i)
@@ -302,6 +310,7 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   contact->ops->setfromoptions = ContactSetFromOptions_Penalty;
   contact->ops->setup          = PenaltySetUp;
   contact->ops->step           = ContactStep_Penalty;
+  contact->ops->stored         = StoredEnergy;
   contact->ops->rowschanged    = PenaltyRowsChanged;
   contact->ops->view           = ContactView_Penalty;
   contact->ops->destroy        = PenaltyDestroy;

@@ -250,6 +250,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
   contact->ops->setup          = ContactSetUp_Schwarz;
   contact->ops->step           = ContactStep_Schwarz;
+  contact->ops->stored         = ContactStoresNothing;
   contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->destroy        = ContactDestroy_Schwarz;
