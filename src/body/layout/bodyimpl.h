@@ -120,9 +120,8 @@ struct _p_Body {
   BodyState         substep_start; /* u and v, which are NULL unless loads or the integrator read them */
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
-    Vec       a;              /* the saved acceleration as it was [m/s^2]; NULL until needed */
-    Vec       internal_force; /* work space; NULL for linear bodies [N] */
-    PetscBool changed;        /* the saved acceleration is not that of the last step's end */
+    Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */
+    PetscBool changed; /* the saved acceleration is not that of the last step's end */
   } start;
   /* interface */
   BodyRows                rows;
@@ -194,7 +193,8 @@ PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodySolveLayer(Body, Vec, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySolveLayer(Body, Vec, Vec, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyMultiplyLayerTangent(Body, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerSolverDestroy(LayerSolver *);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, Vec);

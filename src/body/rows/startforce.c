@@ -6,24 +6,6 @@
 */
 #include <body/layout/bodyimpl.h>
 
-/* f_I = -(internal force at u + du less that at u), the layer's displacement being du; f_L is not wanted, and has no mass to divide by */
-static PetscErrorCode ComputePull(Body body, Vec u, Vec du, Vec f)
-{
-  Vec kept = body->start.internal_force;
-
-  PetscFunctionBegin;
-  if (body->model.linear) {
-    PetscCall(BodyComputeInternalForce(body, du, f));
-    PetscCall(VecScale(f, -1));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(BodyComputeInternalForce(body, u, kept));
-  PetscCall(VecAXPY(du, 1, u));
-  PetscCall(BodyComputeInternalForce(body, du, f));
-  PetscCall(VecAYPX(f, -1, kept));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The acceleration that forces on the rows bring to the nodes that have mass */
 static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec change)
 {
@@ -38,8 +20,7 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], f));
   PetscCall(BodyAnyRank(body, &layer));
   if (layer) {
-    PetscCall(BodySolveLayer(body, body->saved.u, f, du));
-    PetscCall(ComputePull(body, body->saved.u, du, pull));
+    PetscCall(BodySolveLayer(body, body->saved.u, f, du, pull));
     PetscCall(VecAXPY(f, 1, pull));
     PetscCall(VecGetArray(f, &values));
     for (PetscInt i = 0; i < body->layer.n_dofs; i++) values[body->layer.dofs[i]] = 0;
@@ -73,10 +54,7 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!body->start.a) {
-    PetscCall(BodyCreateVec(body, &body->start.a));
-    if (!body->model.linear) PetscCall(BodyCreateVec(body, &body->start.internal_force));
-  }
+  if (!body->start.a) PetscCall(BodyCreateVec(body, &body->start.a));
   if (body->start.changed) PetscCall(VecCopy(body->start.a, body->saved.a));
   else PetscCall(VecCopy(body->saved.a, body->start.a));
   body->start.changed = PETSC_TRUE;

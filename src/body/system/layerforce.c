@@ -271,6 +271,37 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* f = tangent stiffness of the elements that touch the layer, at a displacement that BodyGatherLayer() has made, times du; both laid out as
+   displacements of the body, du being zero but on the layer [N] */
+PetscErrorCode BodyMultiplyLayerTangent(Body body, Vec near, Vec du, Vec f)
+{
+  LayerElements      layer = body->layer.elements;
+  const PetscInt     nodes = body->model.element->nodes, dim = body->mesh.dim, n = nodes * dim;
+  PetscScalar        K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *product;
+  const PetscScalar *at, *change;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGatherLayer(body, du, layer->u));
+  PetscCall(VecGetArrayRead(near, &at));
+  PetscCall(VecGetArrayRead(layer->u, &change));
+  PetscCall(VecGetArrayWrite(layer->f, &product));
+  PetscCall(PetscArrayzero(product, layer->n_dofs));
+  for (PetscInt e = 0; e < layer->element->count; e++) {
+    const PetscInt *node = layer->connectivity + e * nodes;
+
+    PetscCall((*layer->element->ops->stiffness)(layer->element, e, at, K));
+    for (PetscInt i = 0; i < n; i++)
+      for (PetscInt j = 0; j < n; j++) product[node[i / dim] * dim + i % dim] += K[i * n + j] * change[node[j / dim] * dim + j % dim];
+  }
+  PetscCall(VecRestoreArrayWrite(layer->f, &product));
+  PetscCall(VecRestoreArrayRead(layer->u, &change));
+  PetscCall(VecRestoreArrayRead(near, &at));
+  PetscCall(VecZeroEntries(f));
+  PetscCall(VecScatterBegin(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The stiffness matrix of the undeformed layer, held by the rest of the body */
 PetscErrorCode BodyCreateLayerMatrix(Body body, Mat *K)
 {

@@ -3,14 +3,15 @@
 
      K_LL du = f_L,   K_LL at the displacement at which it was factored last.
 
-   Explicit bodies have these factors in any case (body/integrator/layerbalance.c), others get them when they are asked for the first time.
+   and what it pulls with at the nodes inside, -K_IL du. Linear explicit bodies have these factors in any case
+   (body/integrator/layerbalance.c), others get them when they are asked for the first time.
 */
 #include <body/layout/bodyimpl.h>
 
 struct _n_LayerSolver {
   IS                dofs;          /* of the layer, numbers in the vectors of the body */
   Vec               rhs, solution; /* of the layer */
-  Vec               point;         /* displacement at which the tangent is taken, on the nodes near the layer [m] */
+  Vec               point;         /* displacement at which the tangent is taken, on the nodes near the layer; NULL for linear bodies [m] */
   VecScatter        scatter;       /* from a vector of the body */
   ConstrainedSolver own;           /* factors, where the integrator has none */
   Mat               K;             /* what they are of */
@@ -23,9 +24,9 @@ static PetscErrorCode CreateFactors(Body body, LayerSolver layer)
   Mat  empty;
 
   PetscFunctionBegin;
-  PetscCall(BodySetUpLayerElements(body, layer->rhs));
+  if (!body->layer.elements) PetscCall(BodySetUpLayerElements(body, layer->rhs));
   PetscCall(BodyCreateLayerMatrix(body, &layer->K));
-  PetscCall(BodyCreateLayerVec(body, &layer->point));
+  if (!body->model.linear) PetscCall(BodyCreateLayerVec(body, &layer->point));
   PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)body), 0, body->layer.n_dofs, 0, PETSC_DETERMINE, 0, NULL, 0, NULL, &empty));
   PetscCall(MatAssemblyBegin(empty, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(empty, MAT_FINAL_ASSEMBLY));
@@ -53,13 +54,13 @@ static PetscErrorCode CreateLayerSolver(Body body)
   PetscCall(VecSetType(layer->rhs, VECSTANDARD));
   PetscCall(VecDuplicate(layer->rhs, &layer->solution));
   PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
-  if (!body->layer.elements) PetscCall(CreateFactors(body, layer));
+  if (!body->layer.elements || !body->model.linear) PetscCall(CreateFactors(body, layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* du = K_LL^{-1} f_L on the layer, zero elsewhere; f, laid out as displacements, is left alone. The tangent of a nonlinear body is that at
-   displacement u, but for an explicit one, whose factors are those of its balance. */
-PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du)
+/* du = K_LL^{-1} f_L on the layer, zero elsewhere, and the pull -K du on all nodes, of which those of the layer do not matter: both with
+   the tangent at displacement u, so that the pull amounts to the force on the layer. All are laid out as displacements; f is left alone. */
+PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du, Vec pull)
 {
   LayerSolver layer = body->layer.solver;
   KSP         ksp;
@@ -67,7 +68,7 @@ PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du)
   PetscFunctionBegin;
   if (!layer) PetscCall(CreateLayerSolver(body));
   layer = body->layer.solver;
-  if (layer->own && !body->model.linear) {
+  if (!body->model.linear) {
     PetscCall(BodyGatherLayer(body, u, layer->point));
     PetscCall(BodyAssembleLayer(body, layer->point, layer->K));
     PetscCall(ConstrainedSolverRefactor(layer->own));
@@ -79,6 +80,9 @@ PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du)
   PetscCall(VecZeroEntries(du));
   PetscCall(VecScatterBegin(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
+  if (body->model.linear) PetscCall(BodyComputeInternalForce(body, du, pull));
+  else PetscCall(BodyMultiplyLayerTangent(body, layer->point, du, pull));
+  PetscCall(VecScale(pull, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
