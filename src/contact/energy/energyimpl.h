@@ -6,4 +6,3 @@ PETSC_INTERN PetscErrorCode ContactComputeWork(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscReal[]);
 PETSC_INTERN void           ContactFindGroups(Contact);
 PETSC_INTERN PetscReal      ContactGroupRoom(Contact, PetscInt);
-PETSC_INTERN PetscErrorCode ContactGrowRoom(Contact, PetscBool *);

@@ -171,6 +171,14 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether any group has gained more than it has room for */
+static PetscBool AnyGainsTooMuch(Contact contact)
+{
+  for (PetscInt g = 0; g < contact->n_bodies; g++)
+    if (contact->energy.group[g] == g && GainsTooMuch(contact, g)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Attempts until no group gains more than it has room for */
 static PetscErrorCode Attempt(Contact contact)
 {
@@ -199,11 +207,7 @@ static PetscErrorCode Attempt(Contact contact)
     contact->counts.energy_attempts++;
   }
   contact->counts.limited_steps++;
-  for (PetscInt g = 0; g < contact->n_bodies; g++)
-    if (energy->group[g] == g && GainsTooMuch(contact, g)) {
-      contact->counts.unlimited_steps++;
-      break;
-    }
+  if (AnyGainsTooMuch(contact)) contact->counts.unlimited_steps++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -242,7 +246,6 @@ static PetscErrorCode MeasureGroupWork(Contact contact)
 PetscErrorCode ContactLimitEnergy(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
-  PetscBool      any    = PETSC_FALSE, grown;
 
   PetscFunctionBegin;
   energy->known     = (PetscBool)!energy->unlimited;
@@ -256,12 +259,7 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   ContactFindGroups(contact);
   for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->pair_sums[2 * p];
   if (energy->rebuilt) PetscCall(MeasureGroupWork(contact));
-  for (PetscInt g = 0; g < contact->n_bodies && energy->limits; g++)
-    any = (PetscBool)(any || (energy->group[g] == g && GainsTooMuch(contact, g)));
-  if (any) {
-    PetscCall(ContactGrowRoom(contact, &grown));
-    PetscCall(Attempt(contact));
-  }
+  if (energy->limits && AnyGainsTooMuch(contact)) PetscCall(Attempt(contact));
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -42,16 +42,15 @@ PetscReal ContactGroupRoom(Contact contact, PetscInt group)
   return room;
 }
 
-/* The excess is a part of the energy at the start or, where all starts at rest without strain, of the largest that there has been; asked
-   for before a step is limited. Collective. */
-PetscErrorCode ContactGrowRoom(Contact contact, PetscBool *grown)
+/* The excess is a part of the energy at the start or, where all starts at rest without strain, of the largest that there has been at the
+   end of an accepted step. Collective. */
+static PetscErrorCode GrowRoom(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
   PetscReal      now    = 0;
 
   PetscFunctionBegin;
-  *grown = PETSC_FALSE;
-  if (!energy->at_rest) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!energy->at_rest || energy->excess == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     BodyMeasures measures;
 
@@ -61,7 +60,6 @@ PetscErrorCode ContactGrowRoom(Contact contact, PetscBool *grown)
   if (now <= energy->scale) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += energy->excess * (now - energy->scale) / contact->n_bodies;
   energy->scale = now;
-  *grown        = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,6 +70,7 @@ PetscErrorCode ContactBookWork(Contact contact)
 
   PetscFunctionBegin;
   energy->rebuilt = PETSC_FALSE;
+  if (energy->limits && !energy->unlimited) PetscCall(GrowRoom(contact));
   if (!energy->known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(energy->accepted_force, contact->end.force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) energy->last_stored[i] = (*contact->ops->stored)(contact, i, contact->end.gap[i]);
