@@ -4,6 +4,7 @@
 */
 #pragma once
 #include <impakt/body.h>
+#include <impakt/private/stepfailure.h>
 #include <impakt/trace.h>
 
 /*E
@@ -60,6 +61,8 @@ PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
 PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
 PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
+PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
+PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);

@@ -148,6 +148,14 @@ typedef struct {
   PetscReal *maxima;         /* work space */
 } ContactResultants;
 
+/* How the controller step is being made */
+typedef struct {
+  StepFailure failure;
+  PetscBool   returns; /* ContactStep() leaves a failure to its caller */
+  PetscBool   may_cut; /* who can make the step again in halves, so that nothing is accepted that has not converged */
+  PetscBool   again;   /* the step before this one began at the same state, and has failed: rows and sides are those of this step already */
+} ContactAttempt;
+
 /* Work space */
 typedef struct {
   PetscReal     *speeds;     /* per body */
@@ -185,6 +193,7 @@ struct _p_Contact {
   ContactRanks      ranks;
   ContactResultants resultants;
   ContactCounts     counts;
+  ContactAttempt    attempt;
   ContactWork       work;
   PetscBool         setup; /* ContactSetUp() has been called */
   void             *data;  /* what the method keeps */
@@ -197,13 +206,22 @@ PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 
-/* What a method calls in a controller step */
+/* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
+   can: ContactFailed() tells. */
+PETSC_EXTERN PetscErrorCode ContactIntegrateBody(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactRejectResidual(Vec);
 PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_EXTERN PetscErrorCode ContactComputeGaps(Contact);
 PETSC_EXTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactOr(Contact, int *);
+
+/* Whether the controller step under way cannot be made; the same on every rank */
+static inline PetscBool ContactFailed(Contact contact)
+{
+  return (PetscBool)(contact->attempt.failure.reason < 0);
+}
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);

@@ -274,7 +274,7 @@ PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's method that did not converge, with body, time and what to do. A linear body takes one iteration, which cannot fail. */
+/* Notes Newton's method that did not converge, with body, time and what to do. A linear body takes one iteration, which cannot fail. */
 PetscErrorCode BodyImplicitCheckSubstep(Body body)
 {
   SNESConvergedReason reason;
@@ -287,12 +287,13 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   PetscCall(SNESGetConvergedReason(snes, &reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
   if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyCheckInverted(body));
-  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
-          "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
-          " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
-          body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations, ((PetscObject)body)->prefix,
-          ((PetscObject)body)->prefix);
+  PetscCall(BodyNoteInverted(body));
+  PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
+                           "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
+                           "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
+                           body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations,
+                           ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What both have in common */

@@ -1,5 +1,6 @@
 #pragma once
 #include <impakt/private/bodyrows.h>
+#include <impakt/private/stepfailure.h>
 #include <impakt/tssecondorder.h>
 #include <petsc/private/petscimpl.h>
 #include <impakt/private/elementimpl.h>
@@ -121,6 +122,7 @@ struct _p_Body {
   struct _BodyCompliance *compliance;
   struct _BodyProbe      *probe; /* room for the state while unit forces are tried; NULL until then */
   struct _BodyRepeat     *repeat;
+  StepFailure             failure; /* of the last integration */
   PetscBool repeats; /* the present end state is that of an integration from the saved state, under the present conditions and inputs */
   /* loads */
   struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
@@ -159,7 +161,7 @@ PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
-PETSC_INTERN PetscErrorCode BodyCheckInverted(Body);
+PETSC_INTERN PetscErrorCode BodyNoteInverted(Body);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
 PETSC_INTERN PetscErrorCode BodyZeroHeld(Body, Vec);

@@ -19,7 +19,7 @@ typedef struct {
   PetscErrorCode (*setup)(Body);         /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
   PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* the rows that are marked, of all ranks, have new entries */
   PetscErrorCode (*checksubstep)(
-      Body); /* (NULL) after TSStep(): an error that says why where the equations of the substep were not solved */
+      Body); /* (NULL) after TSStep(): notes in the body's failure where, and why, the equations of the substep were not solved */
   /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever else of the state the TS leaves undone
    */
   PetscErrorCode (*finishsubstep)(Body);

@@ -157,9 +157,10 @@ PetscErrorCode ContactStep(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
+  StepFailureClear(&contact->attempt.failure);
   contact->counts.sweeps = 0;
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
-  PetscCall(ContactUpdateRows(contact));
+  if (!contact->attempt.again) PetscCall(ContactUpdateRows(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) PetscUseTypeMethod(contact, step);
   else { /* nothing can touch */ PetscBool penetrating;
@@ -168,6 +169,7 @@ PetscErrorCode ContactStep(Contact contact)
   }
   contact->counts.total_sweeps += contact->counts.sweeps;
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
+  if (!contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -188,6 +190,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscTryTypeMethod(contact, accept);
+  PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   if (contact->options.stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactAddImpulses(contact));

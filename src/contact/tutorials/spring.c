@@ -23,6 +23,7 @@ static PetscErrorCode ContactStep_Spring(Contact contact)
   for (int guess = 0, off = 1; off; guess++) {
     PetscCheck(guess < 50, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The spring forces do not settle");
     PetscCall(ContactIntegrateForces(contact, spring->force));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS); /* a body's step: it is made again, or its error told */
     off = 0;
     for (PetscInt i = 0; i < contact->rows.n; i++) {
       const PetscReal depth  = PetscMax(-contact->end.gap[i], 0);

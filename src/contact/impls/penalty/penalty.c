@@ -70,6 +70,11 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(ForcesIntegrate(contact, &penalty->forces, x, 1));
+  if (ContactFailed(contact)) {
+    PetscCall(VecRestoreArrayRead(X, &x));
+    PetscCall(ContactRejectResidual(F));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscReal wanted = WantedForce(contact, i);
@@ -179,22 +184,26 @@ static PetscErrorCode CheckConverged(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(penalty->outer.snes, &reason));
-  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcesGetTime(contact, &time));
   for (PetscInt p = 0; reason == SNES_DIVERGED_NAN && p < contact->n_pairs; p++) {
     ContactPairState state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(!PetscIsInfOrNanReal(state.gap), PetscObjectComm((PetscObject)contact), PETSC_ERR_FP,
-               "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step "
-               "or -contact_penalty too large?",
-               contact->pairs[p].name, (double)time);
+    if (PetscIsInfOrNanReal(state.gap))
+      PetscCall(StepFailureSet(
+          &contact->attempt.failure, STEP_DIVERGED_NAN, PETSC_ERR_FP,
+          "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step "
+          "or -contact_penalty too large?",
+          contact->pairs[p].name, (double)time));
   }
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-          "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-          " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
-          "-contact_penalty (or -contact_penalty_scale) or -time_step",
-          (double)time, contact->counts.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
+  PetscCall(StepFailureSet(
+      &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+      "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+      " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
+      "-contact_penalty (or -contact_penalty_scale) or -time_step",
+      (double)time, contact->counts.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The forces of springs and dampers, from the forces as they are as first iterate */
@@ -212,6 +221,7 @@ PetscErrorCode PenaltySolve(Contact contact)
   while (changed) {
     PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
     PetscCall(CheckConverged(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(VecGetArrayRead(penalty->outer.x, &force));
     PetscCall(PetscArraycpy(contact->end.force, force, contact->rows.n));
     PetscCall(VecRestoreArrayRead(penalty->outer.x, &force));
@@ -235,6 +245,7 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(contact->end.force, contact->start.force, contact->rows.n));
   PetscCall(PenaltySolve(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++)
     energy += 0.5 * penalty->spring[i] * PetscSqr(contact->rows.tied[i] ? contact->end.gap[i] : PetscMin(contact->end.gap[i], 0));
   if (contact->ranks.size > 1)
