@@ -2,6 +2,9 @@
 #pragma once
 #include <petscsys.h>
 
+/* A controller step can be cut in halves so many times: a part of 1e-6 of it is left then */
+#define STEP_MAX_CUTS 20
+
 /*E
    StepConvergedReason - whether a controller step has been made, and if not, why
 

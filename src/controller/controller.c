@@ -25,6 +25,7 @@ PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
   PetscCall(ControllerInitializePackage());
   PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm,
                               ControllerDestroy, ControllerView));
+  (*controller)->most_cuts = CONTROLLER_STEP_CUTS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,6 +58,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   for (PetscInt b = 0; b < n; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetUp(contact));
+  PetscCall(ControllerSetUpStepControl(controller));
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
   PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
                          &controller->contact_velocities, n_pairs, &controller->pair_states));
@@ -105,8 +107,7 @@ PetscErrorCode ControllerSolve(Controller controller)
   getrusage(RUSAGE_SELF, &cpu[0]);
   PetscCall(ControllerNotify(controller, 0));
   for (PetscInt step = 1; step <= controller->steps; step++) {
-    PetscCall(ContactStep(controller->contact));
-    PetscCall(ContactAccept(controller->contact));
+    PetscCall(ControllerMakeStep(controller));
     PetscCall(ControllerNotify(controller, step));
   }
   PetscCall(PetscTime(&wall[1]));

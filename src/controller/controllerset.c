@@ -189,6 +189,7 @@ static PetscErrorCode ReadTimes(Controller controller)
 . -time_start t       - [s], default 0
 . -time_end t         - [s]; the run ends with the first controller step that reaches it
 . -time_step dt       - controller step, at whose ends all bodies are synchronised [s]
+. -controller_step_cuts n - how often a controller step that fails is cut in halves, 4
 . -monitor_interval n - a line on the terminal every n controller steps, 0 (default) for none
 - -progress           - a progress bar on standard error, default where that is a terminal
 
@@ -210,6 +211,7 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscCall(ControllerSetUpTerminal(controller));
   if (!controller->contact) PetscCall(ReadBodies(controller));
   PetscCall(ReadTimes(controller));
+  PetscCall(ControllerReadStepControl(controller));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetFromOptions(contact));
   PetscCall(PetscTime(&end));

@@ -39,7 +39,6 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .contact_positions  = controller->contact_positions,
                            .contact_velocities = controller->contact_velocities,
                            .pairs              = controller->pair_states};
-  ContactCounts   counts;
 
   PetscFunctionBegin;
   /* not summed up, so that round-off does not pile up over many steps */
@@ -50,9 +49,10 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
     if (controller->has_obstacle[b]) controller->measures[b].loaded = PETSC_TRUE;
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
   }
+  ControllerNoteEnergies(controller, step);
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
-  PetscCall(ContactGetCounts(controller->contact, &counts));
-  frame.sweeps = step ? counts.sweeps : 0;
+  frame.sweeps    = step ? controller->step_sweeps : 0;
+  frame.step_cuts = step ? controller->step_cuts : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
   for (PetscInt i = 0; i < controller->n_monitors; i++)
     PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));

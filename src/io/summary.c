@@ -106,6 +106,22 @@ static PetscErrorCode AddSchwarz(json_t *root, Contact contact, const Statistics
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Controller steps that were made again in halves */
+static PetscErrorCode AddStepControl(json_t *root, Controller controller)
+{
+  ControllerCuts cuts;
+  json_t        *object;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetCuts(controller, &cuts));
+  PetscCall(SetObject(root, "step_control", &object));
+  PetscCall(SetInteger(object, "step_cuts", cuts.cuts));
+  PetscCall(SetInteger(object, "steps_cut", cuts.steps));
+  PetscCall(SetReal(object, "smallest_step", cuts.smallest_step));
+  PetscCall(SetInteger(object, "lossy_steps", cuts.lossy_steps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const StatisticsResults *results)
 {
   json_t     *objects, *object;
@@ -265,6 +281,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(SetMember(root, "version", json_string(IMPAKT_VERSION)));
   PetscCall(AddContact(root, contact, results));
   PetscCall(AddSchwarz(root, contact, results));
+  PetscCall(AddStepControl(root, controller));
   PetscCall(AddBodies(root, bodies, results));
   PetscCall(AddSystem(root, results));
   if (exact) PetscCall(AddErrors(root, exact));

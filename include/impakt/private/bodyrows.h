@@ -55,6 +55,10 @@ PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
 /* One controller step */
 PETSC_EXTERN PetscErrorCode BodySave(Body);
 PETSC_EXTERN PetscErrorCode BodyRestore(Body);
+PETSC_EXTERN PetscErrorCode BodyStepBack(Body);
+PETSC_EXTERN PetscErrorCode BodySetStepLevel(Body, PetscInt);
+PETSC_EXTERN PetscErrorCode BodyNoteKnownRows(Body);
+PETSC_EXTERN PetscErrorCode BodyGetEnergyChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyKeep(Body);
 PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);

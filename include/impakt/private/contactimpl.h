@@ -10,7 +10,11 @@ struct _ContactOps {
   PetscErrorCode (*setup)(Contact);
   PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
   PetscErrorCode (*rowschanged)(Contact); /* called after rows have been built again: those marked as changed have new entries */
-  PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of a step, before the next step starts from them */
+  PetscErrorCode (*stepback)(Contact);    /* a step has failed: what the bodies have told of their compliance in it is forgotten */
+  /* the controller step is contact->step from now on, that of the set-up cut in halves so many times; what the bodies tell of their
+     compliance is another. What is remembered of earlier steps at this level goes on (true) or not. */
+  PetscErrorCode (*steplevel)(Contact, PetscInt, PetscBool);
+  PetscErrorCode (*accept)(Contact); /* corrects the states at the end of a step, before the next step starts from them */
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -68,10 +72,11 @@ typedef struct {
   ContactLaw           law;
   ContactConstraint    constraint;
   ContactStabilization stabilization;
-  PetscBool            facing;      /* pairs of whole bodies keep only the faces that see each other at the start */
-  PetscReal            slip_bound;  /* slip after which rows are built again [parts of a face] */
-  PetscReal            angle_bound; /* turn of a normal after which they are [rad] */
-  PetscReal            tolerance;   /* depth that does not yet count as penetration [m] */
+  PetscBool            facing;           /* pairs of whole bodies keep only the faces that see each other at the start */
+  PetscReal            slip_bound;       /* slip after which rows are built again [parts of a face] */
+  PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
+  PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
+  PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -143,17 +148,21 @@ typedef struct {
 typedef struct {
   PetscReal *cross_section; /* of its first body: turns lengths and points into areas */
   PetscReal *impulse; /* this rank's share of the impulse so far, 3 numbers, and of the force at the end of the last step, 3 numbers */
-  PetscReal  penalty_energy; /* energy in the penalty springs of all pairs [J] */
-  PetscReal *sums;           /* work space */
-  PetscReal *maxima;         /* work space */
+  PetscReal  penalty_energy;      /* energy in the penalty springs of all pairs [J] */
+  PetscReal  last_penalty_energy; /* the same at the start of the controller step */
+  PetscReal *sums;                /* work space */
+  PetscReal *maxima;              /* work space */
 } ContactResultants;
 
 /* How the controller step is being made */
 typedef struct {
   StepFailure failure;
-  PetscBool   returns; /* ContactStep() leaves a failure to its caller */
-  PetscBool   may_cut; /* who can make the step again in halves, so that nothing is accepted that has not converged */
-  PetscBool   again;   /* the step before this one began at the same state, and has failed: rows and sides are those of this step already */
+  PetscBool   returns;               /* ContactStep() leaves a failure to its caller */
+  PetscBool   may_cut;               /* who can make the step again in halves, so that nothing is accepted that has not converged */
+  PetscInt    level, accepted_level; /* how often the step is cut in halves; how often that was which was accepted last */
+  PetscReal   whole_step;            /* the controller step before any cut [s] */
+  PetscBool   moves_start;           /* the method changes the state that its steps start from, so that none can be made again */
+  PetscBool   again; /* the step before this one began at the same state, and has failed: rows and sides are those of this step already */
 } ContactAttempt;
 
 /* Work space */

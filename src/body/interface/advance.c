@@ -39,6 +39,8 @@ PetscErrorCode BodySave(Body body)
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
   body->iterate.known = PETSC_FALSE;
   body->repeats       = PETSC_FALSE;
+  if (stepped) body->time.accepted_level = body->time.level;
+  PetscCall(BodyNoteKnownRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -59,6 +59,8 @@ typedef struct {
 typedef struct {
   TS        ts;
   PetscReal start, controller_step, step; /* of the simulation; from one synchronisation of all bodies to the next; substep [s] */
+  PetscReal whole_step;                   /* the controller step before any cut [s] */
+  PetscInt  level, accepted_level;        /* how often the controller step is cut in halves; how often that was which was accepted last */
   PetscReal requested_step;               /* 0: the controller step; < 0: automatic */
   PetscReal stable_step;                  /* 0 until BodyComputeStableStep() */
   PetscInt  substeps;                     /* of a controller step */
@@ -96,6 +98,12 @@ typedef struct {
   PetscScalar   *kept_traces;                     /* output traces put aside by BodyKeep() */
 } BodyRows;
 
+/* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */
+typedef struct {
+  struct _BodyCompliance *compliance; /* NULL until there is a step of this level */
+  ConstrainedSolver       solver;     /* where it depends on the step, else that of all levels */
+} BodyLevel;
+
 /* Dofs whose displacement the user prescribes */
 typedef struct {
   PetscInt        n;
@@ -119,7 +127,8 @@ struct _p_Body {
   /* interface */
   BodyRows                rows;
   BodyTraces              traces;
-  struct _BodyCompliance *compliance;
+  struct _BodyCompliance *compliance; /* of the present level, as is the solver */
+  BodyLevel               levels[STEP_MAX_CUTS + 1];
   struct _BodyProbe      *probe; /* room for the state while unit forces are tried; NULL until then */
   struct _BodyRepeat     *repeat;
   StepFailure             failure; /* of the last integration */
@@ -170,6 +179,7 @@ PETSC_INTERN PetscErrorCode BodyPrescribeHeld(Body, PetscReal, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddExternalForce(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
 PETSC_INTERN PetscErrorCode BodyAddWork(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyGetStepWork(Body, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
 PETSC_INTERN PetscErrorCode BodyRedistributeOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
@@ -199,6 +209,8 @@ PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
 PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
+PETSC_INTERN PetscErrorCode BodySetRowsOfLevels(Body, const PetscMPIInt[]);
+PETSC_INTERN PetscErrorCode BodyDestroyLevels(Body);
 PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);

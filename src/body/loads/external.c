@@ -63,6 +63,24 @@ PetscErrorCode BodySetUpWork(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The work in the controller step that has been made, before BodySave(); collective only where there are loads */
+PetscErrorCode BodyGetStepWork(Body body, PetscReal *work)
+{
+  Vec         sum = body->work.nodes[2], way = body->work.nodes[1];
+  PetscScalar product;
+
+  PetscFunctionBegin;
+  *work = body->state.external_work - body->saved.external_work;
+  if (!body->loads || body->unloaded || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  /* that of a single substep has not been counted yet */
+  PetscCall(ComputeApplied(body, sum));
+  PetscCall(VecAXPY(sum, 1, body->saved.applied));
+  PetscCall(VecWAXPY(way, -1, body->saved.u, body->state.u));
+  PetscCall(VecDot(sum, way, &product));
+  *work += 0.5 * PetscRealPart(product);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The work from displacement `start` to the present one, by the trapezoidal rule; collective only where there are loads */
 PetscErrorCode BodyAddWork(Body body, Vec start)
 {

@@ -197,6 +197,9 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.gap, contact->end.gap, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
+  contact->resultants.last_penalty_energy = contact->resultants.penalty_energy;
+  contact->attempt.accepted_level         = contact->attempt.level;
+  contact->attempt.again                  = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

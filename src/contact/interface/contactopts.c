@@ -5,10 +5,15 @@
 /* What the methods share */
 static PetscErrorCode ReadSettings(Contact contact)
 {
+  PetscReal energy_tolerance = 0;
+
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetTolerance",
                              contact->options.tolerance, &contact->options.tolerance, NULL));
+  PetscCall(ContactGetEnergyTolerance(contact, &energy_tolerance));
+  PetscCall(PetscOptionsReal("-contact_energy_tolerance", "Energy that contact may take in a step [parts of the system's]",
+                             "ContactSetEnergyTolerance", energy_tolerance, &energy_tolerance, NULL));
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetConstraint",
                              ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
@@ -22,6 +27,9 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "ContactSetBounds",
                              contact->options.angle_bound, &contact->options.angle_bound, NULL));
   PetscOptionsEnd();
+  PetscCheck(energy_tolerance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_energy_tolerance %g must be positive; inf for none", (double)energy_tolerance);
+  PetscCall(ContactSetEnergyTolerance(contact, energy_tolerance));
   PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
              (double)contact->options.slip_bound, (double)contact->options.angle_bound);
@@ -90,7 +98,8 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do
 . -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
-- -contact_tolerance g                                          - depth that does not yet count as penetration [m]
+. -contact_tolerance g                                          - depth that does not yet count as penetration [m]
+- -contact_energy_tolerance t                                   - energy that contact may take in a step before this is cut, 1e-3
 
   Level: beginner
 
@@ -99,7 +108,8 @@ static PetscErrorCode ReadPairs(Contact contact)
   the two bodies are a pair by themselves only where none has been.
 
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
-          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`
+          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
+          `ContactSetEnergyTolerance()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

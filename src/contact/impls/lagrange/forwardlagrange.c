@@ -109,10 +109,11 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_FORWARD_LAGRANGE));
   PetscCall(PetscNew(&lagrange));
-  contact->data             = lagrange;
-  contact->ops->step        = ContactStep_ForwardLagrange;
-  contact->ops->rowschanged = ContactRowsChanged_ForwardLagrange;
-  contact->ops->destroy     = ContactDestroy_ForwardLagrange;
+  contact->data                = lagrange;
+  contact->attempt.moves_start = PETSC_TRUE;
+  contact->ops->step           = ContactStep_ForwardLagrange;
+  contact->ops->rowschanged    = ContactRowsChanged_ForwardLagrange;
+  contact->ops->destroy        = ContactDestroy_ForwardLagrange;
   PetscCall(ComplementarityCreate(contact, &lagrange->forces));
   PetscCall(ForcesGetStep(contact, &lagrange->step));
   if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) {

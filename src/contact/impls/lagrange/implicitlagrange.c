@@ -340,8 +340,9 @@ static PetscErrorCode SetUpStabilized(Contact contact)
                "gamma %g, beta %g; leave -%s_ts_alpha_... at their defaults",
                name, (double)alpha_m, (double)alpha_f, (double)gamma, (double)beta, name);
   }
-  lagrange->scale      = 2;
-  lagrange->stabilized = PETSC_TRUE;
+  lagrange->scale              = 2;
+  lagrange->stabilized         = PETSC_TRUE;
+  contact->attempt.moves_start = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -368,6 +369,17 @@ static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Another controller step, and so another compliance */
+static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+{
+  PetscFunctionBegin;
+  (void)level;
+  (void)goes_on;
+  ((ImplicitLagrange *)contact->data)->step = contact->step;
+  PetscCall(ComputeCompliance(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode LagrangeSetUpImplicit(Contact contact)
 {
   /* SNESVI wants all of S as a matrix: dense whatever its size, which ForcesCheckDense() bounds; nothing is iterated for */
@@ -385,6 +397,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   contact->ops->step        = ContactStep_ImplicitLagrange;
   contact->ops->view        = ContactView_ImplicitLagrange;
   contact->ops->rowschanged = ContactRowsChanged_ImplicitLagrange;
+  contact->ops->steplevel   = SetStepLevel;
   contact->ops->destroy     = ContactDestroy_ImplicitLagrange;
   lagrange->scale           = 1;
   PetscCall(ForcesGetStep(contact, &lagrange->step));

@@ -126,6 +126,8 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   contact->ops->setup             = ContactSetUp_AugmentedLagrangian;
   contact->ops->step              = ContactStep_AugmentedLagrangian;
   contact->ops->rowschanged       = PenaltyRowsChanged;
+  contact->ops->stepback          = PenaltyStepBack;
+  contact->ops->steplevel         = PenaltySetStepLevel;
   contact->ops->view              = ContactView_AugmentedLagrangian;
   contact->ops->destroy           = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -176,6 +176,28 @@ PetscErrorCode PenaltyRowsChanged(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A compliance that bodies have forgotten */
+PetscErrorCode PenaltyStepBack(Contact contact)
+{
+  PetscFunctionBegin;
+  ((Penalty *)contact->data)->problem.stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Another controller step: other dampers, and another compliance */
+PetscErrorCode PenaltySetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+{
+  Penalty *penalty = (Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  (void)level;
+  (void)goes_on;
+  penalty->step = contact->step;
+  for (PetscInt i = 0; i < contact->rows.n; i++) penalty->stiffness[i] = penalty->spring[i] + penalty->damper[i] / penalty->step;
+  penalty->problem.stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckConverged(Contact contact)
 {
   Penalty            *penalty = (Penalty *)contact->data;
@@ -314,6 +336,8 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   contact->ops->setup          = PenaltySetUp;
   contact->ops->step           = ContactStep_Penalty;
   contact->ops->rowschanged    = PenaltyRowsChanged;
+  contact->ops->stepback       = PenaltyStepBack;
+  contact->ops->steplevel      = PenaltySetStepLevel;
   contact->ops->view           = ContactView_Penalty;
   contact->ops->destroy        = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -32,5 +32,7 @@ PETSC_INTERN PetscErrorCode PenaltySetUpSprings(Contact);
 PETSC_INTERN PetscErrorCode PenaltyViewParameter(Contact, PetscViewer);
 PETSC_INTERN PetscErrorCode PenaltySetUp(Contact);
 PETSC_INTERN PetscErrorCode PenaltySolve(Contact);
+PETSC_INTERN PetscErrorCode PenaltyStepBack(Contact);
+PETSC_INTERN PetscErrorCode PenaltySetStepLevel(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscErrorCode PenaltyRowsChanged(Contact);
 PETSC_INTERN PetscErrorCode PenaltyDestroy(Contact);

@@ -342,6 +342,20 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes all rows of a small interface known to the bodies; overwrites the active set */
+PetscErrorCode SchwarzKnowFewRows(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  schwarz->stale = PETSC_TRUE;
+  if (contact->rows.n_all > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = contact->rows.opposite[i];
+  PetscCall(SchwarzUpdateJacobian(contact));
+  schwarz->stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Puts Newton's step into the outer iteration */
 PetscErrorCode SchwarzSetUpJacobian(Contact contact)
 {
@@ -357,11 +371,8 @@ PetscErrorCode SchwarzSetUpJacobian(Contact contact)
   PetscCall(InterfaceOperatorCreate(contact, &settings, &jacobian->S));
   PetscCall(PetscCalloc1(contact->rows.n, &jacobian->marks));
   PetscCall(OuterSolverSetNewton(contact, &schwarz->outer, SchwarzComputeJacobian, ApplyNewton));
-  if (contact->rows.n_all > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = contact->rows.opposite[i];
-  PetscCall(SchwarzUpdateJacobian(contact));
+  PetscCall(SchwarzKnowFewRows(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = PETSC_FALSE;
-  schwarz->stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
