@@ -173,6 +173,7 @@ PetscErrorCode PenaltyRowsChanged(Contact contact)
   PetscFunctionBegin;
   PetscCall(PenaltySetUpSprings(contact));
   penalty->problem.stale = PETSC_TRUE;
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) penalty->problems[k].stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,17 +185,20 @@ PetscErrorCode PenaltyStepBack(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Another controller step: other dampers, and another compliance */
+/* Another controller step: other dampers, and another compliance. The force problem of each level is kept apart. */
 PetscErrorCode PenaltySetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
 {
   Penalty *penalty = (Penalty *)contact->data;
 
   PetscFunctionBegin;
-  (void)level;
-  (void)goes_on;
   penalty->step = contact->step;
   for (PetscInt i = 0; i < contact->rows.n; i++) penalty->stiffness[i] = penalty->spring[i] + penalty->damper[i] / penalty->step;
-  penalty->problem.stale = PETSC_TRUE;
+  penalty->problems[penalty->level] = penalty->problem;
+  penalty->problem                  = penalty->problems[level];
+  penalty->level                    = level;
+  PetscCall(PetscMemzero(&penalty->problems[level], sizeof(penalty->problems[level])));
+  if (!penalty->problem.S) PetscCall(ForceProblemCreate(contact, penalty->stiffness, &penalty->problem));
+  else if (!goes_on) PetscCall(ForceProblemForget(contact, &penalty->problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,6 +299,7 @@ PetscErrorCode PenaltyDestroy(Contact contact)
   PetscCall(OuterSolverDestroy(&penalty->outer));
   PetscCall(ForcesDestroy(&penalty->forces));
   PetscCall(ForceProblemDestroy(&penalty->problem));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(ForceProblemDestroy(&penalty->problems[k]));
   PetscCall(PetscFree(penalty->start));
   PetscCall(PetscFree5(penalty->multiplier, penalty->pushing, penalty->spring, penalty->damper, penalty->stiffness));
   PetscCall(PetscFree(contact->data));

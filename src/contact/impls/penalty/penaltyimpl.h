@@ -18,6 +18,8 @@ typedef struct {
   PetscReal     atol, rtol; /* on the force [N], and relative to it */
   Forces        forces;
   ForceProblem  problem;
+  ForceProblem  problems[STEP_MAX_CUTS + 1];    /* those of other levels of cut controller steps */
+  PetscInt      level;                          /* the present one */
   PetscReal    *multiplier;                     /* force at a closed gap that does not change [N]; zero but for the augmented Lagrangian */
   PetscBool    *pushing;                        /* rows with a force that answers to their gap */
   PetscReal     residual, magnitude, round_off; /* [N] */

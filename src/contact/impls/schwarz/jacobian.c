@@ -342,13 +342,19 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes all rows of a small interface known to the bodies; overwrites the active set */
-PetscErrorCode SchwarzKnowFewRows(Contact contact)
+/* The Jacobian of a level of controller steps; all rows of a small interface become known to the bodies. Overwrites the active set. */
+PetscErrorCode SchwarzCreateJacobian(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Schwarz                *schwarz  = (Schwarz *)contact->data;
+  const InterfaceSettings settings = {.prefix      = "schwarz_interface_",
+                                      .tolerance   = FORCE_TOLERANCE,
+                                      .dense_limit = schwarz->dense_limit,
+                                      .few         = PetscMin(DENSE_ROWS, schwarz->dense_limit)};
 
   PetscFunctionBegin;
   schwarz->stale = PETSC_TRUE;
+  PetscCall(InterfaceOperatorCreate(contact, &settings, &schwarz->jacobian.S));
+  PetscCall(PetscCalloc1(contact->rows.n, &schwarz->jacobian.marks));
   if (contact->rows.n_all > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = contact->rows.opposite[i];
   PetscCall(SchwarzUpdateJacobian(contact));
@@ -359,19 +365,11 @@ PetscErrorCode SchwarzKnowFewRows(Contact contact)
 /* Puts Newton's step into the outer iteration */
 PetscErrorCode SchwarzSetUpJacobian(Contact contact)
 {
-  Schwarz                *schwarz  = (Schwarz *)contact->data;
-  Jacobian               *jacobian = &schwarz->jacobian;
-  const InterfaceSettings settings = {.prefix      = "schwarz_interface_",
-                                      .tolerance   = FORCE_TOLERANCE,
-                                      .dense_limit = schwarz->dense_limit,
-                                      .few         = PetscMin(DENSE_ROWS, schwarz->dense_limit)};
+  Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  schwarz->stale = PETSC_TRUE;
-  PetscCall(InterfaceOperatorCreate(contact, &settings, &jacobian->S));
-  PetscCall(PetscCalloc1(contact->rows.n, &jacobian->marks));
   PetscCall(OuterSolverSetNewton(contact, &schwarz->outer, SchwarzComputeJacobian, ApplyNewton));
-  PetscCall(SchwarzKnowFewRows(contact));
+  PetscCall(SchwarzCreateJacobian(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

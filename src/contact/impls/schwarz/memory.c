@@ -1,7 +1,7 @@
 /*
-   What the method remembers from step to step: which rows the bodies' compliance knows, the active set that the Jacobian belongs to, and
-   secants. Controller steps that are cut in halves have their own, level by level, so that a step that has failed leaves no trace in those
-   that are made in its place.
+   What the method remembers from step to step: the Jacobian and the active set that it belongs to, which rows the bodies' compliance knows,
+   and secants. Controller steps that are cut in halves have their own, level by level, so that a step that has failed leaves no trace in
+   those that are made in its place.
 */
 #include "schwarzimpl.h"
 
@@ -12,7 +12,7 @@ static PetscErrorCode TakeMemory(Contact contact, PetscInt level, PetscBool *beg
   SchwarzMemory *present = &schwarz->memory[schwarz->level], *next = &schwarz->memory[level];
 
   PetscFunctionBegin;
-  *present       = (SchwarzMemory){PETSC_TRUE, schwarz->secants, schwarz->known, schwarz->solved_active};
+  *present       = (SchwarzMemory){PETSC_TRUE, schwarz->jacobian, schwarz->stale, schwarz->secants, schwarz->known, schwarz->solved_active};
   schwarz->level = level;
   *begins        = (PetscBool)!next->begun;
   if (*begins) {
@@ -20,8 +20,11 @@ static PetscErrorCode TakeMemory(Contact contact, PetscInt level, PetscBool *beg
 
     PetscCall(PetscCalloc2(contact->rows.n, &schwarz->known, contact->rows.n, &schwarz->solved_active));
     PetscCall(PetscMemzero(&schwarz->secants, sizeof(schwarz->secants)));
+    PetscCall(PetscMemzero(&schwarz->jacobian, sizeof(schwarz->jacobian)));
     if (has_secants) PetscCall(SchwarzSetUpSecants(contact));
   } else {
+    schwarz->jacobian      = next->jacobian;
+    schwarz->stale         = next->stale;
     schwarz->secants       = next->secants;
     schwarz->known         = next->known;
     schwarz->solved_active = next->solved_active;
@@ -46,7 +49,7 @@ PetscErrorCode SchwarzSetStepLevel(Contact contact, PetscInt level, PetscBool go
   }
   PetscCall(TakeMemory(contact, level, &begins));
   if (begins) {
-    PetscCall(SchwarzKnowFewRows(contact));
+    PetscCall(SchwarzCreateJacobian(contact));
     PetscCall(PetscArraycpy(contact->end.active, contact->start.active, contact->rows.n));
   } else if (!goes_on) {
     PetscBool exact;
@@ -61,8 +64,9 @@ PetscErrorCode SchwarzSetStepLevel(Contact contact, PetscInt level, PetscBool go
         if (!exact) schwarz->known[i] = PETSC_FALSE;
       }
     if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_TRUE);
+    schwarz->stale = PETSC_TRUE;
   }
-  schwarz->stale = PETSC_TRUE;
+  if (schwarz->swap) schwarz->stale = PETSC_TRUE; /* the step that has failed has swapped the sides */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,10 +98,12 @@ PetscErrorCode SchwarzDestroyMemory(Contact contact)
   PetscFunctionBegin;
   for (PetscInt k = -1; k <= STEP_MAX_CUTS; k++) {
     if (k >= 0) {
+      schwarz->jacobian      = schwarz->memory[k].jacobian;
       schwarz->secants       = schwarz->memory[k].secants;
       schwarz->known         = schwarz->memory[k].known;
       schwarz->solved_active = schwarz->memory[k].solved_active;
     }
+    PetscCall(SchwarzDestroyJacobian(contact));
     PetscCall(SchwarzDestroySecants(contact));
     PetscCall(PetscFree2(schwarz->known, schwarz->solved_active));
   }

@@ -153,6 +153,7 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
       for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++)
         if (schwarz->memory[k].known) schwarz->memory[k].known[i] = PETSC_FALSE;
     }
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) schwarz->memory[k].stale = PETSC_TRUE;
   schwarz->stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -182,7 +183,6 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
-  PetscCall(SchwarzDestroyJacobian(contact));
   PetscCall(SchwarzDestroyMemory(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree3(schwarz->exchange, schwarz->offset, schwarz->all_offset));

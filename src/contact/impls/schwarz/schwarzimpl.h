@@ -45,6 +45,8 @@ typedef struct {
 /* What is remembered from step to step: of cut controller steps at each level apart */
 typedef struct {
   PetscBool  begun; /* there has been a step of this level */
+  Jacobian   jacobian;
+  PetscBool  stale; /* the Jacobian belongs to another active set */
   Secants    secants;
   PetscBool *known;         /* per row: the bodies' compliance knows it */
   PetscBool *solved_active; /* per row: the active set that the Jacobian belongs to */
@@ -161,7 +163,7 @@ PETSC_INTERN PetscReal      SchwarzResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpJacobian(Contact);
-PETSC_INTERN PetscErrorCode SchwarzKnowFewRows(Contact);
+PETSC_INTERN PetscErrorCode SchwarzCreateJacobian(Contact);
 PETSC_INTERN PetscErrorCode SchwarzStepBack(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetStepLevel(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscErrorCode SchwarzDestroyMemory(Contact);
