@@ -106,11 +106,7 @@ static void Compare(const Record *a, const Record *b)
 
   assert_int_equal(a->n, b->n);
   for (PetscInt step = 0; step < STEPS; step++) {
-    for (PetscInt i = 0; i < a->n; i++)
-      if (a->values[step][i] != b->values[step][i]) {
-        print_message("DIFF step %d i %d %g %g\n", (int)step, (int)i, a->values[step][i], b->values[step][i] - a->values[step][i]);
-        return;
-      }
+    for (PetscInt i = 0; i < a->n; i++) near(a->values[step][i], b->values[step][i], 0);
     touched = (PetscBool)(touched || PetscRealPart(a->values[step][a->n - 1]) > 0);
   }
   assert_true(touched);
@@ -127,9 +123,7 @@ static void CompareWays(Simulation *simulation, const char whole[], const char h
   Run(simulation, HALVES, &records[0]);
   SimulationRepeat(simulation, whole);
   Run(simulation, CUT, &records[1]);
-  print_message("%s cut\n", options);
   Compare(&records[0], &records[1]);
-  print_message("%s mixed\n", options);
   SimulationRepeat(simulation, whole);
   Run(simulation, MIXED, &records[0]);
   SimulationRepeat(simulation, whole);
