@@ -15,8 +15,7 @@
 . `STEP_DIVERGED_INVERTED`    - an element was inverted
 . `STEP_DIVERGED_NAN`         - a displacement, a gap or a force is not a number
 . `STEP_DIVERGED_OUTER`       - the outer iteration of the contact method did not converge
-. `STEP_DIVERGED_ACTIVE_SET`  - the active set of contact nodes did not settle
-- `STEP_DIVERGED_ENERGY_LOSS` - contact took more energy than `ContactSetEnergyTolerance()` allows
+- `STEP_DIVERGED_ACTIVE_SET`  - the active set of contact nodes did not settle
 
    Level: intermediate
 
@@ -26,12 +25,11 @@
 .seealso: `ContactTryStep()`, `BodyTryIntegrate()`, `ControllerSetStepCuts()`
 E*/
 typedef enum {
-  STEP_CONVERGED            = 0,
-  STEP_DIVERGED_NEWTON      = -1,
-  STEP_DIVERGED_LAYER       = -2,
-  STEP_DIVERGED_INVERTED    = -3,
-  STEP_DIVERGED_NAN         = -4,
-  STEP_DIVERGED_OUTER       = -5,
-  STEP_DIVERGED_ACTIVE_SET  = -6,
-  STEP_DIVERGED_ENERGY_LOSS = -7
+  STEP_CONVERGED           = 0,
+  STEP_DIVERGED_NEWTON     = -1,
+  STEP_DIVERGED_LAYER      = -2,
+  STEP_DIVERGED_INVERTED   = -3,
+  STEP_DIVERGED_NAN        = -4,
+  STEP_DIVERGED_OUTER      = -5,
+  STEP_DIVERGED_ACTIVE_SET = -6
 } StepConvergedReason;

@@ -1,8 +1,8 @@
 /*
-   Controller steps that cannot be made as they are: a step that does not converge, that inverts an element, or in which contact takes more
-   energy than it may, is undone and made again in halves, each of which may be cut again. What follows the two halves is a step of the size
-   that has been cut: so the steps that a run makes hang on its solution alone, and not on what happened before. Observers see the ends of
-   whole controller steps.
+   Controller steps that cannot be made as they are: a step that does not converge, that inverts an element, or in which contact takes or brings
+   more energy than it may, is undone and made again in halves, each of which may be cut again. What follows the two halves is a step of the
+   size that has been cut: so the steps that a run makes hang on its solution alone, and not on what happened before. Observers see the ends
+   of whole controller steps.
 */
 #include "controllerimpl.h"
 
@@ -25,14 +25,14 @@
 
   Notes:
   A step fails whose outer iteration, active set, Newton's method or massless layer does not converge, that inverts an element, or in which
-  contact takes more energy than `ContactSetEnergyTolerance()` allows. It is undone and made again in halves, these again in halves where
-they fail, up to so many times. After both halves the next step is one of the size that has been cut, so that each controller step begins
-  whole. A run that makes cuts ends with the same bits as one that makes these steps without any that fail.
+  contact takes or brings more energy than `ContactSetEnergyTolerance()` allows. It is undone and made again in halves, these again in
+halves where they fail, up to so many times. After both halves the next step is one of the size that has been cut, so that each controller
+step begins whole. A run that makes cuts ends with the same bits as one that makes these steps without any that fail.
 
   Each body makes as many substeps to a cut step as to a whole one, which are shorter. Times in the output are the ends of whole controller
   steps.
 
-  Where the last cut does not help the run ends with an error, or -schwarz_unconverged accept takes what has not converged; what loses
+  Where the last cut does not help the run ends with an error, or -schwarz_unconverged accept takes what has not converged; what changes
 energy is accepted, and counted: `ControllerGetCuts()`.
 
   Forward-increment Lagrange multipliers and the contact-stabilised method change the start of their steps, which are never cut.
@@ -144,9 +144,10 @@ void ControllerNoteEnergies(Controller controller, PetscInt step)
   controller->largest_energy = PetscMax(controller->largest_energy, size);
 }
 
-/* Whether contact has taken more energy in the step just made than it may, compared with what the errors of the summary are compared with
+/* Whether contact has taken or brought more energy in the step just made than it may, compared with what the errors of the summary are
+ * compared with
  */
-static PetscErrorCode LosesEnergy(Controller controller, PetscBool *loses)
+static PetscErrorCode ChangesEnergy(Controller controller, PetscBool *changes)
 {
   const PetscReal largest = controller->largest_energy, start = controller->initial_energy;
   PetscReal       loss, tolerance;
@@ -154,7 +155,7 @@ static PetscErrorCode LosesEnergy(Controller controller, PetscBool *loses)
   PetscFunctionBegin;
   PetscCall(ContactGetEnergyTolerance(controller->contact, &tolerance));
   PetscCall(ContactGetEnergyLoss(controller->contact, &loss));
-  *loses = (PetscBool)(loss > tolerance * (start > NOTHING_AT_START * largest ? start : largest));
+  *changes = (PetscBool)(PetscAbsReal(loss) > tolerance * (start > NOTHING_AT_START * largest ? start : largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -163,7 +164,7 @@ static PetscErrorCode TryStep(Controller controller, PetscInt level, PetscBool *
 {
   const PetscBool     may_cut = (PetscBool)(level < controller->most_cuts);
   StepConvergedReason reason;
-  PetscBool           loses = PETSC_FALSE;
+  PetscBool           changes = PETSC_FALSE;
   ContactCounts       counts;
 
   PetscFunctionBegin;
@@ -171,9 +172,9 @@ static PetscErrorCode TryStep(Controller controller, PetscInt level, PetscBool *
   PetscCall(ContactGetCounts(controller->contact, &counts));
   controller->step_sweeps += counts.sweeps;
   if (reason < 0 && !may_cut) PetscCall(ContactRaiseFailure(controller->contact, level));
-  if (reason >= 0 && controller->most_cuts) PetscCall(LosesEnergy(controller, &loses));
-  if (loses && !may_cut) controller->cuts.lossy_steps++;
-  *done = (PetscBool)(reason >= 0 && !(loses && may_cut));
+  if (reason >= 0 && controller->most_cuts) PetscCall(ChangesEnergy(controller, &changes));
+  if (changes && !may_cut) controller->cuts.lossy_steps++;
+  *done = (PetscBool)(reason >= 0 && !(changes && may_cut));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -74,7 +74,8 @@ static const KnownOption options[] = {
     {"time", OPTION_OF_BODY, "ts_type", "alpha2|centraldifference|static",
      "integrator: implicit, explicit, or none (no inertia); default alpha2"},
     {"time", OPTION_OF_RUN, "controller_step_cuts", "n",
-     "how often a controller step that does not converge, inverts an element or loses energy at contact is cut in halves, default 4; 0: it "
+     "how often a controller step that does not converge, inverts an element, or loses or gains energy at contact, is cut in halves, "
+     "default 4; 0: it "
      "ends the run"},
     {"time", OPTION_OF_BODY, "ts_time_step", "dt|auto",
      "substep [s], default the controller step; auto: 0.9 of the stable step of an explicit body, made smaller to divide the controller "
@@ -100,7 +101,7 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_angle_bound", "a",
      "turn of a contact normal after which its row is built again [rad], default 0.1"},
     {"contact", OPTION_OF_RUN, "contact_energy_tolerance", "t",
-     "part of the system's energy that contact may take in a controller step before it is made again in halves, 1e-3"},
+     "part of the system's energy that contact may take or bring in a controller step before it is made again in halves, default 1e-3"},
     {"contact", OPTION_OF_RUN, "contact_tolerance", "g", "depth that does not yet count as penetration [m]"},
 
     {"obstacles", OPTION_OF_RUN, "obstacles", "o,p", "names of rigid obstacles; options of obstacle o begin with -o_"},

@@ -12,7 +12,7 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetTolerance",
                              contact->options.tolerance, &contact->options.tolerance, NULL));
   PetscCall(ContactGetEnergyTolerance(contact, &energy_tolerance));
-  PetscCall(PetscOptionsReal("-contact_energy_tolerance", "Energy that contact may take in a step [parts of the system's]",
+  PetscCall(PetscOptionsReal("-contact_energy_tolerance", "Energy that contact may take or bring in a step [parts of the system's]",
                              "ContactSetEnergyTolerance", energy_tolerance, &energy_tolerance, NULL));
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetConstraint",
                              ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
@@ -28,7 +28,7 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.angle_bound, &contact->options.angle_bound, NULL));
   PetscOptionsEnd();
   PetscCheck(energy_tolerance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_energy_tolerance %g must be positive; inf for none", (double)energy_tolerance);
+             "-contact_energy_tolerance %g must be positive; a large one for none", (double)energy_tolerance);
   PetscCall(ContactSetEnergyTolerance(contact, energy_tolerance));
   PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
@@ -99,7 +99,7 @@ static PetscErrorCode ReadPairs(Contact contact)
                                                                  start (default); false where bodies move round each other, as balls do
 . -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
 . -contact_tolerance g                                          - depth that does not yet count as penetration [m]
-- -contact_energy_tolerance t                                   - energy that contact may take in a step before this is cut, 1e-3
+- -contact_energy_tolerance t                                   - energy that contact may take or bring in a step, 1e-3
 
   Level: beginner
 

@@ -1,7 +1,7 @@
 /* The energy that contact takes in a controller step. */
 #include <impakt/private/contactimpl.h>
 
-/* Of the energy of the system: contact may take so much in a step before it is made again in halves */
+/* Of the energy of the system: contact may take or bring so much in a step before it is made again in halves */
 #define ENERGY_TOLERANCE 1e-3
 
 /* Whether a row joins or leaves contact in the step under way, on any rank; and whether the nodes of such a row have mass, or a body of
@@ -76,20 +76,23 @@ PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
 }
 
 /*@
-  ContactSetEnergyTolerance - how much energy contact may take in a controller step before it is made again in halves
+  ContactSetEnergyTolerance - how much energy contact may take or bring in a controller step before it is made again in halves
 
   Logically Collective
 
   Input Parameters:
 + contact   - the `Contact`
-- tolerance - part of the energy of the system, of which the summary's errors are parts too; `PETSC_INFINITY`: any; `PETSC_DEFAULT`: 1e-3
+- tolerance - part of the energy of the system, of which the summary's errors are parts too; `PETSC_DEFAULT`: 1e-3
 
   Options Database Key:
 . -contact_energy_tolerance t - the tolerance
 
   Level: intermediate
 
-  Note:
+  Notes:
+  A step that does not resolve contact takes energy where rows join, and brings it where they leave. A block that hits a beam ends with +185
+% of the energy at a step of 2e-4 s without cuts, and with -1.5 % with four.
+
   When all cuts are used up the step is accepted, and counted.
 
 .seealso: `Contact`, `ContactGetEnergyLoss()`, `ControllerSetStepCuts()`
@@ -106,7 +109,7 @@ PetscErrorCode ContactSetEnergyTolerance(Contact contact, PetscReal tolerance)
 }
 
 /*@
-  ContactGetEnergyTolerance - how much energy contact may take in a controller step before it is made again in halves
+  ContactGetEnergyTolerance - how much energy contact may take or bring in a controller step before it is made again in halves
 
   Not Collective
 

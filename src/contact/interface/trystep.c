@@ -55,7 +55,7 @@ PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt cuts)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (!cuts) PetscCall(StepFailureRaise(comm, &contact->attempt.failure));
   PetscCheck(contact->attempt.failure.reason >= 0, comm, contact->attempt.failure.code,
-             "%s. The controller step had been cut in halves %" PetscInt_FMT " time%s by then, to %g s (-controller_step_cuts)",
+             "%s [after the controller step had been cut in halves %" PetscInt_FMT " time%s, to %g s: -controller_step_cuts]",
              contact->attempt.failure.message, cuts, cuts == 1 ? "" : "s", (double)contact->step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
