@@ -19,6 +19,9 @@ struct _p_Controller {
   Contact   contact;
   PetscReal time_start, time_end, time_step;
   PetscInt  steps;
+  PetscBool chooses_step;     /* the step is the largest that resolves contact */
+  PetscReal resolved_step;    /* that, where it is not chosen [s]; infinity: none */
+  char      step_reason[512]; /* what that follows from */
   /* step control */
   PetscInt       most_cuts; /* how often a step may be cut in halves */
   ControllerCuts cuts;
@@ -42,6 +45,9 @@ struct _p_Controller {
 /* controller.c calls terminal.c and monitors.c, terminal.c calls monitors.c */
 PETSC_INTERN PetscErrorCode ControllerNotify(Controller, PetscInt);
 PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);
+/* autostep.c */
+PETSC_INTERN PetscErrorCode ControllerChooseStep(Controller);
+PETSC_INTERN PetscErrorCode ControllerWarnOfStep(Controller);
 /* stepcontrol.c */
 PETSC_INTERN PetscErrorCode ControllerReadStepControl(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpStepControl(Controller);

@@ -70,7 +70,8 @@ static const KnownOption options[] = {
 
     {"time", OPTION_OF_RUN, "time_start", "t", "start [s], default 0"},
     {"time", OPTION_OF_RUN, "time_end", "t", "end [s]"},
-    {"time", OPTION_OF_RUN, "time_step", "dt", "controller step, at whose ends all bodies are at the same time [s]"},
+    {"time", OPTION_OF_RUN, "time_step", "dt|auto",
+     "controller step, at whose ends all bodies are at the same time [s]; auto: the largest that resolves contact"},
     {"time", OPTION_OF_BODY, "ts_type", "alpha2|centraldifference|static",
      "integrator: implicit, explicit, or none (no inertia); default alpha2"},
     {"time", OPTION_OF_RUN, "controller_step_cuts", "n",

@@ -38,6 +38,8 @@ typedef struct {
 
 /* Mesh and material, as contact methods scale by them */
 PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetContactElementSize(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetInitialVelocity(Body, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyGetElementStiffness(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetCrossSection(Body, PetscReal *);

@@ -204,8 +204,9 @@ struct _p_Contact {
   ContactCounts     counts;
   ContactAttempt    attempt;
   ContactWork       work;
-  PetscBool         setup; /* ContactSetUp() has been called */
-  void             *data;  /* what the method keeps */
+  PetscBool         surfaces_known; /* ContactSetUpSurfaces() has been called */
+  PetscBool         setup;          /* ContactSetUp() has been called */
+  void             *data;           /* what the method keeps */
 };
 
 PETSC_INTERN PetscFunctionList ContactList;

@@ -125,6 +125,54 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 }
 
 /*@
+  BodyGetContactElementSize - edge length of the smallest element with a contact node
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetContactNodes()`
+
+  Output Parameter:
+. size - edge of the line, square or cube of its volume; of a simplex, of that which holds 2 or 6 of them; that of all elements together
+where there are no contact nodes [m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetElementSize()`, `ContactGetResolvedStep()`
+@*/
+PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
+{
+  const PetscInt nodes = body->model.element->nodes;
+  PetscReal      least = PETSC_MAX_REAL;
+  PetscBool      simplex;
+  PetscInt       dim, cstart, cend;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(size, 2);
+  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
+  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
+  for (PetscInt e = 0; e < cend - cstart; e++) {
+    PetscBool touches = PETSC_FALSE;
+    PetscReal measure;
+
+    for (PetscInt a = 0; a < nodes && !touches; a++) touches = body->layer.contains[body->mesh.connectivity[e * nodes + a]];
+    if (!touches) continue;
+    PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cstart + e, &measure, NULL, NULL));
+    least = PetscMin(least, measure);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
+  if (least == PETSC_MAX_REAL) {
+    PetscCall(BodyGetElementSize(body, size));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (simplex && dim > 1) least *= dim == 3 ? 6 : 2;
+  *size = PetscPowReal(least, 1.0 / dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetImpedance - force for a unit velocity of a plane wave, for each unit of area
 
   Not Collective
