@@ -72,12 +72,11 @@ PetscErrorCode ControllerWarnOfStep(Controller controller)
 
   PetscFunctionBegin;
   if (ratio <= MUCH_LARGER) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFPrintf(comm, stderr,
-                         "impakt: warning: -time_step %g s is %.0f times the %.3g s that resolve contact (%s): expect %s forces that are "
-                         "means over several impacts' rise times; -time_step auto takes %.3g s\n",
-                         (double)controller->time_step, (double)ratio, (double)controller->resolved_step, controller->step_reason,
-                         controller->most_cuts ? "steps cut in halves where rows join and leave, and"
-                                               : "energy lost or gained where rows join and leave, and",
-                         (double)controller->resolved_step));
+  PetscCall(PetscFPrintf(
+      comm, stderr,
+      "impakt: warning: -time_step %g s is %.0f times the %.3g s that resolve contact (%s): contact that begins or ends within a "
+      "step takes or brings energy%s, and its forces are means over steps; -time_step auto takes %.3g s\n",
+      (double)controller->time_step, (double)ratio, (double)controller->resolved_step, controller->step_reason,
+      controller->most_cuts ? ", so that steps may have to be cut in halves" : "", (double)controller->resolved_step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

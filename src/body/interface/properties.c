@@ -125,7 +125,7 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 }
 
 /*@
-  BodyGetContactElementSize - edge length of the smallest element with a contact node
+  BodyGetContactElementSize - edge length of the elements with a contact node, from their mean volume
 
   Collective
 
@@ -133,8 +133,8 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 . body - the `Body`, after `BodySetContactNodes()`
 
   Output Parameter:
-. size - edge of the line, square or cube of its volume; of a simplex, of that which holds 2 or 6 of them; that of all elements together
-where there are no contact nodes [m]
+. size - edge of the line, square or cube with the mean volume; of simplices, of that which holds 2 or 6 of them; that of all
+         elements where there are no contact nodes [m]
 
   Level: developer
 
@@ -142,8 +142,8 @@ where there are no contact nodes [m]
 @*/
 PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
 {
-  const PetscInt nodes = body->model.element->nodes;
-  PetscReal      least = PETSC_MAX_REAL;
+  const PetscInt nodes   = body->model.element->nodes;
+  PetscReal      sums[2] = {0, 0};
   PetscBool      simplex;
   PetscInt       dim, cstart, cend;
 
@@ -160,15 +160,13 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
     for (PetscInt a = 0; a < nodes && !touches; a++) touches = body->layer.contains[body->mesh.connectivity[e * nodes + a]];
     if (!touches) continue;
     PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cstart + e, &measure, NULL, NULL));
-    least = PetscMin(least, measure);
+    sums[0] += measure;
+    sums[1]++;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
-  if (least == PETSC_MAX_REAL) {
-    PetscCall(BodyGetElementSize(body, size));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (simplex && dim > 1) least *= dim == 3 ? 6 : 2;
-  *size = PetscPowReal(least, 1.0 / dim);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  if (!(sums[1] > 0)) PetscCall(SumCells(body, sums));
+  if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
+  *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,8 +11,8 @@
 
 /* One side of a pair */
 typedef struct {
-  PetscReal size;      /* of its smallest contact element [m] */
-  PetscReal transit;   /* of a plane wave through it [s] */
+  PetscReal size;      /* of its contact elements [m] */
+  PetscReal transit;   /* of a plane wave through one [s] */
   PetscReal impedance; /* [N s/m^3] */
   PetscReal velocity[3];
 } Side;
@@ -79,8 +79,8 @@ static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, Pets
   Level: developer
 
   Notes:
-  With the masses m = rho h and the stiffnesses k = M / h of the contact elements on both sides, for a unit of area, h being the edge of the
-  smallest element with a contact node and M the modulus of plane waves, the step is sqrt((1/k_1 + 1/k_2) / (1/m_1 + 1/m_2)): between equal
+  With the masses m = rho h and the stiffnesses k = M / h of the contact elements on both sides, for a unit of area, h being the mean edge
+of the elements with a contact node and M the modulus of plane waves, the step is sqrt((1/k_1 + 1/k_2) / (1/m_1 + 1/m_2)): between equal
 sides the time that a wave takes through a contact element.
 
   It is less where the bodies, at their mean velocities at the start, would close by more than a quarter of a contact element.
@@ -99,7 +99,7 @@ PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t s
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair    = &contact->pairs[p];
     PetscBool          inertia = PETSC_TRUE;
-    PetscReal          of_pair;
+    PetscReal          of_pair = 0;
     char               why[256];
 
     for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++) {
