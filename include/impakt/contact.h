@@ -279,6 +279,7 @@ PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactGetOverlap(Contact, PetscInt, PetscReal *, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);

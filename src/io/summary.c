@@ -63,6 +63,8 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SetReal(object, "max_penetration", contact->max_penetration));
   PetscCall(SetReal(object, "area_max", contact->area_max));
   PetscCall(SetInteger(object, "active_max", contact->active_max));
+  PetscCall(SetMember(object, "still_in_contact", json_boolean(contact->still_in_contact)));
+  PetscCall(SetReal(object, "gap_final", contact->gap_final));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,6 +170,19 @@ static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What a user should know before believing the figures */
+static PetscErrorCode AddWarnings(json_t *root, const Verdict *verdict)
+{
+  json_t *array = json_array();
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < verdict->n; i++)
+    PetscCheck(!json_array_append_new(array, json_string(verdict->text[i])), PETSC_COMM_SELF, PETSC_ERR_LIB,
+               "Jansson cannot store the warnings in the summary: out of memory, or not UTF-8");
+  PetscCall(SetMember(root, "warnings", array));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddErrors(json_t *root, Exact exact)
 {
   json_t     *object, *bodies;
@@ -260,9 +275,10 @@ static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact con
 + controller - the `Controller`, at its end
 . results    - figures of the run
 . exact      - what it was compared with, or `NULL`
+. verdict    - what is amiss with it
 - path       - the file
 */
-PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const char path[])
+PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const Verdict *verdict, const char path[])
 {
   char        part[PETSC_MAX_PATH_LEN];
   json_t     *root;
@@ -285,6 +301,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(AddBodies(root, bodies, results));
   PetscCall(AddSystem(root, results));
   if (exact) PetscCall(AddErrors(root, exact));
+  PetscCall(AddWarnings(root, verdict));
   PetscCall(AddTiming(root, controller, contact, n, bodies));
   PetscCall(OutputFileGetPart(path, sizeof(part), part));
   failed = json_dump_file(root, part, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
