@@ -9,6 +9,7 @@
 #include <impakt/io.h>
 #include <impakt/material.h>
 #include <impakt/mesh.h>
+#include <impakt/stepreason.h>
 #include <impakt/surface.h>
 #include <impakt/trace.h>
 #include <impakt/transfer.h>

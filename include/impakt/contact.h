@@ -1,6 +1,7 @@
 /* Contact between bodies: pairs, active set, and the methods that advance all bodies through a controller step. */
 #pragma once
 #include <impakt/body.h>
+#include <impakt/stepreason.h>
 #include <impakt/transfer.h>
 
 /*S
@@ -255,6 +256,8 @@ PETSC_EXTERN PetscErrorCode ContactAddObstacle(Contact, Obstacle);
 PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
 PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
+PETSC_EXTERN PetscErrorCode ContactSetEnergyTolerance(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGetEnergyTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, ContactLaw);
 PETSC_EXTERN PetscErrorCode ContactGetLaw(Contact, ContactLaw *);
 PETSC_EXTERN PetscErrorCode ContactSetConstraint(Contact, ContactConstraint);
@@ -276,9 +279,18 @@ PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
+PETSC_EXTERN PetscErrorCode ContactSetUpSurfaces(Contact);
+PETSC_EXTERN PetscErrorCode ContactGetResolvedStep(Contact, PetscReal *, size_t, char[]);
 PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
 PETSC_EXTERN PetscErrorCode ContactStep(Contact);
 PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
+PETSC_EXTERN PetscErrorCode ContactTryStep(Contact, PetscBool, PetscReal, StepConvergedReason *);
+PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
+PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactGetOverlap(Contact, PetscInt, PetscReal *, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);

@@ -34,7 +34,23 @@ typedef struct {
   const ContactPairState *pairs;              /* per pair */
   PetscInt                sweeps;             /* of this step, or of that part of it which took most */
   PetscReal               penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
+  PetscInt                step_cuts;          /* how often a step had to be cut in halves in this controller step */
 } ControllerFrame;
+
+/*S
+   ControllerCuts - how often controller steps had to be cut in halves so far
+
+   Level: intermediate
+
+.seealso: `ControllerGetCuts()`, `ControllerSetStepCuts()`
+S*/
+typedef struct {
+  PetscInt cuts;  /* steps, whole or cut before, that were made again in halves */
+  PetscInt steps; /* controller steps with cuts */
+  PetscInt
+      lossy_steps; /* accepted after the last cut although contact took or brought more energy than `ContactSetEnergyTolerance()` allows */
+  PetscReal smallest_step; /* that has been made; the controller step if none was cut [s] */
+} ControllerCuts;
 
 typedef PetscErrorCode ControllerMonitorFn(Controller, const ControllerFrame *, void *);
 
@@ -43,6 +59,9 @@ PETSC_EXTERN PetscErrorCode ControllerFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ControllerCreate(MPI_Comm, Controller *);
 PETSC_EXTERN PetscErrorCode ControllerAddBody(Controller, Body);
 PETSC_EXTERN PetscErrorCode ControllerSetTimes(Controller, PetscReal, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode ControllerSetStepCuts(Controller, PetscInt);
+PETSC_EXTERN PetscErrorCode ControllerGetStepCuts(Controller, PetscInt *);
+PETSC_EXTERN PetscErrorCode ControllerGetCuts(Controller, ControllerCuts *);
 PETSC_EXTERN PetscErrorCode ControllerSetFromOptions(Controller);
 PETSC_EXTERN PetscErrorCode ControllerSetEnergyGuard(Controller, PetscReal);
 PETSC_EXTERN PetscErrorCode ControllerGetEnergyGuard(Controller, PetscReal *);

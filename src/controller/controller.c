@@ -26,6 +26,7 @@ PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
   PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm,
                               ControllerDestroy, ControllerView));
   (*controller)->guard.part = ENERGY_GUARD;
+  (*controller)->most_cuts  = CONTROLLER_STEP_CUTS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -52,12 +53,16 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   if (controller->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(n, comm, PETSC_ERR_ARG_WRONGSTATE, "There are no bodies: call ControllerAddBody() or ControllerSetFromOptions() first");
-  PetscCheck(controller->time_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE,
+  PetscCheck(controller->time_step > 0 || controller->chooses_step, comm, PETSC_ERR_ARG_WRONGSTATE,
              "There are no times: call ControllerSetTimes() or ControllerSetFromOptions() first");
   PetscCall(PetscTime(&begin));
-  for (PetscInt b = 0; b < n; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(ContactSetUpSurfaces(contact));
+  PetscCall(ControllerChooseStep(controller));
+  for (PetscInt b = 0; b < n; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ContactSetUp(contact));
+  PetscCall(ControllerSetUpStepControl(controller));
+  PetscCall(ControllerWarnOfStep(controller));
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
   PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
                          &controller->contact_velocities, n_pairs, &controller->pair_states));
@@ -99,7 +104,6 @@ PetscErrorCode ControllerSolve(Controller controller)
 {
   PetscLogDouble wall[2];
   struct rusage  cpu[2];
-  PetscInt       parts;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
@@ -107,17 +111,8 @@ PetscErrorCode ControllerSolve(Controller controller)
   PetscCall(PetscTime(&wall[0]));
   getrusage(RUSAGE_SELF, &cpu[0]);
   PetscCall(ControllerNotify(controller, 0));
-  PetscCall(ContactGetParts(controller->contact, &parts));
   for (PetscInt step = 1; step <= controller->steps; step++) {
-    controller->sweeps = 0;
-    for (PetscInt part = 0; part < parts; part++) {
-      ContactCounts counts;
-
-      PetscCall(ContactStep(controller->contact));
-      PetscCall(ContactAccept(controller->contact));
-      PetscCall(ContactGetCounts(controller->contact, &counts));
-      controller->sweeps = PetscMax(controller->sweeps, counts.sweeps);
-    }
+    PetscCall(ControllerMakeStep(controller));
     PetscCall(ControllerNotify(controller, step));
   }
   PetscCall(PetscTime(&wall[1]));
@@ -154,6 +149,8 @@ PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g s, %" PetscInt_FMT " controller steps of %g s\n", (double)controller->time_start,
                                    (double)(controller->time_start + controller->steps * controller->time_step), controller->steps,
                                    (double)controller->time_step));
+  if (controller->chooses_step)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  the largest step that resolves contact: %s\n", controller->step_reason));
   for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodyView(controller->bodies[b], viewer));
   PetscCall(ContactView(controller->contact, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,6 +4,8 @@
 #include <petsc/private/petscimpl.h>
 
 #define MAX_MONITORS 16
+/* How often a controller step may be cut in halves, by default */
+#define CONTROLLER_STEP_CUTS 4
 /* Most controller steps in a run: they are counted in PetscInt, which has 32 bits */
 #define MOST_STEPS 2e9
 /* If the duration exceeds a whole number of controller steps by no more than this, relative and in steps, no step is added: round-off */
@@ -17,6 +19,15 @@ struct _p_Controller {
   Contact   contact;
   PetscReal time_start, time_end, time_step;
   PetscInt  steps;
+  PetscBool chooses_step;     /* the step is the largest that resolves contact */
+  PetscReal resolved_step;    /* that, where it is not chosen [s]; infinity: none */
+  char      step_reason[512]; /* what that follows from */
+  /* step control */
+  PetscInt       parts;     /* of a controller step, see ContactGetParts() */
+  PetscInt       most_cuts; /* how often a step may be cut in halves */
+  ControllerCuts cuts;
+  PetscInt       step_cuts, step_sweeps;         /* of the controller step under way; the sweeps with those of steps that failed */
+  PetscReal      initial_energy, largest_energy; /* of all bodies, with the work of loads: at the start; so far [J] */
   /* observers */
   PetscInt             n_monitors;
   ControllerMonitorFn *monitor[MAX_MONITORS];
@@ -27,7 +38,6 @@ struct _p_Controller {
   PetscBool        *has_obstacle; /* per body: it may touch an obstacle, whose force is one from outside */
   PetscReal        *contact_positions, *contact_velocities;
   ContactPairState *pair_states;
-  PetscInt          sweeps;
   /* energy guard */
   struct {
     PetscReal  part;    /* of the energy, that a run may gain; 0: no guard */
@@ -46,3 +56,11 @@ PETSC_INTERN PetscErrorCode ControllerReadEnergyGuard(Controller);
 PETSC_INTERN PetscErrorCode ControllerGuardEnergy(Controller, const ControllerFrame *);
 PETSC_INTERN PetscErrorCode ControllerNotify(Controller, PetscInt);
 PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);
+/* autostep.c */
+PETSC_INTERN PetscErrorCode ControllerChooseStep(Controller);
+PETSC_INTERN PetscErrorCode ControllerWarnOfStep(Controller);
+/* stepcontrol.c */
+PETSC_INTERN PetscErrorCode ControllerReadStepControl(Controller);
+PETSC_INTERN PetscErrorCode ControllerSetUpStepControl(Controller);
+PETSC_INTERN PetscErrorCode ControllerMakeStep(Controller);
+PETSC_INTERN void           ControllerNoteEnergies(Controller, PetscInt);

@@ -112,10 +112,10 @@ static PetscErrorCode ReadBodies(Controller controller)
 static PetscErrorCode CheckTimes(MPI_Comm comm, PetscErrorCode code, PetscReal start, PetscReal end, PetscReal step)
 {
   PetscFunctionBegin;
-  PetscCheck(step > 0, comm, code, "-time_step %g s must be positive", (double)step);
+  PetscCheck(step > 0 || step == (PetscReal)PETSC_DETERMINE, comm, code, "-time_step %g s must be positive", (double)step);
   PetscCheck(end > start, comm, code, "-time_end %g s must be later than -time_start %g s", (double)end, (double)start);
-  PetscCheck((end - start) / step < MOST_STEPS, comm, code, "-time_step %g s is too small for %g s of simulated time", (double)step,
-             (double)(end - start));
+  PetscCheck(step < 0 || (end - start) / step < MOST_STEPS, comm, code, "-time_step %g s is too small for %g s of simulated time",
+             (double)step, (double)(end - start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,12 +128,14 @@ static PetscErrorCode CheckTimes(MPI_Comm comm, PetscErrorCode code, PetscReal s
 + controller - the `Controller`, not yet set up
 . start      - [s]
 . end        - [s]; the run ends with the first controller step that reaches it
-- step       - controller step, at whose ends all bodies are synchronised [s]
+- step       - controller step, at whose ends all bodies are synchronised [s]; `PETSC_DETERMINE`: the largest that resolves contact, see
+               `ContactGetResolvedStep()`, made smaller to divide the duration, or a multiple of the longest substep that a body has been
+               given; explicit bodies without one get a stable substep
 
   Options Database Keys:
 + -time_start t - the start, default 0
 . -time_end t   - the end
-- -time_step dt - the controller step
+- -time_step (auto|dt) - the controller step
 
   Level: beginner
 
@@ -153,25 +155,51 @@ PetscErrorCode ControllerSetTimes(Controller controller, PetscReal start, PetscR
   PetscCall(CheckTimes(comm, PETSC_ERR_ARG_OUTOFRANGE, start, end, step));
   controller->time_start = start;
   controller->time_end   = end;
-  controller->time_step  = step;
-  controller->steps      = (PetscInt)PetscCeilReal((end - start) / step * (1 - STEPS_ROUND_OFF) - STEPS_FLOOR);
+  if (step < 0) {
+    controller->chooses_step = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  controller->time_step = step;
+  controller->steps     = (PetscInt)PetscCeilReal((end - start) / step * (1 - STEPS_ROUND_OFF) - STEPS_FLOOR);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -time_step takes a word where others take a number */
+static PetscErrorCode ReadTimeStep(Controller controller, PetscReal *step, PetscBool *set)
+{
+  char      text[64] = "";
+  PetscBool is_auto  = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)controller);
+  PetscCall(PetscOptionsString("-time_step", "Controller step [s], or auto", "ControllerSetTimes", "", text, sizeof(text), set));
+  PetscOptionsEnd();
+  if (!*set) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
+  if (is_auto) *step = PETSC_DETERMINE;
+  else PetscCall(PetscOptionsGetReal(NULL, ((PetscObject)controller)->prefix, "-time_step", step, NULL));
+  PetscCheck(is_auto || *step > 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT, "-time_step %g s must be positive",
+             (double)*step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ReadTimes(Controller controller)
 {
-  MPI_Comm  comm  = PetscObjectComm((PetscObject)controller);
-  PetscReal start = controller->time_start, end = controller->time_end, step = controller->time_step;
-  PetscBool set_end, set_step, known                                         = (PetscBool)(controller->time_step > 0);
+  MPI_Comm        comm  = PetscObjectComm((PetscObject)controller);
+  const PetscBool known = (PetscBool)(controller->time_step > 0 || controller->chooses_step);
+  PetscReal       start = controller->time_start, end = controller->time_end;
+  PetscReal       step = controller->chooses_step ? (PetscReal)PETSC_DETERMINE : controller->time_step;
+  PetscBool       set_end, set_step;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)controller);
   PetscCall(PetscOptionsReal("-time_start", "Start time [s]", "ControllerSetTimes", start, &start, NULL));
   PetscCall(PetscOptionsReal("-time_end", "End time [s]", "ControllerSetTimes", end, &end, &set_end));
-  PetscCall(PetscOptionsReal("-time_step", "Controller step [s]", "ControllerSetTimes", step, &step, &set_step));
   PetscOptionsEnd();
+  PetscCall(ReadTimeStep(controller, &step, &set_step));
   PetscCheck((set_end && set_step) || known, comm, PETSC_ERR_USER_INPUT, "-time_end and -time_step are needed, in s");
   PetscCall(CheckTimes(comm, PETSC_ERR_USER_INPUT, start, end, step));
+  controller->chooses_step = PETSC_FALSE;
   PetscCall(ControllerSetTimes(controller, start, end, step));
   PetscCall(ControllerReadEnergyGuard(controller));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -189,7 +217,8 @@ static PetscErrorCode ReadTimes(Controller controller)
 + -bodies a,b         - names of the bodies; options of body a begin with -a_
 . -time_start t       - [s], default 0
 . -time_end t         - [s]; the run ends with the first controller step that reaches it
-. -time_step dt       - controller step, at whose ends all bodies are synchronised [s]
+. -time_step (auto|dt) - controller step, at whose ends all bodies are synchronised [s]; auto: the largest that resolves contact
+. -controller_step_cuts n - how often a controller step that fails is cut in halves, 4
 . -monitor_interval n - a line on the terminal every n controller steps, 0 (default) for none
 - -progress           - a progress bar on standard error, default where that is a terminal
 
@@ -211,6 +240,7 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscCall(ControllerSetUpTerminal(controller));
   if (!controller->contact) PetscCall(ReadBodies(controller));
   PetscCall(ReadTimes(controller));
+  PetscCall(ControllerReadStepControl(controller));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetFromOptions(contact));
   PetscCall(PetscTime(&end));

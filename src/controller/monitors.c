@@ -49,8 +49,10 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
     if (controller->has_obstacle[b]) controller->measures[b].loaded = PETSC_TRUE;
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
   }
+  ControllerNoteEnergies(controller, step);
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
-  frame.sweeps = controller->sweeps;
+  frame.sweeps    = step ? controller->step_sweeps : 0;
+  frame.step_cuts = step ? controller->step_cuts : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)

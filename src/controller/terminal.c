@@ -44,6 +44,7 @@ static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *fr
   if (frame->n_pairs)
     PetscCall(PetscPrintf(comm, "  gap %10.3e m  active %" PetscInt_FMT "  force %12.5e N  sweeps %" PetscInt_FMT, (double)gap, active,
                           (double)force, frame->sweeps));
+  if (frame->step_cuts) PetscCall(PetscPrintf(comm, "  cuts %" PetscInt_FMT, frame->step_cuts));
   PetscCall(PetscPrintf(comm, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

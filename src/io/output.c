@@ -155,7 +155,7 @@ PetscErrorCode OutputSetFromOptions(Output output)
 }
 
 /*@
-  OutputReport - writes what is left to write, and prints the results table
+  OutputReport - writes what is left to write, prints the results table, and warns of what is amiss with the results
 
   Collective
 
@@ -170,6 +170,7 @@ PetscErrorCode OutputReport(Output output)
 {
   const StatisticsResults *results;
   PetscViewer              viewer;
+  Verdict                  verdict;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
@@ -177,10 +178,12 @@ PetscErrorCode OutputReport(Output output)
   PetscCall(StatisticsSetDeviation(output->statistics, output->deviation));
   if (output->history) PetscCall(HistoryFlush(output->history));
   if (output->fields) PetscCall(FieldsFinish(output->fields));
-  if (output->summary_path[0]) PetscCall(SummaryWrite(output->controller, results, output->exact, output->summary_path));
+  PetscCall(VerdictMake(output->controller, results, &verdict));
+  if (output->summary_path[0]) PetscCall(SummaryWrite(output->controller, results, output->exact, &verdict, output->summary_path));
   PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)output), &viewer));
   PetscCall(ReportView(output->controller, results, output->exact, viewer));
   PetscCall(OutputView(output, viewer));
+  PetscCall(VerdictPrint(PetscObjectComm((PetscObject)output), &verdict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -48,6 +48,7 @@ static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *resu
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact (%s)\n", type));
   PetscCall(PrintValue(viewer, "first contact", c->first_contact_time, "s", impact));
   PetscCall(PrintValue(viewer, "release", c->release_time, "s", release));
+  if (c->still_in_contact) PetscCall(PetscViewerASCIIPrintf(viewer, "  still in contact at the end\n"));
   PetscCall(PrintCount(viewer, "onsets", c->onsets, -1));
   PetscCall(PrintCount(viewer, "steps in contact", c->steps_in_contact, results->steps));
   PetscCall(PrintValue(viewer, "force, mean", c->force_mean, "N", force));
@@ -58,15 +59,21 @@ static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *resu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewSweeps(Contact contact, const StatisticsResults *results, PetscViewer viewer)
+static PetscErrorCode ViewSweeps(Controller controller, Contact contact, const StatisticsResults *results, PetscViewer viewer)
 {
-  ContactCounts counts;
+  ContactCounts  counts;
+  ControllerCuts cuts;
 
   PetscFunctionBegin;
+  PetscCall(ControllerGetCuts(controller, &cuts));
   PetscCall(ContactGetCounts(contact, &counts));
   PetscCall(PetscViewerASCIIPrintf(viewer, "sweeps\n"));
   PetscCall(PrintCount(viewer, "most in a step", results->max_sweeps, -1));
   PetscCall(PrintValue(viewer, "mean over steps in contact", results->mean_sweeps_contact, "", NAN));
+  if (cuts.cuts) {
+    PetscCall(PrintCount(viewer, "steps made again in halves", cuts.cuts, -1));
+    PetscCall(PrintValue(viewer, "smallest step", cuts.smallest_step, "s", NAN));
+  }
   if (counts.unconverged_steps) PetscCall(PrintCount(viewer, "steps that did not converge", counts.unconverged_steps, results->steps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,7 +144,7 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
   if (results->n_pairs) {
     PetscCall(ViewContact(contact, results, exact, viewer));
-    PetscCall(ViewSweeps(contact, results, viewer));
+    PetscCall(ViewSweeps(controller, contact, results, viewer));
   }
   PetscCall(ViewEnergies(bodies, results, viewer));
   if (exact) PetscCall(ViewErrors(exact, viewer));

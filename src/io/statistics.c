@@ -58,6 +58,7 @@ static void ContactStatisticsInitialize(ContactStatistics *contact)
   contact->force_mean         = NAN;
   contact->force_std          = NAN;
   contact->force_min          = NAN;
+  contact->gap_final          = NAN;
 }
 
 /*
@@ -202,8 +203,10 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   contact->area_max        = PetscMax(contact->area_max, state->area);
   contact->active_max      = PetscMax(contact->active_max, state->active);
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
-  memory->touches = touches;
-  memory->force   = state->force;
+  contact->still_in_contact = touches;
+  contact->gap_final        = state->gap;
+  memory->touches           = touches;
+  memory->force             = state->force;
 }
 
 /* Appends time, forces and nodes in contact of a step to the series */

@@ -15,6 +15,8 @@ typedef struct {
   PetscReal impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
   PetscReal area_max;          /* in contact at the same time [m^2] */
   PetscInt  active_max;        /* nodes in contact at the same time */
+  PetscBool still_in_contact;  /* at the end of the run, which the release time is then */
+  PetscReal gap_final;         /* smallest gap at the end of the run [m] */
 } ContactStatistics;
 
 typedef struct {

@@ -63,6 +63,8 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SetReal(object, "max_penetration", contact->max_penetration));
   PetscCall(SetReal(object, "area_max", contact->area_max));
   PetscCall(SetInteger(object, "active_max", contact->active_max));
+  PetscCall(SetMember(object, "still_in_contact", json_boolean(contact->still_in_contact)));
+  PetscCall(SetReal(object, "gap_final", contact->gap_final));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,6 +111,22 @@ static PetscErrorCode AddSchwarz(json_t *root, Contact contact, const Statistics
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Controller steps that were made again in halves */
+static PetscErrorCode AddStepControl(json_t *root, Controller controller)
+{
+  ControllerCuts cuts;
+  json_t        *object;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetCuts(controller, &cuts));
+  PetscCall(SetObject(root, "step_control", &object));
+  PetscCall(SetInteger(object, "step_cuts", cuts.cuts));
+  PetscCall(SetInteger(object, "steps_cut", cuts.steps));
+  PetscCall(SetReal(object, "smallest_step", cuts.smallest_step));
+  PetscCall(SetInteger(object, "lossy_steps", cuts.lossy_steps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const StatisticsResults *results)
 {
   json_t     *objects, *object;
@@ -152,6 +170,19 @@ static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
   PetscCall(SetReal(object, "momentum_error_max", results->momentum_error_max));
   PetscCall(SetReal(object, "angular_momentum_error_max", results->angular_momentum_error_max));
   PetscCall(SetReal(object, "penalty_energy_max", results->penalty_energy_max));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What a user should know before believing the figures */
+static PetscErrorCode AddWarnings(json_t *root, const Verdict *verdict)
+{
+  json_t *array = json_array();
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < verdict->n; i++)
+    PetscCheck(!json_array_append_new(array, json_string(verdict->text[i])), PETSC_COMM_SELF, PETSC_ERR_LIB,
+               "Jansson cannot store the warnings in the summary: out of memory, or not UTF-8");
+  PetscCall(SetMember(root, "warnings", array));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -247,9 +278,10 @@ static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact con
 + controller - the `Controller`, at its end
 . results    - figures of the run
 . exact      - what it was compared with, or `NULL`
+. verdict    - what is amiss with it
 - path       - the file
 */
-PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const char path[])
+PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const Verdict *verdict, const char path[])
 {
   char        part[PETSC_MAX_PATH_LEN];
   json_t     *root;
@@ -268,9 +300,11 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(SetMember(root, "version", json_string(IMPAKT_VERSION)));
   PetscCall(AddContact(root, contact, results));
   PetscCall(AddSchwarz(root, contact, results));
+  PetscCall(AddStepControl(root, controller));
   PetscCall(AddBodies(root, bodies, results));
   PetscCall(AddSystem(root, results));
   if (exact) PetscCall(AddErrors(root, exact));
+  PetscCall(AddWarnings(root, verdict));
   PetscCall(AddTiming(root, controller, contact, n, bodies));
   PetscCall(OutputFileGetPart(path, sizeof(part), part));
   failed = json_dump_file(root, part, JSON_INDENT(2) | JSON_REAL_PRECISION(17));

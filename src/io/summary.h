@@ -1,6 +1,6 @@
 /* The JSON summary of a run. */
 #pragma once
 #include <impakt/exact.h>
-#include "statistics.h"
+#include "verdict.h"
 
-PETSC_INTERN PetscErrorCode SummaryWrite(Controller, const StatisticsResults *, Exact, const char[]);
+PETSC_INTERN PetscErrorCode SummaryWrite(Controller, const StatisticsResults *, Exact, const Verdict *, const char[]);

@@ -156,6 +156,18 @@ PetscErrorCode ComplianceForget(Compliance c, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The rows that have become known last are not known any more, but for the first `n` */
+PetscErrorCode ComplianceTruncate(Compliance c, PetscInt n)
+{
+  PetscFunctionBegin;
+  if (c->n <= n) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = n; j < c->n; j++) c->place[c->rows[j]] = -1;
+  c->n          = n;
+  c->ramp_valid = PETSC_FALSE;
+  c->state++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Any of: how many rows are known, which, and the place of each row of all ranks among them, or -1 */
 void ComplianceGetRows(Compliance c, PetscInt *n, const PetscInt *rows[], const PetscInt *place[])
 {

@@ -253,6 +253,18 @@ PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The owner of a shared compliance has made rows unknown: their columns are not used either, until they are made again */
+PetscErrorCode ConstrainedSolverForgetUnknown(ConstrainedSolver s)
+{
+  const PetscInt *place;
+
+  PetscFunctionBegin;
+  ComplianceGetRows(s->compliance, NULL, NULL, &place);
+  for (PetscInt j = 0; j < s->global; j++)
+    if (place[j] < 0) s->fresh[j] = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* w = W e_j, the displacement of the rows of this rank under a unit force on row j. Leaves A^{-1} B^T e_j in x. */
 PetscErrorCode ConstrainedSolverApplyUnit(ConstrainedSolver s, PetscInt j, Vec x, PetscScalar w[])
 {

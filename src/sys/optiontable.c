@@ -70,11 +70,16 @@ static const KnownOption options[] = {
 
     {"time", OPTION_OF_RUN, "time_start", "t", "start [s], default 0"},
     {"time", OPTION_OF_RUN, "time_end", "t", "end [s]"},
-    {"time", OPTION_OF_RUN, "time_step", "dt", "controller step, at whose ends all bodies are at the same time [s]"},
     {"time", OPTION_OF_RUN, "energy_guard", "part",
      "a run ends with an error where its energy has grown by more than this part, less the work of loads; default 0.05, 0: none"},
+    {"time", OPTION_OF_RUN, "time_step", "dt|auto",
+     "controller step, at whose ends all bodies are at the same time [s]; auto: the largest that resolves contact"},
     {"time", OPTION_OF_BODY, "ts_type", "alpha2|centraldifference|static",
      "integrator: implicit, explicit, or none (no inertia); default alpha2"},
+    {"time", OPTION_OF_RUN, "controller_step_cuts", "n",
+     "how often a controller step that does not converge, inverts an element, or loses or gains energy at contact, is cut in halves, "
+     "default 4; 0: it "
+     "ends the run"},
     {"time", OPTION_OF_BODY, "ts_time_step", "dt|auto",
      "substep [s], default the controller step; auto: 0.9 of the stable step of an explicit body, made smaller to divide the controller "
      "step"},
@@ -98,6 +103,8 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_slip_bound", "s", "slip after which contact rows are built again, in parts of a face, default 0.2"},
     {"contact", OPTION_OF_RUN, "contact_angle_bound", "a",
      "turn of a contact normal after which its row is built again [rad], default 0.1"},
+    {"contact", OPTION_OF_RUN, "contact_energy_tolerance", "t",
+     "part of the system's energy that contact may take or bring in a controller step before it is made again in halves, default 1e-3"},
     {"contact", OPTION_OF_RUN, "contact_tolerance", "g", "depth that does not yet count as penetration [m]"},
     {"contact", OPTION_OF_RUN, "contact_allow_unstable", "true|false",
      "whether choices that are known to gain energy run all the same, default false"},

@@ -274,6 +274,8 @@ PetscErrorCode TSSecondOrderFinalizePackage(void)
   Also switches off the restart of `TSALPHA2`, which would make two half steps with another matrix before the next step to estimate an
   acceleration. Impakt always knows the acceleration.
 
+  An integrator whose last step has failed goes on as any other.
+
 .seealso: `TSALPHA2`, `TSCENTRALDIFFERENCE`
 @*/
 PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step, PetscInt step)
@@ -284,5 +286,6 @@ PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step,
   ts->time_step   = time_step;
   ts->steps       = step;
   ts->steprestart = PETSC_FALSE;
+  ts->reason      = TS_CONVERGED_ITERATING;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,6 +31,8 @@ CONTACT = {
     "max_penetration": float,
     "area_max": float,
     "active_max": int,
+    "still_in_contact": bool,
+    "gap_final": float,
 }
 PAIR = {**CONTACT, "impulse_vector": list}
 SUMMARY = {
@@ -50,6 +52,7 @@ SUMMARY = {
         "inner_iterations": int,
         "rebuilds": int,
     },
+    "step_control": {"step_cuts": int, "steps_cut": int, "smallest_step": float, "lossy_steps": int},
     "bodies": {
         name: {
             "dofs": int,
@@ -71,6 +74,7 @@ SUMMARY = {
         },
         "bodies": {name: {key: float for key in ("kinetic", "potential", "mean_velocity", "kinetic_max", "potential_max")} for name in ("left", "right")},
     },
+    "warnings": list,
     "timing": {
         "wall": float,
         "cpu": float,

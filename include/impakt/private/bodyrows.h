@@ -4,6 +4,7 @@
 */
 #pragma once
 #include <impakt/body.h>
+#include <impakt/private/stepfailure.h>
 #include <impakt/trace.h>
 
 /*E
@@ -37,6 +38,8 @@ typedef struct {
 
 /* Mesh and material, as contact methods scale by them */
 PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetContactElementSize(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetInitialVelocity(Body, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyGetElementStiffness(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetCrossSection(Body, PetscReal *);
@@ -56,6 +59,9 @@ PETSC_EXTERN PetscErrorCode BodySetUpSteps(Body);
 PETSC_EXTERN PetscErrorCode BodyShareControllerStep(Body, PetscInt);
 PETSC_EXTERN PetscErrorCode BodySave(Body);
 PETSC_EXTERN PetscErrorCode BodyRestore(Body);
+PETSC_EXTERN PetscErrorCode BodyStepBack(Body);
+PETSC_EXTERN PetscErrorCode BodySetStepLevel(Body, PetscInt);
+PETSC_EXTERN PetscErrorCode BodyNoteKnownRows(Body);
 PETSC_EXTERN PetscErrorCode BodyKeep(Body);
 PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
@@ -64,6 +70,8 @@ PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
 PETSC_EXTERN PetscErrorCode BodyGetRowForces(Body, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputeEnergy(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
+PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
+PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);
@@ -86,6 +94,7 @@ PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 
 /* Forces and impulses on rows that act at one end of a step, and corrections of the state there */
 PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyDropStartForce(Body);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);

@@ -10,10 +10,14 @@ struct _ContactOps {
   PetscErrorCode (*setup)(Contact);
   PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
   PetscErrorCode (*rowschanged)(Contact); /* called after rows have been built again: those marked as changed have new entries */
-  PetscErrorCode (*accept)(Contact);      /* corrects the states at the end of a step, before the next step starts from them */
   /* (NULL) energy that the method's springs store on a row at a gap [J]; without it nobody knows what contact gains, and it is not limited
    */
   PetscReal (*stored)(Contact, PetscInt, PetscReal);
+  PetscErrorCode (*stepback)(Contact); /* a step has failed: what the bodies have told of their compliance in it is forgotten */
+  /* the controller step is contact->step from now on, that of the set-up cut in halves so many times; what the bodies tell of their
+     compliance is another. What is remembered of earlier steps at this level goes on (true) or not. */
+  PetscErrorCode (*steplevel)(Contact, PetscInt, PetscBool);
+  PetscErrorCode (*accept)(Contact); /* corrects the states at the end of a step, before the next step starts from them */
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -71,12 +75,13 @@ typedef struct {
   ContactLaw           law;
   ContactConstraint    constraint;
   ContactStabilization stabilization;
-  PetscBool            facing;         /* pairs of whole bodies keep only the faces that see each other at the start */
-  PetscReal            slip_bound;     /* slip after which rows are built again [parts of a face] */
-  PetscReal            angle_bound;    /* turn of a normal after which they are [rad] */
-  PetscBool            allow_unstable; /* what is known to gain energy runs all the same */
-  PetscBool            shared_times;   /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
-  PetscReal            tolerance;      /* depth that does not yet count as penetration [m] */
+  PetscBool            facing;           /* pairs of whole bodies keep only the faces that see each other at the start */
+  PetscReal            slip_bound;       /* slip after which rows are built again [parts of a face] */
+  PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
+  PetscBool            allow_unstable;   /* what is known to gain energy runs all the same */
+  PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
+  PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
+  PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -194,6 +199,17 @@ typedef struct {
   PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                  /* per group, by its first body */
 } ContactEnergy;
+/* How the controller step is being made */
+typedef struct {
+  StepFailure failure;
+  PetscBool   returns;               /* ContactStep() leaves a failure to its caller */
+  PetscReal   most_loss;             /* energy that a step may take or bring at contact before it is cut, where it may be [J] */
+  PetscBool   may_cut;               /* who can make the step again in halves, so that nothing is accepted that has not converged */
+  PetscInt    level, accepted_level; /* how often the step is cut in halves; how often that was which was accepted last */
+  PetscReal   whole_step;            /* the controller step before any cut [s] */
+  PetscBool   moves_start;           /* the method changes the state that its steps start from, so that none can be made again */
+  PetscBool   again; /* the step before this one began at the same state, and has failed: rows and sides are those of this step already */
+} ContactAttempt;
 
 /* Work space */
 typedef struct {
@@ -234,9 +250,11 @@ struct _p_Contact {
   ContactRanks      ranks;
   ContactResultants resultants;
   ContactCounts     counts;
+  ContactAttempt    attempt;
   ContactWork       work;
-  PetscBool         setup; /* ContactSetUp() has been called */
-  void             *data;  /* what the method keeps */
+  PetscBool         surfaces_known; /* ContactSetUpSurfaces() has been called */
+  PetscBool         setup;          /* ContactSetUp() has been called */
+  void             *data;           /* what the method keeps */
 };
 
 PETSC_INTERN PetscFunctionList ContactList;
@@ -246,7 +264,10 @@ PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
 PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 
-/* What a method calls in a controller step */
+/* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
+   can: ContactFailed() tells. */
+PETSC_EXTERN PetscErrorCode ContactIntegrateBody(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactRejectResidual(Vec);
 PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
@@ -254,6 +275,12 @@ PETSC_EXTERN PetscErrorCode ContactComputeGaps(Contact);
 PETSC_EXTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactOr(Contact, int *);
 PETSC_EXTERN PetscReal      ContactStoresNothing(Contact, PetscInt, PetscReal);
+
+/* Whether the controller step under way cannot be made; the same on every rank */
+static inline PetscBool ContactFailed(Contact contact)
+{
+  return (PetscBool)(contact->attempt.failure.reason < 0);
+}
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);

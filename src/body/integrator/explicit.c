@@ -218,6 +218,7 @@ static PetscErrorCode SetUp(Body body)
   if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));
   PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body));
   PetscCall(TSCentralDifferenceSetAccelerationVec(body->time.ts, body->state.a));
+  integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
   if (layer && body->time.substeps == 1) integrator->ops.freerows = ComputeFreeRows;

@@ -66,13 +66,10 @@ static PetscErrorCode GetParameters(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The effective matrix is K + alpha_m / (alpha_f beta dt^2) M */
 static PetscErrorCode SetUp(Body body)
 {
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-
   PetscFunctionBegin;
-  implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
+  body->integrator->depends_on_step = PETSC_TRUE;
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
   /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
   if (body->rows.have_mass && body->mass.matrix) body->integrator->ops.repeat = NULL;

@@ -5,6 +5,7 @@
 typedef struct {
   PetscReal alpha_m, alpha_f, gamma, beta; /* of TSALPHA2 */
   Mat       matrix;                        /* K + shift M, its held dofs eliminated: body->solver has its factors */
+  Mat       matrices[STEP_MAX_CUTS + 1];   /* that of each level of cut steps which there has been */
   PetscReal shift;                         /* [1/s^2]; 0 without inertia */
   PetscReal terms, round_off; /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
   Vec       u, v, a, next;    /* state of a body at rest while a column of the compliance is made; NULL until then */
@@ -16,6 +17,8 @@ typedef PetscErrorCode BodyPredictorFn(TS, Vec, Vec, Vec, Vec, void *);
 PETSC_INTERN PetscErrorCode BodyImplicitCreate(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUp(Body, BodyResidualFn *, BodyPredictorFn *);
+PETSC_INTERN PetscErrorCode BodyImplicitSetLevel(Body);
+PETSC_INTERN PetscErrorCode BodyImplicitRenew(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetRows(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode BodyImplicitCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitAddForces(Body, PetscReal, Vec, Vec);

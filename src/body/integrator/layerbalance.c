@@ -137,10 +137,12 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     if (contact) layer->now.slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
     if (change <= TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
   }
-  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
-          "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or "
-          "-%smass_redistribute false",
-          body->hdr.name, MAX_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+  PetscCall(StepFailureSet(
+      &body->failure, STEP_DIVERGED_LAYER, PETSC_ERR_NOT_CONVERGED,
+      "Body '%s': the massless contact layer found no balance in %d rounds at time %.9g s; choose a smaller -%sts_time_step, or "
+      "-%smass_redistribute false",
+      body->hdr.name, MAX_ROUNDS, (double)time, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Displacement of this rank's rows under a unit force on one row of any rank [m/N] */

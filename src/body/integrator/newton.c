@@ -214,7 +214,51 @@ static PetscErrorCode SetUpNewton(Body body, SNES snes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The effective matrix and its factors, which a linear body keeps for good, and the callbacks of the TS and its SNES; shift is known */
+/* The effective matrix at a displacement, with its factors in body->solver, for controller steps of the present level. It is K + alpha_m /
+   (alpha_f beta dt^2) M, and K alone without inertia. */
+static PetscErrorCode CreateSolver(Body body, Vec u)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (body->integrator->has_inertia) implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
+  PetscCall(BodyCreateMatrix(body, &implicit->matrix));
+  implicit->matrices[body->time.level] = implicit->matrix;
+  PetscCall(AssembleMatrix(body, u));
+  PetscCall(SetNearNullSpace(body, implicit->matrix));
+  PetscCall(ConstrainedSolverCreate(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,
+                                    BodyGetSharedCompliance(body), &body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Matrix and solver for controller steps that are cut in halves another number of times. That of a linear body without inertia is the same
+   for all steps. */
+PetscErrorCode BodyImplicitSetLevel(Body body)
+{
+  BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
+  const PetscInt level    = body->time.level;
+
+  PetscFunctionBegin;
+  if (!body->integrator->has_inertia && body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!implicit->matrices[level]) {
+    PetscCall(CreateSolver(body, body->model.linear ? NULL : body->saved.u));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  implicit->matrix = implicit->matrices[level];
+  if (body->integrator->has_inertia) implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Matrix and factors of a nonlinear body anew, at the saved displacement */
+PetscErrorCode BodyImplicitRenew(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(AssembleMatrix(body, body->saved.u));
+  PetscCall(ConstrainedSolverRefactor(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The effective matrix and its factors, which a linear body keeps for good, and the callbacks of the TS and its SNES */
 PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
@@ -226,12 +270,7 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
   char          outer[128];
 
   PetscFunctionBegin;
-  PetscCall(BodyCreateMatrix(body, &implicit->matrix));
-  PetscCall(AssembleMatrix(body, NULL));
-  PetscCall(SetNearNullSpace(body, implicit->matrix));
-  PetscCall(ConstrainedSolverCreate(implicit->matrix, body->rows.free_matrix, body->mesh.dim, prefix, BodyGetSharedCompliance(body),
-                                    &body->solver));
-
+  PetscCall(CreateSolver(body, NULL));
   PetscCall(BodyCreateVec(body, &vec));
   PetscCall(TSSetI2Function(body->time.ts, vec, residual, body));
   PetscCall(TSSetI2Jacobian(body->time.ts, implicit->matrix, implicit->matrix, ComputeJacobian, body));
@@ -274,7 +313,7 @@ PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's method that did not converge, with body, time and what to do. A linear body takes one iteration, which cannot fail. */
+/* Notes Newton's method that did not converge, with body, time and what to do. A linear body takes one iteration, which cannot fail. */
 PetscErrorCode BodyImplicitCheckSubstep(Body body)
 {
   SNESConvergedReason reason;
@@ -287,12 +326,13 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   PetscCall(SNESGetConvergedReason(snes, &reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
   if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyCheckInverted(body));
-  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
-          "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
-          " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
-          body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations, ((PetscObject)body)->prefix,
-          ((PetscObject)body)->prefix);
+  PetscCall(BodyNoteInverted(body));
+  PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
+                           "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
+                           "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
+                           body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations,
+                           ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What both have in common */
@@ -307,6 +347,8 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   integrator->feels_end_force    = PETSC_TRUE;
   integrator->repeats_prescribed = PETSC_TRUE;
   integrator->ops.setrows        = BodyImplicitSetRows;
+  integrator->ops.setlevel       = BodyImplicitSetLevel;
+  integrator->ops.renew          = BodyImplicitRenew;
   integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
   integrator->ops.destroy        = BodyImplicitDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -319,7 +361,7 @@ PetscErrorCode BodyImplicitDestroy(Body body)
 
   PetscFunctionBegin;
   for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
-  PetscCall(MatDestroy(&implicit->matrix));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(MatDestroy(&implicit->matrices[k]));
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -113,7 +113,9 @@ static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
   PetscCall(SetUnitForce(body, row));
   if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FORCED;
   PetscCall(BodyRestore(body));
+  StepFailureClear(&body->failure);
   PetscCall(BodyMakeSubsteps(body));
+  PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
   body->statistics.substeps -= body->time.substeps;
   if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FREE;
   for (PetscInt k = 0; k < body->time.substeps; k++) {

@@ -1,7 +1,7 @@
 /* The substeps of a controller step. */
 #include <body/layout/bodyimpl.h>
 
-/* An error that names body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from
+/* Notes body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from
    wherever they arise. Its 2-norm is checked, since a sum over ranks keeps the NaN of one, which a maximum may lose. */
 static PetscErrorCode CheckSubstep(Body body)
 {
@@ -12,15 +12,16 @@ static PetscErrorCode CheckSubstep(Body body)
   PetscCall(TSGetConvergedReason(body->time.ts, &reason));
   PetscCall(VecNorm(body->state.v, NORM_2, &norm));
   if (body->integrator->ops.checksubstep) PetscCall((*body->integrator->ops.checksubstep)(body));
-  if (PetscIsInfOrNanReal(norm)) PetscCall(BodyCheckInverted(body));
-  PetscCheck(reason >= 0 && !PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)body), PETSC_ERR_FP,
-             "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
-             "); is a time step too large, or a penalty too stiff for it?",
-             body->hdr.name, (double)body->state.time, body->state.step);
+  if (PetscIsInfOrNanReal(norm)) PetscCall(BodyNoteInverted(body));
+  if (reason < 0 || PetscIsInfOrNanReal(norm))
+    PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NAN, PETSC_ERR_FP,
+                             "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
+                             "); is a time step too large, or a penalty too stiff for it?",
+                             body->hdr.name, (double)body->state.time, body->state.step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All substeps, by the TS */
+/* All substeps, by the TS; those after a failed one are left out, and the state is good for nothing then but to be restored */
 PetscErrorCode BodyMakeSubsteps(Body body)
 {
   PetscFunctionBegin;
@@ -34,6 +35,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     body->state.step++;
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
     PetscCall(CheckSubstep(body));
+    if (body->failure.reason < 0) break;
     PetscCall((*body->integrator->ops.finishsubstep)(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));
     if (body->time.substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));

@@ -40,6 +40,8 @@ PetscErrorCode BodySave(Body body)
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
   body->iterate.known = PETSC_FALSE;
   body->repeats       = PETSC_FALSE;
+  if (stepped) body->time.accepted_level = body->time.level;
+  PetscCall(BodyNoteKnownRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,6 +142,71 @@ PetscErrorCode BodyResetTraces(Body body)
 }
 
 /*@
+  BodyTryIntegrate - as `BodyIntegrate()`, for those who can do something about a step that fails
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. reason - negative where the step has failed, the same on every rank; or `NULL`
+
+  Level: developer
+
+  Note:
+  After a failure state and output traces are good for nothing, and the saved state is as it was: `BodyRestore()` or another integration
+  begins there. `BodyGetFailure()` has the message.
+
+.seealso: `Body`, `BodyIntegrate()`, `BodyGetFailure()`, `StepConvergedReason`
+@*/
+PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
+{
+  PetscBool      done = PETSC_FALSE;
+  PetscLogDouble begin, end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
+  PetscCall(PetscTime(&begin));
+  StepFailureClear(&body->failure);
+  PetscCall(BodyRepeat(body, &done));
+  if (!done) {
+    PetscCall(BodyMakeSubsteps(body));
+    if (body->failure.reason >= 0) PetscCall(BodyNoteInputs(body));
+  }
+  PetscCall(PetscTime(&end));
+  body->statistics.seconds += end - begin;
+  PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
+  if (reason) *reason = body->failure.reason;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetFailure - why the last integration failed
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. failure - reason, and the error that it becomes where nobody can make the step again; owned by the body
+
+  Level: developer
+
+.seealso: `Body`, `BodyTryIntegrate()`
+@*/
+PetscErrorCode BodyGetFailure(Body body, const StepFailure **failure)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(failure, 2);
+  *failure = &body->failure;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyIntegrate - integrates from the saved state to the end of the controller step, under the conditions and input traces as
   they are
 
@@ -156,25 +223,15 @@ PetscErrorCode BodyResetTraces(Body body)
   Where the body is linear and makes one substep, a repeated call with other input traces adds what their change brings about
   instead of making the step again; the result is the same up to round-off.
 
-.seealso: `Body`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
+  A step that fails is an error; `BodyTryIntegrate()` tells of it instead.
+
+.seealso: `Body`, `BodyTryIntegrate()`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
 @*/
 PetscErrorCode BodyIntegrate(Body body)
 {
-  PetscBool      done = PETSC_FALSE;
-  PetscLogDouble begin, end;
-
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
-  PetscCall(PetscTime(&begin));
-  PetscCall(BodyRepeat(body, &done));
-  if (!done) {
-    PetscCall(BodyMakeSubsteps(body));
-    PetscCall(BodyNoteInputs(body));
-  }
-  PetscCall(PetscTime(&end));
-  body->statistics.seconds += end - begin;
-  PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
+  PetscCall(BodyTryIntegrate(body, NULL));
+  PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

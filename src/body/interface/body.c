@@ -61,6 +61,7 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
   PetscValidLogicalCollectiveReal(body, step, 3);
   body->time.start           = start;
   body->time.controller_step = step;
+  body->time.whole_step      = step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -221,6 +222,7 @@ PetscErrorCode BodyShareControllerStep(Body body, PetscInt n)
   body->time.shared *= n;
   body->time.substeps /= n;
   body->time.controller_step /= n;
+  body->time.whole_step /= n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -292,14 +294,13 @@ PetscErrorCode BodyDestroy(Body *body)
 
     PetscCall(BodyDestroyRepeat(b));
     PetscCall(BodyIntegratorDestroy(b));
-    PetscCall(BodyDestroyCompliance(b));
+    PetscCall(BodyDestroyLevels(b));
     PetscCall(BodyDestroyProbe(b));
     PetscCall(BodyLoadsDestroy(b));
     for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
     for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) PetscCall(BodyStateDestroy(states[i]));
     for (size_t i = 0; i < sizeof(traces) / sizeof(traces[0]); i++) PetscCall(TraceDestroy(traces[i]));
   }
-  PetscCall(ConstrainedSolverDestroy(&b->solver));
   PetscCall(ConstrainedSolverDestroy(&b->mass.solver));
   PetscCall(MatDestroy(&b->model.stiffness));
   PetscCall(MatDestroy(&b->mass.matrix));

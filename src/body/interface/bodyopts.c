@@ -153,7 +153,9 @@ PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscIn
   PetscCall(BodyPrescribeHeld(body, body->state.time, body->state.u, body->state.v, NULL));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(VecNorm(body->state.internal_force, NORM_2, &norm));
-  if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyCheckInverted(body));
+  StepFailureClear(&body->failure);
+  if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyNoteInverted(body));
+  PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
   PetscCall(ComputeInitialAcceleration(body));
   PetscCall(BodyWriteTraces(body, 0));
   PetscCall(BodySetUpWork(body));

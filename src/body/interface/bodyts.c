@@ -102,6 +102,30 @@ PetscErrorCode BodySetTimeStep(Body body, PetscReal step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BodyGetTimeStep - the substep that has been asked for
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. step - as given to `BodySetTimeStep()` [s]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetTimeStep()`, `BodyGetSubsteps()`
+@*/
+PetscErrorCode BodyGetTimeStep(Body body, PetscReal *step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(step, 2);
+  *step = body->time.requested_step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* -<body>_ts_time_step takes a word where PETSc's own option of that name takes a number */
 static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
 {

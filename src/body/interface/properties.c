@@ -125,6 +125,52 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 }
 
 /*@
+  BodyGetContactElementSize - edge length of the elements with a contact node, from their mean volume
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetContactNodes()`
+
+  Output Parameter:
+. size - edge of the line, square or cube with the mean volume; of simplices, of that which holds 2 or 6 of them; that of all
+         elements where there are no contact nodes [m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetElementSize()`, `ContactGetResolvedStep()`
+@*/
+PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
+{
+  const PetscInt nodes   = body->model.element->nodes;
+  PetscReal      sums[2] = {0, 0};
+  PetscBool      simplex;
+  PetscInt       dim, cstart, cend;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(size, 2);
+  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
+  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
+  for (PetscInt e = 0; e < cend - cstart; e++) {
+    PetscBool touches = PETSC_FALSE;
+    PetscReal measure;
+
+    for (PetscInt a = 0; a < nodes && !touches; a++) touches = body->layer.contains[body->mesh.connectivity[e * nodes + a]];
+    if (!touches) continue;
+    PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cstart + e, &measure, NULL, NULL));
+    sums[0] += measure;
+    sums[1]++;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  if (!(sums[1] > 0)) PetscCall(SumCells(body, sums));
+  if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
+  *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetImpedance - force for a unit velocity of a plane wave, for each unit of area
 
   Not Collective

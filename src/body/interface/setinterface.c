@@ -56,6 +56,8 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall((*body->integrator->ops.setrows)(body, all));
+  PetscCall(BodySetRowsOfLevels(body, all));
+  PetscCall(BodyNoteKnownRows(body));
   if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, all));
   PetscCall(PetscFree(all));
   body->repeats = PETSC_FALSE;

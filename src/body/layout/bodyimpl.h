@@ -1,5 +1,6 @@
 #pragma once
 #include <impakt/private/bodyrows.h>
+#include <impakt/private/stepfailure.h>
 #include <impakt/tssecondorder.h>
 #include <petsc/private/petscimpl.h>
 #include <impakt/private/elementimpl.h>
@@ -60,6 +61,8 @@ typedef struct {
 typedef struct {
   TS        ts;
   PetscReal start, controller_step, step; /* of the simulation; one part of the controller step; substep [s] */
+  PetscReal whole_step;                   /* the controller step before any cut [s] */
+  PetscInt  level, accepted_level;        /* how often the controller step is cut in halves; how often that was which was accepted last */
   PetscReal requested_step;               /* 0: the controller step; < 0: automatic */
   PetscReal stable_step;                  /* 0 until BodyComputeStableStep() */
   PetscInt  shared;                       /* parts of the controller step, at whose ends all bodies have a time in common */
@@ -98,6 +101,12 @@ typedef struct {
   PetscScalar   *kept_traces;                     /* output traces put aside by BodyKeep() */
 } BodyRows;
 
+/* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */
+typedef struct {
+  struct _BodyCompliance *compliance; /* NULL until there is a step of this level */
+  ConstrainedSolver       solver;     /* where it depends on the step, else that of all levels */
+} BodyLevel;
+
 /* Dofs whose displacement the user prescribes */
 typedef struct {
   PetscInt        n;
@@ -126,9 +135,11 @@ struct _p_Body {
   /* interface */
   BodyRows                rows;
   BodyTraces              traces;
-  struct _BodyCompliance *compliance;
+  struct _BodyCompliance *compliance; /* of the present level, as is the solver */
+  BodyLevel               levels[STEP_MAX_CUTS + 1];
   struct _BodyProbe      *probe; /* room for the state while unit forces are tried; NULL until then */
   struct _BodyRepeat     *repeat;
+  StepFailure             failure; /* of the last integration */
   PetscBool repeats; /* the present end state is that of an integration from the saved state, under the present conditions and inputs */
   /* loads */
   struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
@@ -167,7 +178,7 @@ PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
-PETSC_INTERN PetscErrorCode BodyCheckInverted(Body);
+PETSC_INTERN PetscErrorCode BodyNoteInverted(Body);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
 PETSC_INTERN PetscErrorCode BodyZeroHeld(Body, Vec);
@@ -208,6 +219,8 @@ PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
 PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
+PETSC_INTERN PetscErrorCode BodySetRowsOfLevels(Body, const PetscMPIInt[]);
+PETSC_INTERN PetscErrorCode BodyDestroyLevels(Body);
 PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);

@@ -18,8 +18,11 @@ typedef struct {
   PetscErrorCode (*getparameters)(Body); /* (NULL) reads and checks the parameters of the TS, after program and options have set them */
   PetscErrorCode (*setup)(Body);         /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
   PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* the rows that are marked, of all ranks, have new entries */
+  PetscErrorCode (*setlevel)(Body); /* (NULL) the controller step is cut in halves another number of times, body->time.level: matrix and
+                                       solver are those of this level, made where there are none yet */
+  PetscErrorCode (*renew)(Body);    /* (NULL) of a nonlinear body: matrix and factors anew, at the saved displacement */
   PetscErrorCode (*checksubstep)(
-      Body); /* (NULL) after TSStep(): an error that says why where the equations of the substep were not solved */
+      Body); /* (NULL) after TSStep(): notes in the body's failure where, and why, the equations of the substep were not solved */
   /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever else of the state the TS leaves undone
    */
   PetscErrorCode (*finishsubstep)(Body);
@@ -54,6 +57,7 @@ struct _n_BodyIntegrator {
   /* known after getparameters() */
   PetscBool affine; /* for linear materials, displacements at the ends of substeps are affine in the contact forces at these ends alone */
   /* known after setup() */
+  PetscBool depends_on_step;    /* displacements of the rows under forces on them depend on the length of the substep */
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
   PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
   PetscBool feels_end_force;    /* displacements at the end of the controller step answer to the contact forces there */

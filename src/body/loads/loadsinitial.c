@@ -100,3 +100,42 @@ PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
   PetscCall(BodyLoadsPrescribe(body, body->time.start, u, v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodyGetInitialVelocity - mean velocity of the nodes at the start, as it has been set for the body
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetUpDiscretization()`
+
+  Output Parameter:
+. velocity - 3 numbers, zeros beyond the dimension [m/s]
+
+  Level: developer
+
+  Note:
+  By `BodySetInitialVelocity()` and options; without what `BodySetInitialState()` or held displacements may bring.
+
+.seealso: `Body`, `BodySetInitialVelocity()`, `ContactGetResolvedStep()`
+@*/
+PetscErrorCode BodyGetInitialVelocity(Body body, PetscReal velocity[3])
+{
+  PetscReal          sums[4] = {0};
+  const PetscScalar *v;
+  Vec                values;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(velocity, 2);
+  for (PetscInt d = 0; d < 3; d++) velocity[d] = 0;
+  PetscCall(PetscObjectQuery((PetscObject)body, initial[1], (PetscObject *)&values));
+  if (!values) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(values, &v));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) sums[i % body->mesh.dim] += PetscRealPart(v[i]);
+  PetscCall(VecRestoreArrayRead(values, &v));
+  sums[3] = body->mesh.owned_nodes;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  for (PetscInt d = 0; d < body->mesh.dim; d++) velocity[d] = sums[d] / sums[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

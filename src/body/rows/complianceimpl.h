@@ -6,7 +6,8 @@
 
 struct _BodyCompliance {
   Compliance
-      matrices;      /* a level for each substep: displacement k substeps after a hat of force, of 1 N at the end of the first one [m/N] */
+           matrices; /* a level for each substep: displacement k substeps after a hat of force, of 1 N at the end of the first one [m/N] */
+  PetscInt n_kept;   /* known rows that stay when a step fails */
   PetscScalar *mine; /* work space: of the rows of this rank, for each substep */
   /* an integration from which changes are counted: this rank's rows, for each substep */
   PetscScalar *base_displacement, *base_force;

@@ -56,6 +56,8 @@ PetscErrorCode BodyComputeFreeRows(Body body, PetscScalar displacement[])
              "Body '%s' is not explicit with massless contact nodes and one substep to a controller step: only integrating tells where its "
              "rows get; see BodyHasFreeRows()",
              body->hdr.name);
+  StepFailureClear(&body->failure);
   PetscCall((*body->integrator->ops.freerows)(body, displacement));
+  PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -43,8 +43,9 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   Level: developer
 
   Notes:
-  Holds until the next `BodySave()` or the next call. The state goes back to the saved one, whose acceleration becomes that under the new
-  forces, found with the massless layer in balance with them. A static body has no acceleration, and stays as it is.
+  Holds until the next `BodySave()`, `BodyDropStartForce()`, or the next call. The state goes back to the saved one, whose acceleration
+becomes that under the new forces, found with the massless layer in balance with them. A static body has no acceleration, and stays as it
+is.
 
 .seealso: `Body`, `BodySave()`, `BodyIntegrate()`
 @*/
@@ -61,6 +62,29 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[])
   PetscCall(BodyRestore(body));
   PetscCall(ComputeChange(body, force, body->state.a));
   PetscCall(VecAXPY(body->saved.a, 1, body->state.a));
+  PetscCall(BodyRestore(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyDropStartForce - lets the controller step begin with the contact forces that the last one ended with
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, saved
+
+  Level: developer
+
+.seealso: `Body`, `BodySetStartForce()`, `BodyStepBack()`
+@*/
+PetscErrorCode BodyDropStartForce(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCopy(body->start.a, body->saved.a));
+  body->start.changed = PETSC_FALSE;
   PetscCall(BodyRestore(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

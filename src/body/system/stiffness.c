@@ -29,9 +29,9 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error that names an element which the last internal force found inverted on any rank, if there is one. Collective: to be called
+/* Notes that the step has failed, and where, if the last internal force found an element inverted on any rank. Collective: to be called
    where it is known to all ranks that something is wrong. */
-PetscErrorCode BodyCheckInverted(Body body)
+PetscErrorCode BodyNoteInverted(Body body)
 {
   MPI_Comm       comm      = PetscObjectComm((PetscObject)body);
   const PetscInt n         = body->model.element->nodes;
@@ -55,11 +55,13 @@ PetscErrorCode BodyCheckInverted(Body body)
       for (PetscInt d = 0; d < body->mesh.dim; d++)
         centre[d] += body->mesh.coordinates[body->mesh.connectivity[e * n + a] * body->mesh.dim + d] / n;
   PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, comm));
-  SETERRQ(comm, PETSC_ERR_FP,
-          "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or "
-          "not a number, at time %.9g s (step %" PetscInt_FMT
-          " of the body); is a time step too large, a load too strong, or the mesh too coarse there?",
-          body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->state.time, body->state.step);
+  PetscCall(StepFailureSet(
+      &body->failure, STEP_DIVERGED_INVERTED, PETSC_ERR_FP,
+      "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or "
+      "not a number, at time %.9g s (step %" PetscInt_FMT
+      " of the body); is a time step too large, a load too strong, or the mesh too coarse there?",
+      body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2], (double)body->state.time, body->state.step));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The global numbers of an element's displacements, from the numbers of its nodes on this rank */

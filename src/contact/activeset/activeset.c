@@ -1,5 +1,6 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
 #include <contact/compliance/interfaceoperator.h>
+#include <math.h>
 
 /* What the rows mean to a body */
 void ContactGetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
@@ -72,6 +73,35 @@ PetscErrorCode ContactComputeGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* One body through the controller step, unless that has failed already */
+PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
+{
+  const StepFailure  *failure;
+  StepConvergedReason reason;
+
+  PetscFunctionBegin;
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyTryIntegrate(contact->bodies[b], &reason));
+  if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetFailure(contact->bodies[b], &failure));
+  StepFailureCopy(failure, &contact->attempt.failure);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The residual of an outer iteration where the step has failed: not a number, so that the iteration ends, whatever its type */
+PetscErrorCode ContactRejectResidual(Vec F)
+{
+  PetscScalar *f;
+  PetscInt     n;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(F, &n));
+  PetscCall(VecGetArrayWrite(F, &f));
+  for (PetscInt i = 0; i < n; i++) f[i] = NAN;
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All bodies through the controller step without contact; the gaps at its end; whether any row penetrates. The active set is
    empty afterwards. */
 PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
@@ -82,8 +112,10 @@ PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES)); /* of rows that are let go, as none is active */
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ContactLoadReleased(contact, b));
-    PetscCall(BodyIntegrate(contact->bodies[b]));
+    PetscCall(ContactIntegrateBody(contact, b));
   }
+  *penetrating = PETSC_FALSE;
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactComputeGaps(contact));
   PetscCall(ContactAny(contact, PETSC_TRUE, penetrating));
   PetscFunctionReturn(PETSC_SUCCESS);

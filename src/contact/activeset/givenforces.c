@@ -39,6 +39,8 @@ static PetscErrorCode LoadRows(Contact contact, PetscInt b, const PetscReal end[
   linearly from that of the last accepted step, `contact->start.force`, to the one given. Afterwards `contact->end.gap` has the gaps at the
 end of the step, `contact->end.force` the forces, and rows with a force are active.
 
+  Where a body's step fails, this returns without gaps, and the step is to return too: `ContactFailed()` tells.
+
   May be called any number of times in a step, as a method looks for the forces that fit to the gaps: each call begins at the saved states.
 
 .seealso: `Contact`, `ContactRegister()`, `ContactStep()`
@@ -52,9 +54,9 @@ PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(LoadRows(contact, b, force));
-    PetscCall(BodyIntegrate(contact->bodies[b]));
+    PetscCall(ContactIntegrateBody(contact, b));
   }
-  PetscCall(ContactComputeGaps(contact));
+  if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     contact->end.force[i]  = force[i];
     contact->end.active[i] = (PetscBool)(force[i] != 0);

@@ -54,14 +54,18 @@ PetscErrorCode RoundsBegin(Rounds *rounds)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Remembers the active set that is about to be solved for */
+/* Remembers the active set that is about to be solved for; after too many the step has failed */
 PetscErrorCode RoundsNext(Rounds *rounds)
 {
   const PetscInt n = rounds->contact->rows.n;
 
   PetscFunctionBegin;
-  PetscCheck(rounds->n < ROUNDS_MAX, PetscObjectComm((PetscObject)rounds->contact), PETSC_ERR_NOT_CONVERGED,
-             "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step", ROUNDS_MAX);
+  if (rounds->n >= ROUNDS_MAX) {
+    PetscCall(StepFailureSet(&rounds->contact->attempt.failure, STEP_DIVERGED_ACTIVE_SET, PETSC_ERR_NOT_CONVERGED,
+                             "The active set of contact nodes has changed %d times in one controller step; choose a smaller -time_step",
+                             ROUNDS_MAX));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscArraycpy(rounds->tried + rounds->n++ * n, rounds->active, n));
   if (!rounds->cycled || rounds->n < LAST_ROUNDS) PetscFunctionReturn(PETSC_SUCCESS);
   rounds->single = PETSC_FALSE;

@@ -99,6 +99,16 @@ PetscErrorCode ForceProblemCreate(Contact contact, PetscReal stiffness[], ForceP
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* As after its creation, but for room: steps have been made that are not to count */
+PetscErrorCode ForceProblemForget(Contact contact, ForceProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(problem->listed, contact->rows.n));
+  PetscCall(PetscArrayzero(problem->pushing, contact->rows.n));
+  problem->stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ForceProblemDestroy(ForceProblem *problem)
 {
   PetscFunctionBegin;

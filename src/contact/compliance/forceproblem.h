@@ -18,4 +18,5 @@ typedef struct {
 PETSC_INTERN PetscErrorCode ForceProblemCreate(Contact, PetscReal[], ForceProblem *);
 PETSC_INTERN PetscErrorCode ForceProblemUpdate(Contact, ForceProblem *, const PetscBool[], Vec);
 PETSC_INTERN PetscErrorCode ForceProblemSolve(Contact, ForceProblem *, Vec, Vec);
+PETSC_INTERN PetscErrorCode ForceProblemForget(Contact, ForceProblem *);
 PETSC_INTERN PetscErrorCode ForceProblemDestroy(ForceProblem *);

@@ -35,9 +35,9 @@ PetscErrorCode ForcesIntegrate(Contact contact, Forces *forces, const PetscScala
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(SetBodyForces(contact, b, forces->trace));
-    PetscCall(BodyIntegrate(contact->bodies[b]));
+    PetscCall(ContactIntegrateBody(contact, b));
   }
-  PetscCall(ContactComputeGaps(contact));
+  if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   contact->counts.sweeps++;
   PetscCall(PetscTime(&finish));
   contact->counts.seconds += finish - begin;

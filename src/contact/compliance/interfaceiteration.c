@@ -131,7 +131,7 @@ static PetscErrorCode CreateIterative(InterfaceOperator op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Not to converge is an error, but where round-off alone keeps the residual from the tolerance */
+/* Where it does not converge, and not round-off alone keeps the residual from the tolerance, the controller step has failed */
 static PetscErrorCode CheckConverged(InterfaceOperator op)
 {
   KSPConvergedReason reason;
@@ -146,10 +146,13 @@ static PetscErrorCode CheckConverged(InterfaceOperator op)
   if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetResidualNorm(op->iterative, &left));
   PetscCall(VecNorm(op->rhs, NORM_2, &all));
-  PetscCheck(left <= op->settings.worst * all, PetscObjectComm((PetscObject)op->contact), PETSC_ERR_NOT_CONVERGED,
-             "Conjugate gradients for the contact forces of %" PetscInt_FMT " rows leave %g of their gaps after %" PetscInt_FMT
-             " iterations (%s); raise -%sksp_max_it, or look with -%sksp_monitor",
-             op->n, (double)(left / all), iterations, KSPConvergedReasons[reason], op->settings.prefix, op->settings.prefix);
+  if (left <= op->settings.worst * all) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StepFailureSet(&op->contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                           "Conjugate gradients for the contact forces of %" PetscInt_FMT
+                           " rows leave %g of their gaps after %" PetscInt_FMT
+                           " iterations (%s); raise -%sksp_max_it, or look with -%sksp_monitor",
+                           op->n, (double)(left / all), iterations, KSPConvergedReasons[reason], op->settings.prefix, op->settings.prefix));
+  if (!op->contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)op->contact), &op->contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -203,6 +203,7 @@ static PetscErrorCode Attempt(Contact contact)
     }
     if (!going) break;
     PetscCall(MakeStep(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ComputeGroupWork(contact));
     contact->counts.energy_attempts++;
   }
@@ -259,7 +260,16 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   ContactFindGroups(contact);
   for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->pair_sums[2 * p];
   if (energy->rebuilt) PetscCall(MeasureGroupWork(contact));
-  if (energy->limits && AnyGainsTooMuch(contact)) PetscCall(Attempt(contact));
+  for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
+  if (contact->attempt.may_cut) { /* what is cut in halves all the same need not be limited */
+    PetscReal loss;
+
+    PetscCall(ContactGetEnergyLoss(contact, &loss));
+    if (PetscAbsReal(loss) > contact->attempt.most_loss) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!energy->limits || !AnyGainsTooMuch(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Attempt(contact));
+  energy->step_work = 0;
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -164,16 +164,17 @@ PetscErrorCode ContactStep(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
+  StepFailureClear(&contact->attempt.failure);
   contact->counts.sweeps = 0;
   PetscCall(ContactBeginEnergy(contact));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   rebuilds = contact->counts.rebuilds;
-  PetscCall(ContactUpdateRows(contact));
+  if (!contact->attempt.again) PetscCall(ContactUpdateRows(contact));
   if (contact->counts.rebuilds > rebuilds && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) {
     PetscUseTypeMethod(contact, step);
-    PetscCall(ContactLimitEnergy(contact));
+    if (!ContactFailed(contact)) PetscCall(ContactLimitEnergy(contact));
   } else { /* nothing can touch */
     PetscBool penetrating;
 
@@ -181,6 +182,7 @@ PetscErrorCode ContactStep(Contact contact)
   }
   contact->counts.total_sweeps += contact->counts.sweeps;
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
+  if (!contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,6 +203,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscTryTypeMethod(contact, accept);
+  PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   if (contact->options.stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactBookWork(contact));
@@ -208,6 +211,8 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.gap, contact->end.gap, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
+  contact->attempt.accepted_level = contact->attempt.level;
+  contact->attempt.again          = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,10 +5,15 @@
 /* What the methods share */
 static PetscErrorCode ReadSettings(Contact contact)
 {
+  PetscReal energy_tolerance = 0;
+
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetTolerance",
                              contact->options.tolerance, &contact->options.tolerance, NULL));
+  PetscCall(ContactGetEnergyTolerance(contact, &energy_tolerance));
+  PetscCall(PetscOptionsReal("-contact_energy_tolerance", "Energy that contact may take or bring in a step [parts of the system's]",
+                             "ContactSetEnergyTolerance", energy_tolerance, &energy_tolerance, NULL));
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetConstraint",
                              ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
@@ -30,6 +35,9 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscCall(PetscOptionsReal("-contact_energy_excess", "Part of the energy that contact may gain in the whole run", "ContactSetEnergyCap",
                              contact->energy.excess, &contact->energy.excess, NULL));
   PetscOptionsEnd();
+  PetscCheck(energy_tolerance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_energy_tolerance %g must be positive; a large one for none", (double)energy_tolerance);
+  PetscCall(ContactSetEnergyTolerance(contact, energy_tolerance));
   PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
              (double)contact->options.slip_bound, (double)contact->options.angle_bound);
@@ -105,7 +113,8 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_shared_times (true|false)                            - whether contact holds at all times that all bodies have in common, or
                                                                  at the ends of controller steps alone
 . -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
-- -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
+. -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
+- -contact_energy_tolerance t                                   - energy that contact may take or bring in a step, 1e-3
 
   Level: beginner
 
@@ -114,8 +123,8 @@ static PetscErrorCode ReadPairs(Contact contact)
   the two bodies are a pair by themselves only where none has been.
 
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
-          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`, `ContactSetSharedTimes()`,
-`ContactSetEnergyCap()`
+          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
+          `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

@@ -63,6 +63,38 @@ PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
 }
 
 /*@
+  ContactSetUpSurfaces - finds the contact surfaces and rows, the first part of `ContactSetUp()`
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, with bodies, pairs and type
+
+  Level: developer
+
+  Note:
+  What the controller has to know of contact before it can choose its step. Calls beyond the first cost nothing.
+
+.seealso: `Contact`, `ContactSetUp()`, `ContactGetResolvedStep()`
+@*/
+PetscErrorCode ContactSetUpSurfaces(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (contact->surfaces_known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
+  if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
+  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
+  PetscCall(AllocateBodies(contact));
+  PetscCall(ContactOrderBodies(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
+  PetscCall(ContactFindDimension(contact));
+  PetscCall(ContactSetUpRows(contact));
+  contact->surfaces_known = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSetUp - finds the contact rows, sets up the bodies and the method
 
   Collective
@@ -79,14 +111,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
-  if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
-  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
-  PetscCall(AllocateBodies(contact));
-  PetscCall(ContactOrderBodies(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
-  PetscCall(ContactFindDimension(contact));
-  PetscCall(ContactSetUpRows(contact));
+  PetscCall(ContactSetUpSurfaces(contact));
   PetscCall(ContactSetUpScales(contact));
   PetscCall(ShareControllerStep(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {

@@ -23,6 +23,7 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
   PetscCall(TSGetTimeStep(ts, &contact->step));
   PetscCall(BodyGetSubsteps(contact->bodies[0], &substeps));
   contact->step *= substeps;
+  contact->attempt.whole_step = contact->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -126,7 +126,7 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
     second = PetscMax(second, PetscMin(first, contact->work.speeds[b]));
     first  = PetscMax(first, contact->work.speeds[b]);
   }
-  *near = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
+  *near = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->attempt.whole_step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,8 +1,8 @@
 /*
    A contact law of one's own: the surface is covered with a soft layer, whose force grows with the depth g of penetration as K g^(3/2) per
-   unit of area. One function finds the forces of a controller step, another one tells the library of it.
-   A stiff block of mass m = 1 kg flies into a plane with v = 1 m/s. By the energies of this law (Hertz's impact of a sphere) the layer is
-   compressed to (5 m v^2 / (4 K))^(2/5), the contact lasts 2.94328 times that depth divided by v, and the block leaves as fast as it came.
+   unit of area. One function finds the forces of a controller step. A stiff block of mass m = 1 kg flies into a plane with v = 1 m/s. By
+   the energies of this law (Hertz's impact of a sphere) the layer is compressed to (5 m v^2 / (4 K))^(2/5), the contact lasts 2.94328 times
+   that depth divided by v, and the block leaves as fast as it came.
    Made with the installed library by: cc spring.c -o spring $(pkg-config --cflags --libs impakt)
 */
 #include <impakt.h>
@@ -23,6 +23,7 @@ static PetscErrorCode ContactStep_Spring(Contact contact)
   for (int guess = 0, off = 1; off; guess++) {
     PetscCheck(guess < 50, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The spring forces do not settle");
     PetscCall(ContactIntegrateForces(contact, spring->force));
+    if (ContactFailed(contact)) break; /* a body's step, which may be made again in halves */
     off = 0;
     for (PetscInt i = 0; i < contact->rows.n; i++) {
       const PetscReal depth  = PetscMax(-contact->end.gap[i], 0);

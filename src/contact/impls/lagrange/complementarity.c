@@ -130,7 +130,7 @@ static PetscErrorCode ComputeClosed(Contact contact, Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Starts from all negative gaps, and those that are tied */
+/* Starts from all negative gaps, and those that are tied; ContactFailed() tells where it does not settle */
 PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Complementarity *problem)
 {
   PetscBool changed = PETSC_TRUE, flips;
@@ -141,7 +141,9 @@ PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Comple
   for (PetscInt i = 0; i < contact->rows.n; i++) problem->active[i] = (PetscBool)(contact->rows.tied[i] || problem->gaps[i] < 0);
   while (changed) {
     PetscCall(RoundsNext(&problem->rounds));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ComplementaritySolveActive(contact, problem));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ComputeClosed(contact, problem));
     PetscCall(RoundsChange(&problem->rounds));
     PetscCall(RoundsHaveChanged(&problem->rounds, &changed));

@@ -41,6 +41,7 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, &penetrating));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     lagrange->forces.gaps[i] = contact->rows.tied[i] ? contact->end.gap[i] : GapToClose(contact, i);
     any |= contact->rows.tied[i] || (lagrange->forces.gaps[i] < 0 && (penetrating || contact->start.active[i]));
@@ -49,16 +50,17 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
   PetscCall(ComplementaritySolve(contact, contact->options.tolerance, &lagrange->forces));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->forces, lagrange->forces.mine));
     PetscCall(BodyAddImpulse(contact->bodies[b], lagrange->forces.mine));
-    PetscCall(BodyIntegrate(contact->bodies[b]));
+    PetscCall(ContactIntegrateBody(contact, b));
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     contact->end.force[i]  = lagrange->forces.forces[i];
     contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || contact->end.force[i] > 0);
   }
-  PetscCall(ContactComputeGaps(contact));
+  if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   contact->counts.sweeps = 1;
   PetscCall(PetscTime(&end));
   contact->counts.seconds += end - begin;
@@ -107,10 +109,11 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_FORWARD_LAGRANGE));
   PetscCall(PetscNew(&lagrange));
-  contact->data             = lagrange;
-  contact->ops->step        = ContactStep_ForwardLagrange;
-  contact->ops->rowschanged = ContactRowsChanged_ForwardLagrange;
-  contact->ops->destroy     = ContactDestroy_ForwardLagrange;
+  contact->data                = lagrange;
+  contact->attempt.moves_start = PETSC_TRUE;
+  contact->ops->step           = ContactStep_ForwardLagrange;
+  contact->ops->rowschanged    = ContactRowsChanged_ForwardLagrange;
+  contact->ops->destroy        = ContactDestroy_ForwardLagrange;
   PetscCall(ComplementarityCreate(contact, &lagrange->forces));
   PetscCall(ForcesGetStep(contact, &lagrange->step));
   if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) {

@@ -68,6 +68,11 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(ForcesIntegrate(contact, &lagrange->forces, x, lagrange->scale));
+  if (ContactFailed(contact)) {
+    PetscCall(VecRestoreArrayRead(X, &x));
+    PetscCall(ContactRejectResidual(F));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt i = 0; i < contact->rows.n; i++)
     f[i] = contact->end.gap[i] -
@@ -186,16 +191,20 @@ static PetscErrorCode CheckConverged(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(lagrange->outer.snes, &reason));
-  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcesGetTime(contact, &time));
-  PetscCheck(reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact), PETSC_ERR_FP,
-             "A contact gap or force is not a number in the step that ends at time %.9g s; is a velocity or a time step too large?",
-             (double)time);
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-          "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-          " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose "
-          "a smaller -time_step",
-          (double)time, contact->counts.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]);
+  if (reason == SNES_DIVERGED_NAN)
+    PetscCall(StepFailureSet(
+        &contact->attempt.failure, STEP_DIVERGED_NAN, PETSC_ERR_FP,
+        "A contact gap or force is not a number in the step that ends at time %.9g s; is a velocity or a time step too large?",
+        (double)time));
+  PetscCall(StepFailureSet(
+      &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+      "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+      " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose "
+      "a smaller -time_step",
+      (double)time, contact->counts.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The solution. The semismooth iteration may leave forces that pull, within the tolerance: these are taken out. */
@@ -227,13 +236,15 @@ static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
   PetscCall(ForcesBeginStep(contact, &lagrange->forces, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   if (lagrange->stabilized) PetscCall(LagrangeProjectPrediction(contact, lagrange->step, &lagrange->impulses));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(lagrange->outer.x, &x));
   PetscCall(PetscArraycpy(x, contact->start.force, contact->rows.n));
   PetscCall(VecRestoreArrayWrite(lagrange->outer.x, &x));
   while (changed) {
     PetscCall(SNESSolve(lagrange->outer.snes, NULL, lagrange->outer.x));
     PetscCall(CheckConverged(contact));
-    PetscCall(TakeForces(contact));
+    if (!ContactFailed(contact)) PetscCall(TakeForces(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     changed = PETSC_FALSE;
     if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE)
       PetscCall(ForcesTouch(contact, &lagrange->forces, contact->end.force, &changed));
@@ -329,8 +340,9 @@ static PetscErrorCode SetUpStabilized(Contact contact)
                "gamma %g, beta %g; leave -%s_ts_alpha_... at their defaults",
                name, (double)alpha_m, (double)alpha_f, (double)gamma, (double)beta, name);
   }
-  lagrange->scale      = 2;
-  lagrange->stabilized = PETSC_TRUE;
+  lagrange->scale              = 2;
+  lagrange->stabilized         = PETSC_TRUE;
+  contact->attempt.moves_start = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -354,6 +366,17 @@ static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
   PetscCall(ComputeCompliance(contact));
   if (lagrange->close_rate || lagrange->stabilized)
     PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Another controller step, and so another compliance */
+static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+{
+  PetscFunctionBegin;
+  (void)level;
+  (void)goes_on;
+  ((ImplicitLagrange *)contact->data)->step = contact->step;
+  PetscCall(ComputeCompliance(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -384,6 +407,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   contact->ops->stored      = ContactStoresNothing;
   contact->ops->view        = ContactView_ImplicitLagrange;
   contact->ops->rowschanged = ContactRowsChanged_ImplicitLagrange;
+  contact->ops->steplevel   = SetStepLevel;
   contact->ops->destroy     = ContactDestroy_ImplicitLagrange;
   lagrange->scale           = 1;
   PetscCall(ForcesGetStep(contact, &lagrange->step));

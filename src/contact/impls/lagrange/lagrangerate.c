@@ -78,6 +78,7 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComplementaritySolve(contact, contact->options.tolerance, impulses));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
     PetscCall(BodyShiftStart(contact->bodies[b], impulses->mine));

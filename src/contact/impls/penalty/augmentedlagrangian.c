@@ -70,15 +70,17 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
   for (PetscInt k = 0; k < penalty->augmentation_max_it; k++) {
     PetscCall(PetscArraycpy(penalty->multiplier, contact->end.force, contact->rows.n));
     PetscCall(PenaltySolve(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(GetMismatch(contact, &mismatch));
     if (mismatch <= penalty->augmentation_tolerance) PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ForcesGetTime(contact, &time));
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-          "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-          " augmentations the gap is off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
-          "-contact_augmentation_tolerance",
-          (double)time, penalty->augmentation_max_it, (double)mismatch);
+  PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                           "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+                           " augmentations the gap is off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
+                           "-contact_augmentation_tolerance",
+                           (double)time, penalty->augmentation_max_it, (double)mismatch));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscViewer viewer)
@@ -125,6 +127,8 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   contact->ops->step              = ContactStep_AugmentedLagrangian;
   contact->ops->stored            = ContactStoresNothing;
   contact->ops->rowschanged       = PenaltyRowsChanged;
+  contact->ops->stepback          = PenaltyStepBack;
+  contact->ops->steplevel         = PenaltySetStepLevel;
   contact->ops->view              = ContactView_AugmentedLagrangian;
   contact->ops->destroy           = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -78,6 +78,11 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(ForcesIntegrate(contact, &penalty->forces, x, 1));
+  if (ContactFailed(contact)) {
+    PetscCall(VecRestoreArrayRead(X, &x));
+    PetscCall(ContactRejectResidual(F));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecGetArrayWrite(F, &f));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscReal wanted = WantedForce(contact, i);
@@ -176,6 +181,32 @@ PetscErrorCode PenaltyRowsChanged(Contact contact)
   PetscFunctionBegin;
   PetscCall(PenaltySetUpSprings(contact));
   penalty->problem.stale = PETSC_TRUE;
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) penalty->problems[k].stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A compliance that bodies have forgotten */
+PetscErrorCode PenaltyStepBack(Contact contact)
+{
+  PetscFunctionBegin;
+  ((Penalty *)contact->data)->problem.stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Another controller step: other dampers, and another compliance. The force problem of each level is kept apart. */
+PetscErrorCode PenaltySetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+{
+  Penalty *penalty = (Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  penalty->step = contact->step;
+  for (PetscInt i = 0; i < contact->rows.n; i++) penalty->stiffness[i] = penalty->spring[i] + penalty->damper[i] / penalty->step;
+  penalty->problems[penalty->level] = penalty->problem;
+  penalty->problem                  = penalty->problems[level];
+  penalty->level                    = level;
+  PetscCall(PetscMemzero(&penalty->problems[level], sizeof(penalty->problems[level])));
+  if (!penalty->problem.S) PetscCall(ForceProblemCreate(contact, penalty->stiffness, &penalty->problem));
+  else if (!goes_on) PetscCall(ForceProblemForget(contact, &penalty->problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,22 +218,26 @@ static PetscErrorCode CheckConverged(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(penalty->outer.snes, &reason));
-  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcesGetTime(contact, &time));
   for (PetscInt p = 0; reason == SNES_DIVERGED_NAN && p < contact->n_pairs; p++) {
     ContactPairState state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(!PetscIsInfOrNanReal(state.gap), PetscObjectComm((PetscObject)contact), PETSC_ERR_FP,
-               "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step "
-               "or -contact_penalty too large?",
-               contact->pairs[p].name, (double)time);
+    if (PetscIsInfOrNanReal(state.gap))
+      PetscCall(StepFailureSet(
+          &contact->attempt.failure, STEP_DIVERGED_NAN, PETSC_ERR_FP,
+          "The contact force between the bodies '%s' is not a number in the step that ends at time %.9g s; is a velocity, a time step "
+          "or -contact_penalty too large?",
+          contact->pairs[p].name, (double)time));
   }
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-          "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-          " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
-          "-contact_penalty (or -contact_penalty_scale) or -time_step",
-          (double)time, contact->counts.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]);
+  PetscCall(StepFailureSet(
+      &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+      "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+      " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
+      "-contact_penalty (or -contact_penalty_scale) or -time_step",
+      (double)time, contact->counts.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The forces of springs and dampers, from the forces as they are as first iterate */
@@ -220,6 +255,7 @@ PetscErrorCode PenaltySolve(Contact contact)
   while (changed) {
     PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
     PetscCall(CheckConverged(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(VecGetArrayRead(penalty->outer.x, &force));
     PetscCall(PetscArraycpy(contact->end.force, force, contact->rows.n));
     PetscCall(VecRestoreArrayRead(penalty->outer.x, &force));
@@ -243,6 +279,7 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(contact->end.force, contact->start.force, contact->rows.n));
   PetscCall(PenaltySolve(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++)
     energy += 0.5 * penalty->spring[i] * PetscSqr(contact->rows.tied[i] ? contact->end.gap[i] : PetscMin(contact->end.gap[i], 0));
   if (contact->ranks.size > 1)
@@ -270,6 +307,7 @@ PetscErrorCode PenaltyDestroy(Contact contact)
   PetscCall(OuterSolverDestroy(&penalty->outer));
   PetscCall(ForcesDestroy(&penalty->forces));
   PetscCall(ForceProblemDestroy(&penalty->problem));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(ForceProblemDestroy(&penalty->problems[k]));
   PetscCall(PetscFree(penalty->start));
   PetscCall(PetscFree5(penalty->multiplier, penalty->pushing, penalty->spring, penalty->damper, penalty->stiffness));
   PetscCall(PetscFree(contact->data));
@@ -312,6 +350,8 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   contact->ops->step           = ContactStep_Penalty;
   contact->ops->stored         = StoredEnergy;
   contact->ops->rowschanged    = PenaltyRowsChanged;
+  contact->ops->stepback       = PenaltyStepBack;
+  contact->ops->steplevel      = PenaltySetStepLevel;
   contact->ops->view           = ContactView_Penalty;
   contact->ops->destroy        = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,6 +18,8 @@ typedef struct {
   PetscReal     atol, rtol; /* on the force [N], and relative to it */
   Forces        forces;
   ForceProblem  problem;
+  ForceProblem  problems[STEP_MAX_CUTS + 1];    /* those of other levels of cut controller steps */
+  PetscInt      level;                          /* the present one */
   PetscReal    *multiplier;                     /* force at a closed gap that does not change [N]; zero but for the augmented Lagrangian */
   PetscBool    *pushing;                        /* rows with a force that answers to their gap */
   PetscReal     residual, magnitude, round_off; /* [N] */
@@ -32,5 +34,7 @@ PETSC_INTERN PetscErrorCode PenaltySetUpSprings(Contact);
 PETSC_INTERN PetscErrorCode PenaltyViewParameter(Contact, PetscViewer);
 PETSC_INTERN PetscErrorCode PenaltySetUp(Contact);
 PETSC_INTERN PetscErrorCode PenaltySolve(Contact);
+PETSC_INTERN PetscErrorCode PenaltyStepBack(Contact);
+PETSC_INTERN PetscErrorCode PenaltySetStepLevel(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscErrorCode PenaltyRowsChanged(Contact);
 PETSC_INTERN PetscErrorCode PenaltyDestroy(Contact);

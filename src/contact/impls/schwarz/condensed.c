@@ -153,7 +153,7 @@ static PetscErrorCode MakeBase(Contact contact, PetscInt b)
       force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * contact->start.force[i];
     }
   }
-  PetscCall(BodyIntegrate(contact->bodies[b]));
+  PetscCall(ContactIntegrateBody(contact, b));
   PetscCall(BodySetBase(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -214,7 +214,7 @@ PetscErrorCode SchwarzFinishCondensed(Contact contact)
     PetscCall(ContactLoadReleased(contact, b));
   }
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyIntegrate(contact->bodies[b]));
-  PetscCall(ContactComputeGaps(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
+  if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

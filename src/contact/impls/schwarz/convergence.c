@@ -127,7 +127,7 @@ PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Not converging is an error that says where, or is counted */
+/* Where the iteration did not converge, the step has failed, or is counted */
 PetscErrorCode SchwarzCheckConverged(Contact contact)
 {
   Schwarz            *schwarz = (Schwarz *)contact->data;
@@ -137,16 +137,19 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(schwarz->outer.snes, &reason));
-  if (reason > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (schwarz->unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN && !contact->attempt.may_cut) {
+    contact->counts.unconverged_steps++;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTime(ts, &time));
-  PetscCheck(schwarz->unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN, PetscObjectComm((PetscObject)contact),
-             PETSC_ERR_NOT_CONVERGED,
-             "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-             " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen "
-             "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
-             (double)time, contact->counts.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
-             (double)schwarz->rtol);
-  contact->counts.unconverged_steps++;
+  PetscCall(StepFailureSet(
+      &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+      "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+      " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen "
+      "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
+      (double)time, contact->counts.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
+      (double)schwarz->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

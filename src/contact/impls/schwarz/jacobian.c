@@ -342,11 +342,10 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts Newton's step into the outer iteration */
-PetscErrorCode SchwarzSetUpJacobian(Contact contact)
+/* The Jacobian of a level of controller steps; all rows of a small interface become known to the bodies. Overwrites the active set. */
+PetscErrorCode SchwarzCreateJacobian(Contact contact)
 {
   Schwarz                *schwarz  = (Schwarz *)contact->data;
-  Jacobian               *jacobian = &schwarz->jacobian;
   const InterfaceSettings settings = {.prefix      = "schwarz_interface_",
                                       .tolerance   = FORCE_TOLERANCE,
                                       .dense_limit = schwarz->dense_limit,
@@ -354,14 +353,24 @@ PetscErrorCode SchwarzSetUpJacobian(Contact contact)
 
   PetscFunctionBegin;
   schwarz->stale = PETSC_TRUE;
-  PetscCall(InterfaceOperatorCreate(contact, &settings, &jacobian->S));
-  PetscCall(PetscCalloc1(contact->rows.n, &jacobian->marks));
-  PetscCall(OuterSolverSetNewton(contact, &schwarz->outer, SchwarzComputeJacobian, ApplyNewton));
+  PetscCall(InterfaceOperatorCreate(contact, &settings, &schwarz->jacobian.S));
+  PetscCall(PetscCalloc1(contact->rows.n, &schwarz->jacobian.marks));
   if (contact->rows.n_all > FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = contact->rows.opposite[i];
   PetscCall(SchwarzUpdateJacobian(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = PETSC_FALSE;
   schwarz->stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Puts Newton's step into the outer iteration */
+PetscErrorCode SchwarzSetUpJacobian(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(OuterSolverSetNewton(contact, &schwarz->outer, SchwarzComputeJacobian, ApplyNewton));
+  PetscCall(SchwarzCreateJacobian(contact));
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

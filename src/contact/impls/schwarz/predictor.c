@@ -15,7 +15,7 @@ static PetscErrorCode IntegrateTrial(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyIntegrate(contact->bodies[b]));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

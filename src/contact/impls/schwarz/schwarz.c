@@ -60,8 +60,8 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscInt begin, *mine;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4(contact->n_bodies, &schwarz->exchange, contact->rows.n, &schwarz->offset, contact->rows.n_all,
-                         &schwarz->all_offset, contact->rows.n, &schwarz->solved_active));
+  PetscCall(
+      PetscCalloc3(contact->n_bodies, &schwarz->exchange, contact->rows.n, &schwarz->offset, contact->rows.n_all, &schwarz->all_offset));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal dt;
     PetscInt  substeps;
@@ -86,7 +86,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
                               contact->ranks.offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
   PetscCall(PetscMalloc2(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->previous));
-  PetscCall(PetscCalloc1(contact->rows.n, &schwarz->known));
+  PetscCall(PetscCalloc2(contact->rows.n, &schwarz->known, contact->rows.n, &schwarz->solved_active));
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &schwarz->rounds));
   schwarz->rounds.recheck = schwarz->recheck;
   PetscCall(PetscCalloc2(contact->rows.n, &schwarz->interpolated, 3 * contact->rows.n, &schwarz->row_work));
@@ -148,7 +148,12 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->rows.changed[i]) schwarz->known[i] = PETSC_FALSE;
+    if (contact->rows.changed[i]) {
+      schwarz->known[i] = PETSC_FALSE;
+      for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++)
+        if (schwarz->memory[k].known) schwarz->memory[k].known[i] = PETSC_FALSE;
+    }
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) schwarz->memory[k].stale = PETSC_TRUE;
   schwarz->stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -178,13 +183,11 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
-  PetscCall(SchwarzDestroyJacobian(contact));
-  PetscCall(SchwarzDestroySecants(contact));
+  PetscCall(SchwarzDestroyMemory(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
-  PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->solved_active));
+  PetscCall(PetscFree3(schwarz->exchange, schwarz->offset, schwarz->all_offset));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
   PetscCall(PetscFree2(schwarz->kept_force, schwarz->previous));
-  PetscCall(PetscFree(schwarz->known));
   PetscCall(RoundsDestroy(&schwarz->rounds));
   PetscCall(PetscFree2(schwarz->interpolated, schwarz->row_work));
   PetscCall(PetscFree(contact->data));
@@ -252,6 +255,8 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->step           = ContactStep_Schwarz;
   contact->ops->stored         = ContactStoresNothing;
   contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
+  contact->ops->stepback       = SchwarzStepBack;
+  contact->ops->steplevel      = SchwarzSetStepLevel;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);

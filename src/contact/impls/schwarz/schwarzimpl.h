@@ -42,6 +42,16 @@ typedef struct {
   Vec       last_x, last_f, rest;
 } Secants;
 
+/* What is remembered from step to step: of cut controller steps at each level apart */
+typedef struct {
+  PetscBool  begun; /* there has been a step of this level */
+  Jacobian   jacobian;
+  PetscBool  stale; /* the Jacobian belongs to another active set */
+  Secants    secants;
+  PetscBool *known;         /* per row: the bodies' compliance knows it */
+  PetscBool *solved_active; /* per row: the active set that the Jacobian belongs to */
+} SchwarzMemory;
+
 typedef struct {
   /* options */
   SchwarzConvergence  convergence;
@@ -62,7 +72,7 @@ typedef struct {
   PetscBool   exact;           /* the compliance of all bodies tells all that sweeps do */
   PetscBool   substeps;        /* a body makes several */
   PetscBool   newton;          /* the outer iteration is Newton's method */
-  PetscReal   controller_step; /* [s] */
+  PetscReal   controller_step; /* [s]; of the present level, as what is remembered below */
   PetscBool   has_forces;      /* forces are the unknowns of some rows */
   /* unknowns of the outer iteration */
   OuterSolver outer;
@@ -79,10 +89,12 @@ typedef struct {
   PetscReal *weight;    /* per row: Robin stiffness [N/m] */
   PetscReal *mass[2];   /* per row: what its body, and the partner, weigh in the inelastic predictor */
   /* Newton's step */
-  Jacobian   jacobian;
-  Secants    secants;
-  PetscBool  stale; /* the Jacobian belongs to another active set */
-  PetscBool *known; /* per row: the bodies' compliance knows it */
+  Jacobian      jacobian;
+  Secants       secants;
+  PetscBool     stale;                     /* the Jacobian belongs to another active set */
+  PetscBool    *known;                     /* per row: the bodies' compliance knows it */
+  SchwarzMemory memory[STEP_MAX_CUTS + 1]; /* of other levels */
+  PetscInt      level;                     /* the present one */
   /* Aitken */
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
@@ -151,6 +163,10 @@ PETSC_INTERN PetscReal      SchwarzResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpJacobian(Contact);
+PETSC_INTERN PetscErrorCode SchwarzCreateJacobian(Contact);
+PETSC_INTERN PetscErrorCode SchwarzStepBack(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetStepLevel(Contact, PetscInt, PetscBool);
+PETSC_INTERN PetscErrorCode SchwarzDestroyMemory(Contact);
 PETSC_INTERN PetscErrorCode SchwarzUpdateJacobian(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzDestroyJacobian(Contact);

@@ -39,10 +39,12 @@ static PetscErrorCode SolveActive(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PrepareSweeps(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   schwarz->swept = PETSC_FALSE;
   if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
   PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
   PetscCall(SchwarzCheckConverged(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair     = &contact->pairs[p];
     Trace              reaction = contact->traces[DirichletBody(pair)].reaction;
@@ -84,6 +86,7 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   PetscFunctionBegin;
   *taken_back = PETSC_FALSE;
   PetscCall(RoundsNext(&schwarz->rounds));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!condensed)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
   PetscCall(PetscArraycpy(schwarz->kept_force, contact->end.force, contact->rows.n));
@@ -110,6 +113,7 @@ static PetscErrorCode Finish(Contact contact, PetscBool *changed)
   if (schwarz->step != STEP_CONDENSED) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzFinishCondensed(contact));
   schwarz->step = STEP_WHOLE;
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactAny(contact, PETSC_TRUE, changed));
   if (!*changed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++)
@@ -127,7 +131,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscCall(RoundsBegin(&schwarz->rounds));
   PetscCall(ContactBeginRelease(contact));
   schwarz->have_base = PETSC_FALSE;
-  if (schwarz->swap && schwarz->started && !contact->energy.again) PetscCall(SchwarzSwapSides(contact));
+  if (schwarz->swap && schwarz->started && !contact->energy.again && !contact->attempt.again) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
   for (PetscInt i = 0; i < contact->rows.n; i++)
@@ -137,10 +141,11 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
   while (in_contact && !taken_back) {
     PetscCall(RoundsNext(&schwarz->rounds));
-    PetscCall(SolveActive(contact));
+    if (!ContactFailed(contact)) PetscCall(SolveActive(contact));
+    if (ContactFailed(contact)) break;
     PetscCall(SchwarzUpdateActiveSet(contact, &changed));
     if (!changed) PetscCall(Finish(contact, &changed));
-    if (!changed) break;
+    if (!changed || ContactFailed(contact)) break;
     contact->counts.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
     if (in_contact) PetscCall(SchwarzBreakCycle(contact, &flips));

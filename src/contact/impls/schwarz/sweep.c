@@ -265,7 +265,7 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F = x - G(x) */
+/* F = x - G(x); not a number where a body's step fails */
 PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
 {
   Contact            contact = (Contact)ctx;
@@ -282,13 +282,16 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     PetscCall(LoadBody(contact, contact->order[k], x));
     if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
-    else PetscCall(BodyIntegrate(contact->bodies[contact->order[k]]));
+    else PetscCall(ContactIntegrateBody(contact, contact->order[k]));
     if (schwarz->has_forces) PetscCall(ReportByForce(contact, contact->order[k]));
   }
-  PetscCall(VecGetArrayWrite(F, &f));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
-  PetscCall(SchwarzMeasureChange(contact, f));
-  PetscCall(VecRestoreArrayWrite(F, &f));
+  if (ContactFailed(contact)) PetscCall(ContactRejectResidual(F));
+  else {
+    PetscCall(VecGetArrayWrite(F, &f));
+    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
+    PetscCall(SchwarzMeasureChange(contact, f));
+    PetscCall(VecRestoreArrayWrite(F, &f));
+  }
   PetscCall(VecRestoreArrayRead(X, &x));
   contact->counts.sweeps++;
   PetscCall(PetscTime(&end));

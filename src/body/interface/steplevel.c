@@ -1,0 +1,190 @@
+/*
+   Controller steps that are cut in halves. At level k the controller step is that of the set-up over 2^k, and so is each substep, whose number
+   stays. What depends on the step, the effective matrix with its factors and the interface compliance, a body keeps for each level apart,
+   from the first step at that level on.
+
+   A step that has failed must leave no trace in later ones: a run that is cut is to end with the bits of one that makes the same steps and
+   none that fail. Rows that become known to the compliance in a failed step are forgotten again. What a nonlinear body remembers of earlier
+   steps at a level, its factors and a compliance that is but an approximation, goes on if the last accepted step was of the same level, and
+   is made anew at the saved state if not: a level at which a step has failed comes up again after steps of another level only.
+*/
+#include <body/rows/complianceimpl.h>
+
+/* All rows free, so that no solver has rows to hold: conditions come with the next step */
+static PetscErrorCode FreeRows(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));
+  body->rows.n_prescribed = body->rows.n_forced = body->rows.n_robin = 0;
+  body->repeats                                                      = PETSC_FALSE;
+  PetscCall(BodySetConstraints(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forgets all rows of the present compliance */
+static PetscErrorCode ForgetAll(Body body)
+{
+  PetscMPIInt *all;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(body->rows.global, &all));
+  for (PetscInt i = 0; i < body->rows.global; i++) all[i] = 1;
+  PetscCall(ComplianceForget(body->compliance->matrices, all));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The compliance of a level, and its solver where that depends on the step, in place of those of the level before */
+static PetscErrorCode TakeLevel(Body body, PetscBool *made)
+{
+  BodyLevel *level = &body->levels[body->time.level];
+
+  PetscFunctionBegin;
+  *made = (PetscBool)!level->compliance;
+  if (level->compliance) {
+    body->compliance = level->compliance;
+    body->solver     = level->solver;
+  } else {
+    if (body->integrator->depends_on_step || !body->model.linear) PetscCall(BodyCreateCompliance(body));
+    level->compliance = body->compliance;
+  }
+  if (body->integrator->ops.setlevel) PetscCall((*body->integrator->ops.setlevel)(body));
+  level->solver = body->solver;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetStepLevel - goes back to the saved state, and makes controller steps from there that are cut in halves a number of times
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, set up
+- level - 0: the whole controller step; k: that over 2^k; at most `STEP_MAX_CUTS`
+
+  Level: developer
+
+  Notes:
+  The number of substeps stays, so that they are shorter too, and those of explicit bodies as stable as before.
+
+  The first step of a level factors the effective matrix of an implicit body, which is kept. Nonlinear bodies factor in each iteration
+  anyway.
+
+.seealso: `Body`, `BodySetControllerStep()`, `BodyRestore()`, `ContactSetStepLevel()`
+@*/
+PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
+{
+  PetscBool made;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveInt(body, level, 2);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
+  PetscCheck(level >= 0 && level <= STEP_MAX_CUTS, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "A controller step cannot be cut in halves %" PetscInt_FMT " times; 0 to %d", level, STEP_MAX_CUTS);
+  if (level == body->time.level) {
+    PetscCall(BodyRestore(body));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  body->levels[body->time.level].compliance = body->compliance;
+  body->levels[body->time.level].solver     = body->solver;
+  body->time.level                          = level;
+  body->time.controller_step                = body->time.whole_step / PetscPowRealInt(2, level);
+  body->time.step                           = body->time.controller_step / body->time.substeps;
+  PetscCall(BodyRestore(body));
+  PetscCall(TakeLevel(body, &made));
+  PetscCall(FreeRows(body));
+  if (!body->model.linear && !made && body->time.accepted_level != level) {
+    if (body->integrator->ops.renew) PetscCall((*body->integrator->ops.renew)(body));
+    PetscCall(ForgetAll(body));
+  }
+  PetscCall(BodyNoteKnownRows(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyNoteKnownRows - the rows that the compliance knows now stay known when a step fails
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Level: developer
+
+  Note:
+  `BodySave()` does it too.
+
+.seealso: `Body`, `BodyStepBack()`, `BodyExtendCompliance()`
+@*/
+PetscErrorCode BodyNoteKnownRows(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  ComplianceGetRows(body->compliance->matrices, &body->compliance->n_kept, NULL, NULL);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyStepBack - goes back to the saved state after a step that is not accepted
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+  Note:
+  As if the step had not been tried. `BodyRestore()` alone goes back for another integration in the same step, and what has been found out
+  in this step about the body's compliance stays.
+
+.seealso: `Body`, `BodyRestore()`, `BodySetStepLevel()`, `ContactStepBack()`
+@*/
+PetscErrorCode BodyStepBack(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyRestore(body));
+  body->iterate.known = PETSC_FALSE;
+  PetscCall(ComplianceTruncate(body->compliance->matrices, body->compliance->n_kept));
+  if (body->solver) PetscCall(ConstrainedSolverForgetUnknown(body->solver));
+  PetscCall(FreeRows(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of the interface have new entries: those that are marked, of all ranks. The present level has got to know. */
+PetscErrorCode BodySetRowsOfLevels(Body body, const PetscMPIInt changed[])
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
+    const BodyLevel *level = &body->levels[k];
+
+    if (k == body->time.level || !level->compliance) continue;
+    PetscCall(ComplianceForget(level->compliance->matrices, changed));
+    if (level->solver && level->solver != body->solver) PetscCall(ConstrainedSolverSetRows(level->solver, body->rows.free_matrix, changed));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyDestroyLevels(Body body)
+{
+  struct _BodyCompliance *present = body->compliance;
+
+  PetscFunctionBegin;
+  /* levels may share what they have with the first one; what is present is destroyed last */
+  for (PetscInt k = STEP_MAX_CUTS; k >= 0; k--) {
+    BodyLevel *level = &body->levels[k];
+
+    if (k && level->solver == body->levels[0].solver) level->solver = NULL;
+    if (level->solver != body->solver) PetscCall(ConstrainedSolverDestroy(&level->solver));
+    if (k && level->compliance == body->levels[0].compliance) level->compliance = NULL;
+    if (level->compliance == present) continue;
+    body->compliance = level->compliance;
+    PetscCall(BodyDestroyCompliance(body));
+  }
+  body->compliance = present;
+  PetscCall(BodyDestroyCompliance(body));
+  PetscCall(ConstrainedSolverDestroy(&body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,118 @@
+/*
+   The largest controller step that resolves contact. In a step in which rows join or leave the trapezoidal rule takes or brings energy by
+   the force at one of its ends times the gap at the other. Both are small where the step is one in which the force changes little: that of
+   an oscillator of two masses, the contact elements of both sides, with a spring between them, the layers of both sides one behind the
+   other. For equal sides this is the time that a wave takes through a contact element.
+*/
+#include <impakt/private/contactimpl.h>
+
+/* Part of a contact element by which the bodies may close in a step */
+#define CLOSING 0.25
+
+/* One side of a pair */
+typedef struct {
+  PetscReal size;      /* of its contact elements [m] */
+  PetscReal transit;   /* of a plane wave through one [s] */
+  PetscReal impedance; /* [N s/m^3] */
+  PetscReal velocity[3];
+} Side;
+
+static PetscErrorCode GetSide(Body body, Side *side)
+{
+  PetscReal density, impedance, cross_section;
+  Material  material;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetContactElementSize(body, &side->size));
+  PetscCall(BodyGetImpedance(body, &impedance));
+  PetscCall(BodyGetCrossSection(body, &cross_section));
+  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(MaterialGetDensity(material, &density));
+  side->impedance = impedance / cross_section;
+  side->transit   = side->size * density / side->impedance; /* h / c, c = Z / rho */
+  PetscCall(BodyGetInitialVelocity(body, side->velocity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step of one pair, and why */
+static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, PetscReal *step, size_t size, char reason[])
+{
+  Side      sides[2];
+  PetscReal flexibility = 0, mobility = 0, speed = 0, smallest = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  sides[1].size = 0;
+  for (PetscInt d = 0; d < 3; d++) sides[1].velocity[d] = 0; /* of an obstacle */
+  for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++) {
+    PetscCall(GetSide(contact->bodies[pair->body[s]], &sides[s]));
+    flexibility += sides[s].transit / sides[s].impedance;    /* h / M */
+    mobility += 1 / (sides[s].transit * sides[s].impedance); /* 1 / (rho h) */
+    smallest = PetscMin(smallest, sides[s].size);
+  }
+  for (PetscInt d = 0; d < 3; d++) speed += PetscSqr(sides[0].velocity[d] - sides[1].velocity[d]);
+  speed = PetscSqrtReal(speed);
+  *step = PetscSqrtReal(flexibility / mobility);
+  if (pair->obstacle)
+    PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g s", pair->name, (double)sides[0].transit));
+  else
+    PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g and %.3g s", pair->name, (double)sides[0].transit,
+                            (double)sides[1].transit));
+  if (!(speed * *step > CLOSING * smallest)) PetscFunctionReturn(PETSC_SUCCESS);
+  *step = CLOSING * smallest / speed;
+  PetscCall(PetscSNPrintf(reason, size, "%s close at %.3g m/s, by %g of a contact element in it", pair->name, (double)speed, CLOSING));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetResolvedStep - the largest controller step that resolves contact
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, after `ContactSetUpSurfaces()`
+- size    - of `reason`
+
+  Output Parameters:
++ step   - the least of all pairs [s]; infinity where no pair has inertia on both sides, or there is none
+- reason - what it follows from, for the user
+
+  Level: developer
+
+  Notes:
+  With the masses m = rho h and the stiffnesses k = M / h of the contact elements on both sides, for a unit of area, h being the mean edge
+of the elements with a contact node and M the modulus of plane waves, the step is sqrt((1/k_1 + 1/k_2) / (1/m_1 + 1/m_2)): between equal
+sides the time that a wave takes through a contact element.
+
+  It is less where the bodies, at their mean velocities at the start, would close by more than a quarter of a contact element.
+
+.seealso: `Contact`, `ContactSetUpSurfaces()`, `ControllerSetTimes()`
+@*/
+PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t size, char reason[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(step, 2);
+  PetscAssertPointer(reason, 4);
+  *step     = PETSC_INFINITY;
+  reason[0] = 0;
+  if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS); /* no row joins or leaves */
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair    = &contact->pairs[p];
+    PetscBool          inertia = PETSC_TRUE;
+    PetscReal          of_pair = 0;
+    char               why[256];
+
+    for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++) {
+      PetscBool is_static;
+
+      PetscCall(BodyIsStatic(contact->bodies[pair->body[s]], &is_static));
+      if (is_static) inertia = PETSC_FALSE;
+    }
+    if (!inertia) continue;
+    PetscCall(GetPairStep(contact, pair, &of_pair, sizeof(why), why));
+    if (of_pair >= *step) continue;
+    *step = of_pair;
+    PetscCall(PetscStrncpy(reason, why, size));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

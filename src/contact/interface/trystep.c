@@ -1,0 +1,150 @@
+/* Controller steps that may fail, and be made again in halves. */
+#include <impakt/private/contactimpl.h>
+
+/*@
+  ContactTryStep - as `ContactStep()`, for those who can make a step that fails again in halves
+
+  Collective
+
+  Input Parameters:
++ contact   - the `Contact`, set up
+. may_cut   - false where this is the last try: then the method may accept what has not converged, as -schwarz_unconverged accept does
+- most_loss - energy that contact may take or bring before the step is made again in halves, if it may be: `ContactGetEnergyLoss()` [J]
+
+  Output Parameter:
+. reason - negative where the step has failed, the same on every rank
+
+  Level: developer
+
+  Notes:
+  A step that has been made becomes final by `ContactAccept()`. After one that has failed, or that is not to be accepted, call
+  `ContactStepBack()`, then `ContactSetStepLevel()` and try again; or end with the error by `ContactRaiseFailure()`.
+
+.seealso: `Contact`, `ContactStep()`, `ContactStepBack()`, `ContactSetStepLevel()`, `ContactRaiseFailure()`, `StepConvergedReason`
+@*/
+PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most_loss, StepConvergedReason *reason)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(reason, 4);
+  contact->attempt.returns   = PETSC_TRUE;
+  contact->attempt.may_cut   = may_cut;
+  contact->attempt.most_loss = most_loss;
+  PetscCall(ContactStep(contact));
+  contact->attempt.returns = contact->attempt.may_cut = PETSC_FALSE;
+  *reason                                             = contact->attempt.failure.reason;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactRaiseFailure - ends with an error that says why the last step has failed
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, after `ContactTryStep()`
+- cuts    - how often the step had been cut in halves, for the message
+
+  Level: developer
+
+.seealso: `Contact`, `ContactTryStep()`
+@*/
+PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt cuts)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (!cuts) PetscCall(StepFailureRaise(comm, &contact->attempt.failure));
+  PetscCheck(contact->attempt.failure.reason >= 0, comm, contact->attempt.failure.code,
+             "%s [after the controller step had been cut in halves %" PetscInt_FMT " time%s, to %g s: -controller_step_cuts]",
+             contact->attempt.failure.message, cuts, cuts == 1 ? "" : "s", (double)contact->step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactStepBack - goes back to the start of a controller step that has not been accepted
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, after `ContactTryStep()`
+
+  Level: developer
+
+  Note:
+  As if the step had not been tried, but for the counts of work. The rows remain those that the step has begun with.
+
+.seealso: `Contact`, `ContactTryStep()`, `ContactSetStepLevel()`
+@*/
+PetscErrorCode ContactStepBack(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodyDropStartForce(contact->bodies[b]));
+    PetscCall(BodyStepBack(contact->bodies[b]));
+  }
+  if (contact->energy.changed) PetscCall(PetscArraycpy(contact->start.force, contact->energy.last_force, contact->rows.n));
+  contact->energy.changed = PETSC_FALSE;
+  PetscCall(PetscArraycpy(contact->end.force, contact->start.force, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->end.gap, contact->start.gap, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->end.active, contact->start.active, contact->rows.n));
+  contact->attempt.again = PETSC_TRUE;
+  if (contact->rows.n_all) PetscTryTypeMethod(contact, stepback);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetStepLevel - the next controller step is cut in halves a number of times
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up, at the start of a controller step
+- level   - 0: the whole step, k: a part of 1 / 2^k of it
+
+  Level: developer
+
+.seealso: `Contact`, `ContactTryStep()`, `ContactCanCut()`, `BodySetStepLevel()`
+@*/
+PetscErrorCode ContactSetStepLevel(Contact contact, PetscInt level)
+{
+  ContactAttempt *attempt = &contact->attempt;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveInt(contact, level, 2);
+  if (level == attempt->level) PetscFunctionReturn(PETSC_SUCCESS);
+  if (attempt->level == 0) attempt->whole_step = contact->step;
+  attempt->level = level;
+  contact->step  = attempt->whole_step / PetscPowRealInt(2, level);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetStepLevel(contact->bodies[b], level));
+  if (contact->rows.n_all) PetscTryTypeMethod(contact, steplevel, level, (PetscBool)(attempt->accepted_level == level));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyNoteKnownRows(contact->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactCanCut - whether controller steps can be made again in halves
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameter:
+. can - false where the method moves the start of its steps: forward-increment Lagrange multipliers, and the contact-stabilised method
+
+  Level: developer
+
+.seealso: `Contact`, `ContactSetStepLevel()`
+@*/
+PetscErrorCode ContactCanCut(Contact contact, PetscBool *can)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(can, 2);
+  *can = (PetscBool)!contact->attempt.moves_start;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,82 @@
+/* The controller step that resolves contact: chosen where the user leaves it to the program, or what a given one is compared with. */
+#include "controllerimpl.h"
+
+/* A given step that is larger than this many times the one that resolves contact is worth a warning */
+#define MUCH_LARGER 10
+
+/* The longest substep that the user has given to a body, of which the controller step must be a multiple [s]; 0: none. An explicit body
+   whose substep would be the controller step gets one that is stable. */
+static PetscErrorCode GetGivenSubstep(Controller controller, PetscReal *given, const char *name[])
+{
+  PetscFunctionBegin;
+  *given = 0;
+  for (PetscInt b = 0; b < controller->n_bodies; b++) {
+    const Body body = controller->bodies[b];
+    PetscBool  is_explicit;
+    PetscReal  step;
+
+    PetscCall(BodyGetTimeStep(body, &step));
+    PetscCall(BodyIsExplicit(body, &is_explicit));
+    if (step == 0 && is_explicit) PetscCall(BodySetTimeStep(body, PETSC_DETERMINE));
+    if (step <= *given) continue;
+    *given = step;
+    PetscCall(PetscObjectGetName((PetscObject)body, name));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A whole number of given substeps, or of controller steps in the run */
+static PetscErrorCode RoundStep(Controller controller, PetscReal resolved)
+{
+  const PetscReal duration = controller->time_end - controller->time_start;
+  char           *reason   = controller->step_reason;
+  const char     *name     = NULL;
+  PetscReal       given, step = resolved;
+  size_t          used;
+
+  PetscFunctionBegin;
+  PetscCall(GetGivenSubstep(controller, &given, &name));
+  if (given > 0) {
+    step = PetscMax(PetscFloorReal(resolved / given * (1 + STEPS_ROUND_OFF)), 1) * given;
+    PetscCall(PetscStrlen(reason, &used));
+    PetscCall(PetscSNPrintf(reason + used, sizeof(controller->step_reason) - used, "; a multiple of -%s_ts_time_step", name));
+  } else step = duration / PetscCeilReal(duration / step * (1 - STEPS_ROUND_OFF));
+  PetscCall(ControllerSetTimes(controller, controller->time_start, controller->time_end, step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the step that resolves contact, if the user wants it so, before the bodies are set up. Their surfaces are known. */
+PetscErrorCode ControllerChooseStep(Controller controller)
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)controller);
+  PetscReal resolved;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetResolvedStep(controller->contact, &resolved, sizeof(controller->step_reason), controller->step_reason));
+  if (controller->chooses_step) {
+    PetscCheck(resolved < PETSC_INFINITY, comm, PETSC_ERR_USER_INPUT,
+               "-time_step auto takes the largest step that resolves contact, and here no bodies with inertia can come into contact; give "
+               "-time_step in s");
+    PetscCall(RoundStep(controller, resolved));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  controller->resolved_step = resolved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says what is to be expected of a controller step that is much larger than one that resolves contact */
+PetscErrorCode ControllerWarnOfStep(Controller controller)
+{
+  MPI_Comm        comm  = PetscObjectComm((PetscObject)controller);
+  const PetscReal ratio = controller->resolved_step > 0 ? controller->time_step / controller->resolved_step : 0;
+
+  PetscFunctionBegin;
+  if (ratio <= MUCH_LARGER) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFPrintf(
+      comm, stderr,
+      "impakt: warning: -time_step %g s is %.0f times the %.3g s that resolve contact (%s): contact that begins or ends within a "
+      "step takes or brings energy%s, and its forces are means over steps; -time_step auto takes %.3g s\n",
+      (double)controller->time_step, (double)ratio, (double)controller->resolved_step, controller->step_reason,
+      controller->most_cuts ? ", so that steps may have to be cut in halves" : "", (double)controller->resolved_step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

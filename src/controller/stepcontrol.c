@@ -1,0 +1,219 @@
+/*
+   Controller steps that cannot be made as they are: a step that does not converge, that inverts an element, or in which contact takes or brings
+   more energy than it may, is undone and made again in halves, each of which may be cut again. What follows the two halves is a step of the
+   size that has been cut: so the steps that a run makes hang on its solution alone, and not on what happened before. Observers see the ends
+   of whole controller steps.
+*/
+#include "controllerimpl.h"
+
+/* An energy at the start that is smaller than this part of what the run has come to is round-off, as in the summary */
+#define NOTHING_AT_START 1e-9
+
+/*@
+  ControllerSetStepCuts - sets how often a controller step that fails may be cut in halves
+
+  Logically Collective
+
+  Input Parameters:
++ controller - the `Controller`
+- cuts       - 0: never, so that a step that fails ends the run; at most `STEP_MAX_CUTS`
+
+  Options Database Key:
+. -controller_step_cuts n - the number, 4
+
+  Level: intermediate
+
+  Notes:
+  A step fails whose outer iteration, active set, Newton's method or massless layer does not converge, that inverts an element, or in which
+  contact takes or brings more energy than `ContactSetEnergyTolerance()` allows. It is undone and made again in halves, these again in
+halves where they fail, up to so many times. After both halves the next step is one of the size that has been cut, so that each controller
+step begins whole. A run that makes cuts ends with the same bits as one that makes these steps without any that fail.
+
+  Each body makes as many substeps to a cut step as to a whole one, which are shorter. Times in the output are the ends of whole controller
+  steps.
+
+  Where the last cut does not help the run ends with an error, or -schwarz_unconverged accept takes what has not converged; what changes
+energy is accepted, and counted: `ControllerGetCuts()`.
+
+  Forward-increment Lagrange multipliers and the contact-stabilised method change the start of their steps, which are never cut.
+
+.seealso: `Controller`, `ControllerGetStepCuts()`, `ControllerGetCuts()`, `ContactSetEnergyTolerance()`, `StepConvergedReason`
+@*/
+PetscErrorCode ControllerSetStepCuts(Controller controller, PetscInt cuts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscValidLogicalCollectiveInt(controller, cuts, 2);
+  PetscCheck(cuts >= 0 && cuts <= STEP_MAX_CUTS, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
+             "A controller step can be cut in halves 0 to %d times, not %" PetscInt_FMT, STEP_MAX_CUTS, cuts);
+  controller->most_cuts = cuts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetStepCuts - how often a controller step that fails may be cut in halves
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameter:
+. cuts - the number
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerSetStepCuts()`
+@*/
+PetscErrorCode ControllerGetStepCuts(Controller controller, PetscInt *cuts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(cuts, 2);
+  *cuts = controller->most_cuts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetCuts - how often controller steps had to be cut in halves so far
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`, set up
+
+  Output Parameter:
+. cuts - see `ControllerCuts`
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerSetStepCuts()`
+@*/
+PetscErrorCode ControllerGetCuts(Controller controller, ControllerCuts *cuts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(cuts, 2);
+  *cuts = controller->cuts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads -controller_step_cuts */
+PetscErrorCode ControllerReadStepControl(Controller controller)
+{
+  PetscInt cuts = controller->most_cuts;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)controller);
+  PetscCall(PetscOptionsInt("-controller_step_cuts", "How often a controller step that fails is cut in halves", "ControllerSetStepCuts",
+                            cuts, &cuts, NULL));
+  PetscOptionsEnd();
+  PetscCheck(cuts >= 0 && cuts <= STEP_MAX_CUTS, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT,
+             "-controller_step_cuts %" PetscInt_FMT ": a controller step can be cut in halves 0 to %d times", cuts, STEP_MAX_CUTS);
+  PetscCall(ControllerSetStepCuts(controller, cuts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After the contact problem has been set up */
+PetscErrorCode ControllerSetUpStepControl(Controller controller)
+{
+  PetscBool can;
+
+  PetscFunctionBegin;
+  PetscCall(ContactCanCut(controller->contact, &can));
+  if (!can) controller->most_cuts = 0;
+  PetscCall(ContactGetParts(controller->contact, &controller->parts));
+  controller->cuts.smallest_step = controller->time_step / (PetscReal)controller->parts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes the energies of the bodies as their measures have them, those of step 0 as the start */
+void ControllerNoteEnergies(Controller controller, PetscInt step)
+{
+  PetscReal size = 0, energy = 0;
+
+  for (PetscInt b = 0; b < controller->n_bodies; b++) {
+    const BodyMeasures *body = &controller->measures[b];
+
+    size += body->kinetic + body->potential + PetscAbsReal(body->external_work);
+    energy += body->kinetic + body->potential - body->external_work;
+  }
+  if (!step) {
+    controller->initial_energy = energy;
+    controller->largest_energy = 0;
+  }
+  controller->largest_energy = PetscMax(controller->largest_energy, size);
+}
+
+/* Energy that contact may take or bring in a step, part of what the errors of the summary are compared with [J] */
+static PetscErrorCode GetMostLoss(Controller controller, PetscReal *most)
+{
+  const PetscReal largest = controller->largest_energy, start = controller->initial_energy;
+  PetscReal       tolerance;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetEnergyTolerance(controller->contact, &tolerance));
+  *most = tolerance * (start > NOTHING_AT_START * largest ? start : largest);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One step at a level of cuts; `done`: it has been made, and is not to be cut */
+static PetscErrorCode TryStep(Controller controller, PetscInt level, PetscBool *done)
+{
+  const PetscBool     may_cut = (PetscBool)(level < controller->most_cuts);
+  StepConvergedReason reason;
+  PetscReal           most = 0, loss = 0;
+  PetscBool           changes = PETSC_FALSE;
+  ContactCounts       counts;
+
+  PetscFunctionBegin;
+  PetscCall(GetMostLoss(controller, &most));
+  most /= PetscPowRealInt(2, level); /* halves have half of what the whole controller step may lose */
+  PetscCall(ContactTryStep(controller->contact, may_cut, most, &reason));
+  PetscCall(ContactGetCounts(controller->contact, &counts));
+  controller->step_sweeps += counts.sweeps;
+  if (reason < 0 && !may_cut) PetscCall(ContactRaiseFailure(controller->contact, level));
+  if (reason >= 0 && controller->most_cuts) PetscCall(ContactGetEnergyLoss(controller->contact, &loss));
+  changes = (PetscBool)(PetscAbsReal(loss) > most);
+  if (changes && !may_cut) controller->cuts.lossy_steps++;
+  *done = (PetscBool)(reason >= 0 && !(changes && may_cut));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A step that has been cut so many times, whole or in halves */
+static PetscErrorCode MakeStep(Controller controller, PetscInt level)
+{
+  PetscBool done;
+
+  PetscFunctionBegin;
+  if (controller->most_cuts) PetscCall(ContactSetStepLevel(controller->contact, level));
+  PetscCall(TryStep(controller, level, &done));
+  if (done) {
+    PetscCall(ContactAccept(controller->contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ContactStepBack(controller->contact));
+  controller->step_cuts++;
+  controller->cuts.smallest_step = PetscMin(controller->cuts.smallest_step,
+                                            controller->time_step / (PetscReal)controller->parts / PetscPowRealInt(2, level + 1));
+  for (PetscInt half = 0; half < 2; half++) PetscCall(MakeStep(controller, level + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A whole controller step, from the state that was accepted last to one that is accepted: each of its parts, see ContactGetParts() */
+PetscErrorCode ControllerMakeStep(Controller controller)
+{
+  PetscInt most_sweeps = 0;
+
+  PetscFunctionBegin;
+  controller->step_cuts = 0;
+  for (PetscInt part = 0; part < controller->parts; part++) {
+    controller->step_sweeps = 0;
+    PetscCall(MakeStep(controller, 0));
+    most_sweeps = PetscMax(most_sweeps, controller->step_sweeps);
+  }
+  controller->step_sweeps = most_sweeps;
+  controller->cuts.cuts += controller->step_cuts;
+  controller->cuts.steps += controller->step_cuts > 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

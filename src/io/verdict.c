@@ -1,0 +1,95 @@
+/*
+   What a user should know before believing the figures of a run: a line each at its end, which the summary has too. Each says what is
+   amiss, by how much, and what to do.
+*/
+#include "verdict.h"
+#include <stdarg.h>
+
+/* An energy error from which on a run says so */
+#define ENERGY_ERROR 0.05
+
+/* Adds a sentence while there is room */
+static PetscErrorCode Add(Verdict *verdict, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
+{
+  va_list arguments;
+
+  PetscFunctionBegin;
+  if (verdict->n == VERDICT_MAX) PetscFunctionReturn(PETSC_SUCCESS);
+  va_start(arguments, format);
+  PetscCall(PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments));
+  va_end(arguments);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const StatisticsResults *results, Verdict *verdict)
+{
+  const PetscReal worst = -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
+  ContactCounts   counts;
+  ControllerCuts  cuts;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetCounts(contact, &counts));
+  PetscCall(ControllerGetCuts(controller, &cuts));
+  if (!(PetscAbsReal(worst) <= ENERGY_ERROR))
+    PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst; a smaller -time_step, or -time_step auto, makes it less",
+                  (double)(100 * worst)));
+  if (counts.unconverged_steps)
+    PetscCall(Add(verdict, "%" PetscInt_FMT " step%s accepted without having converged (-schwarz_unconverged accept)",
+                  counts.unconverged_steps, counts.unconverged_steps == 1 ? " was" : "s were"));
+  if (cuts.lossy_steps)
+    PetscCall(Add(verdict,
+                  "%" PetscInt_FMT " step%s accepted although contact took or brought more energy than -contact_energy_tolerance after "
+                  "the last cut, to %.3g s",
+                  cuts.lossy_steps, cuts.lossy_steps == 1 ? " was" : "s were", (double)cuts.smallest_step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const StatisticsResults *results, Verdict *verdict)
+{
+  const char *name;
+  ContactLaw  law;
+  PetscReal   depth;
+  PetscBool   inside;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
+  PetscCall(ContactGetLaw(contact, &law));
+  PetscCall(ContactGetOverlap(contact, p, &depth, &inside));
+  if (law == CONTACT_LAW_TIED && !results->pairs[p].active_max)
+    PetscCall(Add(verdict, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
+  if (inside) PetscCall(Add(verdict, "%s end %.3g m inside each other", name, (double)depth));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  VerdictMake - what is amiss with a run
+
+  Collective
+
+  Input Parameters:
++ controller - the `Controller`, at its end
+- results    - figures of the run
+
+  Output Parameter:
+. verdict - sentences, none where all is well
+*/
+PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *results, Verdict *verdict)
+{
+  Contact contact;
+
+  PetscFunctionBegin;
+  verdict->n = 0;
+  PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(LookAtSteps(controller, contact, results, verdict));
+  for (PetscInt p = 0; p < results->n_pairs && results->steps; p++) PetscCall(LookAtPair(contact, p, results, verdict));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* On standard error, a line for each */
+PetscErrorCode VerdictPrint(MPI_Comm comm, const Verdict *verdict)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < verdict->n; i++) PetscCall(PetscFPrintf(comm, stderr, "impakt: warning: %s\n", verdict->text[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

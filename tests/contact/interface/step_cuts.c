@@ -1,0 +1,230 @@
+/* ranks: 1 2 */
+/* Controller steps in halves: what a run ends with whose steps fail and are made again is what one ends with that makes these steps at
+   once, bit for bit. On three ranks and more sums over ranks come in any order. */
+#include "simulation.h"
+
+#define STEPS      12 /* whole controller steps */
+#define MAX_VALUES 4096
+#define ROUND_OFF  1e-10 /* of forces of 0.1 N whose penalty is found to 1e-9 of them */
+
+/* How the steps are made */
+typedef enum {
+  HALVES,     /* with half the controller step from the start */
+  CUT,        /* each whole step fails first */
+  MIXED,      /* some whole, some in halves, some in halves and quarters */
+  MIXED_FAILS /* the same, each cut after a step that has failed */
+} Way;
+
+/* Displacement, velocity and acceleration of all bodies, on several ranks their energies and momenta, and the force, after each whole step
+ */
+typedef struct {
+  PetscInt    n;
+  PetscScalar values[STEPS][MAX_VALUES];
+} Record;
+
+static PetscMPIInt Ranks(void)
+{
+  PetscMPIInt size;
+
+  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), MPI_SUCCESS);
+  return size;
+}
+
+static void NoteState(Body body, PetscScalar values[], PetscInt *n_values)
+{
+  Vec vecs[3];
+
+  ok(BodyGetSolution(body, &vecs[0], &vecs[1], &vecs[2]));
+  for (PetscInt k = 0; k < 3; k++) {
+    const PetscScalar *array;
+    PetscInt           n;
+
+    ok(VecGetLocalSize(vecs[k], &n));
+    assert_true(*n_values + n < MAX_VALUES);
+    ok(VecGetArrayRead(vecs[k], &array));
+    ok(PetscArraycpy(values + *n_values, array, n));
+    ok(VecRestoreArrayRead(vecs[k], &array));
+    *n_values += n;
+  }
+}
+
+static void Note(Simulation *simulation, PetscInt step, Record *record)
+{
+  PetscScalar     *values = record->values[step];
+  ContactPairState pair;
+
+  record->n = 0;
+  for (PetscInt b = 0; b < simulation->n_bodies; b++) {
+    BodyMeasures measures;
+
+    if (Ranks() == 1) NoteState(simulation->bodies[b], values, &record->n);
+    ok(BodyGetMeasures(simulation->bodies[b], &measures));
+    values[record->n++] = measures.kinetic;
+    values[record->n++] = measures.potential;
+    values[record->n++] = measures.momentum[0];
+  }
+  ok(ContactGetPairState(simulation->contact, 0, &pair));
+  values[record->n++] = pair.force;
+}
+
+static void Fail(Simulation *simulation, PetscInt level)
+{
+  StepConvergedReason reason;
+
+  ok(ContactSetStepLevel(simulation->contact, level));
+  ok(ContactTryStep(simulation->contact, PETSC_TRUE, &reason));
+  ok(ContactStepBack(simulation->contact));
+}
+
+static void Make(Simulation *simulation, PetscInt level)
+{
+  StepConvergedReason reason;
+
+  ok(ContactSetStepLevel(simulation->contact, level));
+  ok(ContactTryStep(simulation->contact, PETSC_TRUE, &reason));
+  assert_int_equal(reason, STEP_CONVERGED);
+  ok(ContactAccept(simulation->contact));
+}
+
+/* A whole step, of which every third stays whole, and every third is cut twice in its first half */
+static void MakeMixed(Simulation *simulation, PetscInt step, PetscBool fails)
+{
+  if (step % 3 == 0) {
+    Make(simulation, 0);
+    return;
+  }
+  if (fails) Fail(simulation, 0);
+  if (step % 3 == 1) {
+    if (fails) Fail(simulation, 1);
+    Make(simulation, 2);
+    Make(simulation, 2);
+  } else Make(simulation, 1);
+  Make(simulation, 1);
+}
+
+static void Run(Simulation *simulation, Way way, Record *record)
+{
+  for (PetscInt step = 0; step < STEPS; step++) {
+    switch (way) {
+    case HALVES:
+      Step(simulation);
+      Step(simulation);
+      break;
+    case CUT:
+      Fail(simulation, 0);
+      Make(simulation, 1);
+      Make(simulation, 1);
+      break;
+    default:
+      MakeMixed(simulation, step, (PetscBool)(way == MIXED_FAILS));
+    }
+    Note(simulation, step, record);
+  }
+}
+
+static void Compare(const Record *a, const Record *b)
+{
+  PetscBool touched = PETSC_FALSE;
+
+  assert_int_equal(a->n, b->n);
+  for (PetscInt step = 0; step < STEPS; step++) {
+    for (PetscInt i = 0; i < a->n; i++) near(a->values[step][i], b->values[step][i], Ranks() == 1 ? 0 : ROUND_OFF);
+    touched = (PetscBool)(touched || PetscRealPart(a->values[step][a->n - 1]) > 0);
+  }
+  assert_true(touched);
+}
+
+/* `whole` and `half`: the options that have times in them, of a controller step and of half of it */
+static void CompareWays(Simulation *simulation, const char whole[], const char half[], const char options[])
+{
+  Record *records;
+
+  ok(PetscMalloc1(2, &records));
+  AddOptions(options);
+  SimulationRepeat(simulation, half);
+  Run(simulation, HALVES, &records[0]);
+  SimulationRepeat(simulation, whole);
+  Run(simulation, CUT, &records[1]);
+  Compare(&records[0], &records[1]);
+  SimulationRepeat(simulation, whole);
+  Run(simulation, MIXED, &records[0]);
+  SimulationRepeat(simulation, whole);
+  Run(simulation, MIXED_FAILS, &records[1]);
+  Compare(&records[0], &records[1]);
+  ok(PetscFree(records));
+}
+
+#define STABLE "-left_ts_time_step 0.02 -right_ts_time_step 0.02 -time_step 0.02"
+#define HALF   "-left_ts_time_step 0.01 -right_ts_time_step 0.01 -time_step 0.01"
+
+static void bars(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const variants[] = {
+      "-left_ts_type alpha2 -right_ts_type alpha2",
+      "-left_ts_type alpha2 -right_ts_type centraldifference",
+      "-left_ts_type centraldifference -right_ts_type centraldifference",
+      "-left_material_type neo_hookean",
+      "-right_ts_type alpha2",
+      "-left_ts_type alpha2 -right_material_type neo_hookean",
+      "-schwarz_transmission impedance -left_material_type linear_elastic -right_material_type linear_elastic",
+      "-schwarz_transmission robin",
+      "-schwarz_transmission dirichlet_neumann -contact_swap_sides",
+      "-contact_swap_sides 0 -schwarz_condense 0 -schwarz_snes_type anderson",
+      "-schwarz_snes_type newtonls -left_mass_redistribute 0 -right_mass_redistribute 0",
+      "-left_mass_redistribute 1 -right_mass_redistribute 1 -left_mass_type consistent",
+  };
+
+  AddCollision(8, 13, 0);
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i]);
+}
+
+static void substeps(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const variants[] = {"-left_ts_type alpha2 -right_ts_type alpha2", "-right_ts_type centraldifference",
+                                  "-left_ts_type centraldifference", "-left_material_type neo_hookean"};
+
+  AddCollision(8, 13, 0);
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++)
+    CompareWays(simulation, "-left_ts_time_step 0.005 -right_ts_time_step 0.01 -time_step 0.02",
+                "-left_ts_time_step 0.0025 -right_ts_time_step 0.005 -time_step 0.01", variants[i]);
+}
+
+static void other_methods(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const variants[] = {"-contact_type penalty",
+                                  "-contact_penalty_damping 0.1 -contact_constraint both",
+                                  "-right_ts_type centraldifference",
+                                  "-contact_constraint gap -contact_type augmented_lagrangian",
+                                  "-contact_type lagrange",
+                                  "-right_ts_type alpha2"};
+
+  AddCollision(8, 13, 0);
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i]);
+}
+
+/* Blocks of which one is turned by 3 degrees: more rows than are known from the start, which join and leave */
+static void turned_blocks(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  const char *const variants[] = {"-left_ts_type alpha2", "-right_ts_type centraldifference", "-left_material_type neo_hookean",
+                                  "-right_material_type neo_hookean", "-contact_type penalty"};
+
+  AddOptions(
+      "-bodies left,right -contact_pairs left:right -time_end 1 -left_dm_plex_dim 2 -left_dm_plex_box_faces 3,18 -left_density 1 "
+      "-left_youngs_modulus 1 -left_poissons_ratio 0.2 -left_initial_velocity 0.1,0 -right_dm_plex_dim 2 -right_dm_plex_box_faces 3,16 "
+      "-right_density 1 -right_youngs_modulus 1 -right_poissons_ratio 0.2 -right_initial_velocity -0.1,0 -left_dm_plex_box_lower 0,0 "
+      "-left_dm_plex_box_upper 0.5,1 -right_dm_plex_box_lower 0.53,0 -right_dm_plex_box_upper 1.03,1 -right_rotate 3 "
+      "-right_rotate_centre 0.53,0.5");
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i]);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {simulation_test(bars), simulation_test(substeps), simulation_test(other_methods),
+                                     simulation_test(turned_blocks)};
+
+  return impakt_main(argc, argv, tests);
+}

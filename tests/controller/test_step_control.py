@@ -1,0 +1,64 @@
+"""Steps that do not resolve contact: cut in halves, warned of, and told at the end of the run."""
+
+import pytest
+
+# A stiff block hits a beam that is clamped at one end and symmetric at the other, and with its step of 1/260 of the beam's first period
+BEAM = """
+-bodies beam,block -contact_pairs beam:block -time_end 0.02
+-beam_dm_plex_dim 2 -beam_dm_plex_box_lower 0,0 -beam_dm_plex_box_upper 0.5,0.02 -beam_dm_plex_box_faces 100,4
+-beam_density 1000 -beam_youngs_modulus 2e9 -beam_poissons_ratio 0.3 -beam_plane_stress
+-beam_boundary_displacement xmin,xmax -beam_boundary_displacement_xmin 0,0 -beam_boundary_displacement_xmax 0,free
+-block_dm_plex_dim 2 -block_dm_plex_box_lower 0.475,0.0200001 -block_dm_plex_box_upper 0.5,0.1200001 -block_dm_plex_box_faces 4,4
+-block_density 2000 -block_youngs_modulus 2e11 -block_poissons_ratio 0.3 -block_plane_stress
+-block_initial_velocity 0,-0.5 -block_boundary_displacement xmax -block_boundary_displacement_xmax 0,free
+""".replace("\n", " ")
+
+
+def warnings(run):
+    return [line for line in run.stderr.splitlines() if line.startswith("impakt: warning")]
+
+
+def test_beam_hit(shared_run):
+    """A step of 2e-4 s, 64 times what resolves contact: +185 % of energy without cuts. With four of them, and one more, the error falls."""
+    errors = []
+    for cuts in (0, 4, 8):
+        run = shared_run(f"{BEAM} -time_step 2e-4 -controller_step_cuts {cuts}")
+        control = run.summary["step_control"]
+        errors.append(abs(run.summary["system"]["energy_error_final"]))
+        assert len(run.history["time"]) == 101
+        assert (control["step_cuts"] > 0) == (cuts > 0)
+        assert 2e-4 / 2**cuts * (1 - 1e-12) <= control["smallest_step"] <= 2e-4
+        assert "64 times the 3.12e-06 s that resolve contact" in warnings(run)[0]
+    assert errors[0] > 0.5
+    assert errors[1] < 0.03  # measured: 1.5e-2
+    assert errors[2] < 2e-3  # measured: 5e-4
+
+
+def test_auto(shared_run):
+    """The largest step that resolves contact: sqrt((1/k + 1/k') / (1/m + 1/m')), 3.1174e-6 s by hand for elements of 5 by 5 and 6.25 by 25 mm."""
+    run = shared_run(f"{BEAM} -time_step auto")
+    assert "the largest step that resolves contact: waves cross the contact elements of beam:block in" in run.stdout
+    step = run.history["time"][1] - run.history["time"][0]
+    assert step == pytest.approx(3.117e-6, rel=1e-3)
+    assert not warnings(run)
+    assert abs(run.summary["system"]["energy_error_final"]) < 5e-3  # measured: 2.4e-3
+
+
+def test_verdict(shared_run):
+    """A run whose energy error exceeds 5 % says so, on standard error and in the summary; a good one says nothing."""
+    bad = shared_run(f"{BEAM} -time_step 2e-4 -controller_step_cuts 0")
+    assert warnings(bad)[-1].startswith("impakt: warning: the energy error is +185 %")
+    assert [f"impakt: warning: {text}" for text in bad.summary["warnings"]] == warnings(bad)[1:]
+    good = shared_run("-options_file options/impact-high-speed.opts")
+    assert good.summary["warnings"] == []
+    assert not good.summary["contact"]["still_in_contact"]
+
+
+def test_inside_each_other(impakt):
+    """A penalty that is far too soft leaves the bars inside each other where the run ends in contact."""
+    run = impakt("-options_file options/impact-high-speed.opts -contact_type penalty -contact_penalty 1e3 -time_end 1e-4")
+    summary = run.summary
+    assert summary["contact"]["still_in_contact"]
+    assert "still in contact at the end" in run.stdout
+    assert any("inside each other" in text and "left:right" in text for text in summary["warnings"])
+    assert summary["contact"]["gap_final"] < 0
