@@ -170,7 +170,9 @@ PetscErrorCode ContactStep(Contact contact)
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   rebuilds = contact->counts.rebuilds;
   if (!contact->attempt.again) PetscCall(ContactUpdateRows(contact));
-  if (contact->counts.rebuilds > rebuilds && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
+  /* in halves of a step too: the staggered energy of explicit bodies depends on the step */
+  if ((contact->counts.rebuilds > rebuilds || contact->energy.rebuilt) && !contact->energy.unlimited)
+    PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) {
     PetscUseTypeMethod(contact, step);

