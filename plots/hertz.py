@@ -47,6 +47,11 @@ class Ball:
         radius = (3 * load * self.radius / (4 * self.modulus)) ** (1 / 3)
         return radius, 3 * load / (2 * np.pi * radius**2)
 
+    def lower_surface(self, positions):
+        """Nodes of the half of the surface that faces the plane, by their positions from the centre. Their radii differ from the ball's, so that the
+        mesh has its volume; other nodes are deeper by an element, which is more than a thousandth of the radius."""
+        return (np.linalg.norm(positions, axis=1) > 0.999 * self.radius) & (positions[:, -1] < 0)
+
     def impact(self, mass, speed):
         """Approach, duration and largest force of a ball's impact."""
         approach = (15 * mass * speed**2 / (16 * self.modulus * np.sqrt(self.radius))) ** 0.4
@@ -97,7 +102,7 @@ def pressures(ball, path):
         positions = file["mesh/positions"][:, : ball.dim] - ball.centre
         last = max(file["contact_pressure"])
         pressure, active = (file[f"{name}/{last}"][()].ravel() for name in ("contact_pressure", "contact_active"))
-    surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, -1] < 0)
+    surface = ball.lower_surface(positions)
     distance = np.linalg.norm(positions[:, :-1], axis=1)
     order = np.flatnonzero(surface)[np.argsort(distance[surface])]
     return {"distance": distance[order], "pressure": pressure[order], "touches": active[order] > 0}

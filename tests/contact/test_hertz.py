@@ -75,7 +75,7 @@ def means(run):
         faces = file["mesh/cells"][()][:, FACES].reshape(-1, 4)
         pressure = file["contact_pressure"][max(file["contact_pressure"])][()].ravel() / peak
     distance = np.linalg.norm(positions[:, :2], axis=1) / radius
-    surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, 2] < 0) & (distance < 1.5)
+    surface = ball.lower_surface(positions) & (distance < 1.5)
     faces = faces[surface[faces].all(axis=1)]
     x, y = (each.ravel() for each in np.meshgrid(*2 * [(np.arange(40) + 0.5) / 40]))
     shapes = np.stack(((1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y))
@@ -111,7 +111,7 @@ def test_rim(shared_run):
         force = ball.parts * next(iter(run.history["contact"].values()))["force"][()]
         with h5py.File(run.folder / "out/hertz-cylinder-fields.h5") as file:
             positions = file["mesh/positions"][:, :2] - ball.centre
-            surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, 1] < 0)
+            surface = ball.lower_surface(positions)
             pressures = [file["contact_pressure"][frame][()].ravel()[surface] for frame in sorted(file["contact_pressure"])]
         distance = positions[surface, 0]
         element = np.sort(distance)[1]
