@@ -52,6 +52,9 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscFunctionBegin;
   PetscCall(SetReal(object, "first_contact_time", contact->first_contact_time));
   PetscCall(SetReal(object, "release_time", contact->release_time));
+  PetscCall(SetReal(object, "onset_time", contact->times.onset));
+  PetscCall(SetReal(object, "separation_time", contact->times.separation));
+  PetscCall(SetMember(object, "in_contact_at_end", json_boolean(contact->times.in_contact_at_end)));
   PetscCall(SetInteger(object, "onsets", contact->onsets));
   PetscCall(SetInteger(object, "steps_in_contact", contact->steps_in_contact));
   PetscCall(SetReal(object, "force_mean", contact->force_mean));

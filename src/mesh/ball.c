@@ -78,7 +78,7 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscBool set;
 
   PetscFunctionBegin;
-  *ball = (Ball){.dim = 2, .divisions = 4, .radius = 1, .grading = 1};
+  *ball = (Ball){.dim = 2, .divisions = 4, .radius = 1, .grading = 1, .keep_volume = PETSC_TRUE};
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &ball->dim, NULL));
   PetscCheck(ball->dim == 2 || ball->dim == 3, comm, PETSC_ERR_USER_INPUT,
              "-%sdm_plex_dim %" PetscInt_FMT ": -%sdm_plex_shape ball makes a disc (2) or a ball (3)", prefix, ball->dim, prefix);
@@ -101,6 +101,7 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscCall(ReadPart(comm, prefix, ball));
   PetscCall(ReadPole(comm, prefix, ball));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &ball->simplex, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, prefix, "-ball_keep_volume", &ball->keep_volume, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -274,12 +275,15 @@ PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char nam
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape ball", name, prefix));
   error = MeshOnFirstRank(comm, FillBall, &grid, where);
   PetscCallMPI(MPI_Bcast(&grid.missing, 1, MPIU_REAL, 0, comm));
-  if (!error && grid.missing > 0)
-    PetscCall(PetscFPrintf(
-        comm, stderr,
-        "impakt: warning: body '%s' has %.2g %% less volume than the ball of its radius: elements opposite to the pole are too large "
-        "to be moved outward; take more -%sball_divisions, or a weaker -%sball_grading\n",
-        name, (double)(100 * grid.missing), prefix, prefix));
+  if (!error && grid.missing > 0 && ball.keep_volume)
+    PetscCall(
+        PetscFPrintf(comm, stderr,
+                     "impakt: warning: body '%s' has %.2g %% less volume than the ball of its radius: elements opposite to the pole are "
+                     "too large to be moved outward; take more -%sball_divisions, or a weaker -%sball_grading\n",
+                     name, (double)(100 * grid.missing), prefix, prefix));
+  if (!error && grid.missing > 0 && !ball.keep_volume)
+    PetscCall(PetscPrintf(comm, "body '%s' has %.2g %% less volume than the ball of its radius (-%sball_keep_volume false)\n", name,
+                          (double)(100 * grid.missing), prefix));
   if (!error) error = MeshBuild(comm, &file, where, dm);
   PetscCall(PetscFree(grid.rim));
   PetscCall(MeshFileDestroy(&file));

@@ -6,7 +6,7 @@ typedef struct {
   PetscInt  dim, divisions, layers;
   PetscInt  n_cuts; /* planes that cut it: x = centre, then y = centre */
   PetscReal radius, centre[3], pole[3], grading;
-  PetscBool simplex;
+  PetscBool simplex, keep_volume;
 } Ball;
 
 /* The central block, or the block of layers on one side of it: along the axis of that side places count layers */
@@ -25,7 +25,7 @@ typedef struct {
   PetscInt   *rim;             /* per node of the central block: its number on the rim, -1 inside */
   PetscInt    n_blocks;
   BallBlock   blocks[7]; /* the central one first */
-  PetscReal   missing;   /* part of the ball's volume that the mesh lacks, 0 but where its elements are too coarse */
+  PetscReal   missing;   /* part of the ball's volume that the mesh lacks */
 } BallGrid;
 
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);

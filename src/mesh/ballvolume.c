@@ -230,7 +230,7 @@ PetscErrorCode BallKeepVolume(BallGrid *grid)
   share = FindShare(ball, &sphere, wanted);
   for (PetscInt i = 0; i < sphere.n_nodes; i++) most = PetscMax(most, share * sphere.move[i]);
   grid->missing = 1 - Volume(ball, &sphere, 0) / wanted;
-  if (most <= MOST_MOVE && !PetscIsNanReal(share)) {
+  if (ball->keep_volume && most <= MOST_MOVE && !PetscIsNanReal(share)) {
     PetscCall(PetscMalloc1(3 * grid->file->n_nodes, &before));
     PetscCall(PetscArraycpy(before, grid->file->coordinates, 3 * grid->file->n_nodes));
     MoveNodes(grid, &sphere, share);

@@ -20,6 +20,9 @@ THREE_BARS = "-options_file options/three-bars.opts"
 CONTACT = {
     "first_contact_time": float,
     "release_time": float,
+    "onset_time": float,
+    "separation_time": float,
+    "in_contact_at_end": bool,
     "onsets": int,
     "steps_in_contact": int,
     "force_mean": float,
