@@ -1,9 +1,13 @@
 """Two unequal bodies against Hertz, both of which deform: cylinders pressed together, spheres that hit each other. Figures are those of true cylinders and
 spheres: their radii and masses are the options', not the mesh's. K. L. Johnson, Contact mechanics (1985), eqs. 4.43 and 4.45, 11.21 to 11.24."""
 
+import os
+import sys
+
 import h5py
 import numpy as np
 import pytest
+from conftest import ROOT
 
 CYLINDERS = "-options_file options/hertz-cylinders.opts -output_fields_interval 1"
 SPHERES = "-options_file options/hertz-spheres.opts"
@@ -142,3 +146,12 @@ def test_coarse_spheres(shared_run):
     assert abs(errors[0]) <= 0.01
     assert 0 <= errors[1] <= 0.085
     assert restitution >= 0.999
+
+
+def test_figure(shared_run, launch, tmp_path):
+    figure = tmp_path / "figure.png"
+    histories = [shared_run(options).folder / "history.h5" for options in (f"{CYLINDERS} {SIDES['upper first']}", f"{SPHERES} {COARSE}")]
+    run = launch([sys.executable, ROOT / "plots/hertz.py", *histories, figure], env={**os.environ, "MPLBACKEND": "Agg"})
+    assert run.returncode == 0, run.stderr
+    assert not run.stderr
+    assert figure.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
