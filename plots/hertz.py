@@ -1,6 +1,7 @@
-"""Draws what presses or falls on a rigid plane beside Hertz's theory: a panel for each history.
+"""Draws what presses or falls on a rigid plane, or two bodies that press or hit each other, beside Hertz's theory: a panel for each history.
 
     python plots/hertz.py out/hertz-cylinder.h5 out/hertz-sphere.h5 out/hertz-impact.h5 figure.png
+    python plots/hertz.py out/hertz-cylinders.h5 out/hertz-spheres.h5 figure.png
 
 Of static runs the contact pressure at the end over the distance from the axis, from the fields that the run wrote too; of others
 the contact force over time. Bodies are discs or balls from options (-<body>_dm_plex_shape ball), or parts of them.
@@ -47,6 +48,11 @@ class Ball:
         radius = (3 * load * self.radius / (4 * self.modulus)) ** (1 / 3)
         return radius, 3 * load / (2 * np.pi * radius**2)
 
+    def lower_surface(self, positions):
+        """Nodes of the half of the surface that faces the plane, by their positions from the centre. Their radii differ from the ball's, so that the
+        mesh has its volume; other nodes are deeper by an element, which is more than a thousandth of the radius."""
+        return (np.linalg.norm(positions, axis=1) > 0.999 * self.radius) & (positions[:, -1] < 0)
+
     def impact(self, mass, speed):
         """Approach, duration and largest force of a ball's impact."""
         approach = (15 * mass * speed**2 / (16 * self.modulus * np.sqrt(self.radius))) ** 0.4
@@ -62,6 +68,14 @@ class Ball:
         return np.r_[time, 2 * time[-1] - time[-2::-1]], np.r_[force, force[-2::-1]]
 
 
+class Pair(Ball):
+    """Two discs or balls in contact: theory knows one radius, modulus and mass of both."""
+
+    def __init__(self, balls):
+        self.name, self.dim, self.parts, self.static = " and ".join(ball.name for ball in balls), balls[0].dim, balls[0].parts, balls[0].static
+        self.radius, self.modulus = (1 / sum(1 / value for value in values) for values in ([ball.radius for ball in balls], [ball.modulus for ball in balls]))
+
+
 def hertz_pressure(distance):
     """By the largest, at distances by the radius of the contact."""
     return np.sqrt(np.maximum(0, 1 - distance**2))
@@ -71,11 +85,17 @@ def read(path):
     """The ball, and what is drawn of it: loads and momenta are those of the whole ball."""
     with history_file(path) as file:
         options = {name: str(value) for name, value in file.attrs.items()}
-        ball = Ball(options, next(iter(file["body"])))
+        balls = [Ball(options, name) for name in file["body"]]
+        if len(balls) > 2:
+            raise CannotDraw(f"the run has {len(balls)} bodies: theory is for one on a plane, or two")
+        ball = balls[0] if len(balls) == 1 else Pair(balls)
         pair = file["contact"][next(iter(file["contact"]))]
-        body = file["body"][ball.name]
+        bodies = [file["body"][each.name] for each in balls]
         series = {"force": ball.parts * pair["force"][()], "area": ball.parts * pair["area"][()], "active": pair["active"][()]}
-        series |= {"time": file["time"][()], "velocity": body["mean_velocity"][:, -1], "momentum": ball.parts * body["momentum"][:, ball.dim - 1]}
+        velocities, momenta = ([body[name][:, ball.dim - 1] for body in bodies] for name in ("mean_velocity", "momentum"))
+        series |= {"time": file["time"][()], "velocity": velocities[0] - (velocities[1] if len(balls) == 2 else 0), "momentum": ball.parts * momenta[0]}
+        if not ball.static:
+            series["mass"] = ball.parts / sum(velocity[0] / momentum[0] for velocity, momentum in zip(velocities, momenta, strict=True))
     if ball.static:
         series |= pressures(ball, find_fields(Path(path), options))
     return ball, series
@@ -94,10 +114,14 @@ def find_fields(history, options):
 def pressures(ball, path):
     """Of the nodes of the surface by their distance from the axis, which is that before they moved, as in theory."""
     with h5py.File(path, "r") as file:
-        positions = file["mesh/positions"][:, : ball.dim] - ball.centre
+        positions = file["mesh/positions"][:, : ball.dim]
         last = max(file["contact_pressure"])
-        pressure, active = (file[f"{name}/{last}"][()].ravel() for name in ("contact_pressure", "contact_active"))
-    surface = (np.abs(np.linalg.norm(positions, axis=1) - ball.radius) < 1e-5 * ball.radius) & (positions[:, -1] < 0)
+        pressure, active, gap = (file[f"{name}/{last}"][()].ravel() for name in ("contact_pressure", "contact_active", "contact_gap"))
+    if isinstance(ball, Pair):  # on the axis through the origin
+        surface = np.isfinite(gap)
+    else:
+        positions = positions - ball.centre
+        surface = ball.lower_surface(positions)
     distance = np.linalg.norm(positions[:, :-1], axis=1)
     order = np.flatnonzero(surface)[np.argsort(distance[surface])]
     return {"distance": distance[order], "pressure": pressure[order], "touches": active[order] > 0}
@@ -116,20 +140,22 @@ def draw_pressure(axes, ball, series):
     shown = series["distance"] < 1.2 * radius
     axes.plot(series["distance"][shown] / radius, factor * series["pressure"][shown], "o", color=BLUE, markersize=3, label="nodes")
     axes.plot(distance, factor * peak * hertz_pressure(distance), **DASHED, label="Hertz")
-    axes.set_title(f"{ball.name} pressed on a plane, a = {radius / ball.radius:.3f} R")
+    how = f"pressed together, a = {radius / ball.radius:.3f} R*" if isinstance(ball, Pair) else f"pressed on a plane, a = {radius / ball.radius:.3f} R"
+    axes.set_title(f"{ball.name} {how}")
     axes.set_xlabel("distance from the axis / a")
     axes.set_ylabel(f"contact pressure [{unit}]")
 
 
 def draw_force(axes, ball, series):
     speed = abs(series["velocity"][0])
-    time, force = ball.force_over_time(series["momentum"][0] / series["velocity"][0], speed)
+    time, force = ball.force_over_time(series["mass"], speed)
     factor, unit = scale(force.max(), "N")
     late, time_unit = scale(series["time"][-1], "s")
     start = series["time"][np.argmax(series["force"] > 0) - 1]
     axes.plot(late * series["time"], factor * series["force"], color=BLUE, label="Impakt")
     axes.plot(late * (start + time), factor * force, **DASHED, label="Hertz")
-    axes.set_title(f"{ball.name} falls on a plane, leaves with {series['velocity'][-1] / speed:.4f} of its velocity")
+    how = "hit, part with" if isinstance(ball, Pair) else "falls on a plane, leaves with"
+    axes.set_title(f"{ball.name} {how} {abs(series['velocity'][-1]) / speed:.4f} of the velocity")
     axes.set_xlabel(f"time [{time_unit}]")
     axes.set_ylabel(f"contact force [{unit}]")
 

@@ -2,7 +2,7 @@
 #include "report.h"
 #include <math.h>
 
-/* Times of impact below this part of the duration of contact are printed as 0: round-off of start + gap / speed */
+/* Times of first contact below this part of the duration of contact are printed as 0: round-off of start + gap / speed */
 #define ROUND_OFF 1e-12
 
 /* Prints a line with a value and, if there is one, the exact value beside it */
@@ -33,8 +33,8 @@ static PetscErrorCode PrintPercent(PetscViewer viewer, const char name[], PetscR
 
 static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *results, Exact exact, PetscViewer viewer)
 {
-  const ContactStatistics *c      = &results->contact;
-  PetscReal                impact = NAN, release = NAN, force = NAN, impulse = NAN;
+  const ContactStatistics *c     = &results->contact;
+  PetscReal                onset = c->times.onset, impact = NAN, release = NAN, force = NAN, impulse = NAN;
   ContactType              type;
 
   PetscFunctionBegin;
@@ -46,9 +46,10 @@ static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *resu
   }
   PetscCall(ContactGetType(contact, &type));
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact (%s)\n", type));
-  PetscCall(PrintValue(viewer, "first contact", c->first_contact_time, "s", impact));
-  PetscCall(PrintValue(viewer, "release", c->release_time, "s", release));
-  if (c->still_in_contact) PetscCall(PetscViewerASCIIPrintf(viewer, "  still in contact at the end\n"));
+  if (PetscAbsReal(onset) < ROUND_OFF * (c->release_time - onset)) onset = 0;
+  PetscCall(PrintValue(viewer, "first contact", onset, "s", impact));
+  if (c->times.in_contact_at_end) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s still in contact\n", "release"));
+  else PetscCall(PrintValue(viewer, "release", c->times.separation, "s", release));
   PetscCall(PrintCount(viewer, "onsets", c->onsets, -1));
   PetscCall(PrintCount(viewer, "steps in contact", c->steps_in_contact, results->steps));
   PetscCall(PrintValue(viewer, "force, mean", c->force_mean, "N", force));

@@ -19,6 +19,7 @@ typedef struct {
 struct _n_Statistics {
   StatisticsResults results;
   ContactMemory     any, *pair;
+  ContactTimes      times;
   PetscReal         time; /* of the last frame [s] */
   PetscInt          total_sweeps, contact_sweeps;
   PetscReal        *initial_energy; /* of each body [J] */
@@ -83,6 +84,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ControllerGetBodies(controller, &s->results.n_bodies, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
+  PetscCall(ContactTimesCreate(controller, &s->times));
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
   PetscCall(PetscCalloc3(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change));
   for (PetscInt i = 0; i < s->results.n_bodies; i++) {
@@ -203,7 +205,6 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   contact->area_max        = PetscMax(contact->area_max, state->area);
   contact->active_max      = PetscMax(contact->active_max, state->active);
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
-  contact->still_in_contact = touches;
   contact->gap_final        = state->gap;
   memory->touches           = touches;
   memory->force             = state->force;
@@ -249,6 +250,7 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   (void)controller;
   if (frame->step == 0) NoteInitialState(s, frame);
   AddEnergies(s, frame);
+  PetscCall(ContactTimesAdd(s->times, frame));
   if (frame->step > 0) {
     for (PetscInt i = 0; i < frame->n_pairs; i++) {
       AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time);
@@ -332,7 +334,11 @@ PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResul
   StatisticsResults *r = &statistics->results;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < r->n_pairs; i++) ComputeForces(statistics, i);
+  for (PetscInt i = 0; i < r->n_pairs; i++) {
+    ComputeForces(statistics, i);
+    PetscCall(ContactTimesGetResults(statistics->times, i, &r->pairs[i].times));
+  }
+  PetscCall(ContactTimesGetResults(statistics->times, -1, &r->contact.times));
   if (r->n_pairs) {
     r->contact.force_mean = r->pairs[0].force_mean;
     r->contact.force_std  = r->pairs[0].force_std;
@@ -350,6 +356,7 @@ PetscErrorCode StatisticsDestroy(Statistics *statistics)
 {
   PetscFunctionBegin;
   if (!*statistics) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactTimesDestroy(&(*statistics)->times));
   PetscCall(PetscFree2((*statistics)->results.pairs, (*statistics)->results.bodies));
   PetscCall(PetscFree3((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change));
   PetscCall(PetscFree((*statistics)->series));

@@ -1,5 +1,6 @@
 /* What a run was like, gathered step by step. */
 #pragma once
+#include "contacttimes.h"
 #include "deviation.h"
 
 /* How one pair, or all pairs together, touched. Times and forces are not-a-number if there was no contact. */
@@ -12,11 +13,11 @@ typedef struct {
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
   PetscReal max_penetration;                  /* 0 or positive [m] */
-  PetscReal impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
-  PetscReal area_max;          /* in contact at the same time [m^2] */
-  PetscInt  active_max;        /* nodes in contact at the same time */
-  PetscBool still_in_contact;  /* at the end of the run, which the release time is then */
-  PetscReal gap_final;         /* smallest gap at the end of the run [m] */
+  ContactTimesResults times;                  /* inside controller steps, by interpolation */
+  PetscReal           impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
+  PetscReal           area_max;          /* in contact at the same time [m^2] */
+  PetscInt            active_max;        /* nodes in contact at the same time */
+  PetscReal           gap_final;         /* smallest gap at the end of the run [m] */
 } ContactStatistics;
 
 typedef struct {

@@ -52,6 +52,9 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscFunctionBegin;
   PetscCall(SetReal(object, "first_contact_time", contact->first_contact_time));
   PetscCall(SetReal(object, "release_time", contact->release_time));
+  PetscCall(SetReal(object, "onset_time", contact->times.onset));
+  PetscCall(SetReal(object, "separation_time", contact->times.separation));
+  PetscCall(SetMember(object, "in_contact_at_end", json_boolean(contact->times.in_contact_at_end)));
   PetscCall(SetInteger(object, "onsets", contact->onsets));
   PetscCall(SetInteger(object, "steps_in_contact", contact->steps_in_contact));
   PetscCall(SetReal(object, "force_mean", contact->force_mean));
@@ -63,7 +66,6 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SetReal(object, "max_penetration", contact->max_penetration));
   PetscCall(SetReal(object, "area_max", contact->area_max));
   PetscCall(SetInteger(object, "active_max", contact->active_max));
-  PetscCall(SetMember(object, "still_in_contact", json_boolean(contact->still_in_contact)));
   PetscCall(SetReal(object, "gap_final", contact->gap_final));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

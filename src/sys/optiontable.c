@@ -34,6 +34,8 @@ static const KnownOption options[] = {
     {"meshes", OPTION_OF_BODY, "dm_plex_simplex", "true|false",
      "whether a box or a ball is made of triangles or tetrahedra, default false: quadrilaterals or hexahedra"},
     {"meshes", OPTION_OF_BODY, "ball_radius", "r", "radius of a ball [m], default 1"},
+    {"meshes", OPTION_OF_BODY, "ball_keep_volume", "true|false",
+     "whether the nodes of a ball's surface move outward until the mesh has the ball's volume, default true; or lie at the radius"},
     {"meshes", OPTION_OF_BODY, "ball_centre", "x,y[,z]", "centre of a ball [m], default the origin"},
     {"meshes", OPTION_OF_BODY, "ball_divisions", "n",
      "number of elements along an edge of the central block of a ball, default 4; even for a half or a quarter"},

@@ -86,7 +86,7 @@ def test_ten_balls_explicit(shared_run):
 )
 def test_two_discs_of_other_steps(steps, loss, shared_run):
     """The Dirichlet side makes substeps that the other does not have, and contact begins and ends: momentum stays, where 1 % of it was lost with 10 to 1."""
-    disc = "-{0}_dm_plex_dim 2 -{0}_dm_plex_shape ball -{0}_ball_radius 0.1 -{0}_ball_centre {1} -{0}_ball_divisions 4 -{0}_density 1000 -{0}_youngs_modulus 1e8 -{0}_poissons_ratio 0.25 -{0}_initial_velocity {2}"
+    disc = "-{0}_dm_plex_dim 2 -{0}_dm_plex_shape ball -{0}_ball_radius 0.1 -{0}_ball_centre {1} -{0}_ball_divisions 4 -{0}_ball_keep_volume false -{0}_density 1000 -{0}_youngs_modulus 1e8 -{0}_poissons_ratio 0.25 -{0}_initial_velocity {2}"
     bodies = " ".join(disc.format(*each) for each in (("a", "0,0", "1,0"), ("b", "0.205,0.03", "-1,0")))
     run = shared_run(f"-bodies a,b -contact_pairs a:b -contact_facing false {bodies} -a_ts_type centraldifference {steps} -time_step 2e-4 -time_end 0.02 -controller_step_cuts 0")
     system = run.summary["system"]
@@ -121,7 +121,7 @@ def test_ten_balls_in_three_dimensions(shared_run):
 def test_explicit_disc_that_turns(gap, shared_run):
     """A neo-Hookean disc with a massless rim spins by more than a turn, and falls on the floor meanwhile or not: the rim's matrix is made anew as the body
     turns, since that of the undeformed one gives no balance in 100 rounds any more after 23 degrees."""
-    disc = f"-a_dm_plex_dim 2 -a_dm_plex_shape ball -a_ball_radius 0.1 -a_ball_centre 0,{0.1 + gap} -a_ball_divisions 4 -a_density 1000 -a_material_type neo_hookean -a_youngs_modulus 1e8 -a_poissons_ratio 0.25"
+    disc = f"-a_dm_plex_dim 2 -a_dm_plex_shape ball -a_ball_radius 0.1 -a_ball_centre 0,{0.1 + gap} -a_ball_divisions 4 -a_ball_keep_volume false -a_density 1000 -a_material_type neo_hookean -a_youngs_modulus 1e8 -a_poissons_ratio 0.25"
     floor = "-obstacles floor -floor_obstacle_type plane -floor_point 0,0,0 -floor_normal 0,1,0 -contact_facing false"
     run = shared_run(f"-bodies a {floor} {disc} -a_initial_velocity '-20*(y-{0.1 + gap}),20*x-0.1' -a_ts_type centraldifference -a_ts_time_step auto -time_step 2e-4 -time_end 0.4")
     system = run.summary["system"]

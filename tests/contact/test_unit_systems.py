@@ -47,11 +47,11 @@ BLOCKS = """-bodies left,right -contact_pairs left:right -time_end {1.5e-4 s} -t
 # Nonlinear, round, on a plane, sliding on each other so that rows are built again
 DISCS = """-bodies low,high -obstacles floor -contact_pairs auto -contact_facing false -time_end {0.02 s} -time_step {1e-4 s}
     -floor_obstacle_type plane -floor_point 0,0 -floor_normal 0,1
-    -low_dm_plex_dim 2 -low_dm_plex_shape ball -low_ball_radius {0.1 m} -low_ball_centre 0,{0.1003 m} -low_ball_divisions 4
+    -low_dm_plex_dim 2 -low_dm_plex_shape ball -low_ball_radius {0.1 m} -low_ball_centre 0,{0.1003 m} -low_ball_divisions 4 -low_ball_keep_volume false
     -low_material_type neo_hookean -low_density {1000 kg/m^3} -low_youngs_modulus {1e8 Pa} -low_poissons_ratio 0.25
     -low_thickness {0.5 m} -low_gravity 0,{-9.81 m/s^2} -low_initial_velocity 0,{-1 m/s}
     -high_dm_plex_dim 2 -high_dm_plex_shape ball -high_ball_radius {0.09 m} -high_ball_centre {0.06 m},{0.2836 m}
-    -high_ball_divisions 3 -high_material_type neo_hookean -high_density {1200 kg/m^3} -high_youngs_modulus {1e8 Pa}
+    -high_ball_divisions 3 -high_ball_keep_volume false -high_material_type neo_hookean -high_density {1200 kg/m^3} -high_youngs_modulus {1e8 Pa}
     -high_poissons_ratio 0.3 -high_thickness {0.5 m} -high_gravity 0,{-9.81 m/s^2} -high_initial_velocity {1 m/s},{-8 m/s}"""
 
 PAIRINGS = {"II": "", "EE": "-left_ts_type centraldifference -right_ts_type centraldifference"}

@@ -52,14 +52,14 @@ def test_verdict(shared_run):
     assert [f"impakt: warning: {text}" for text in bad.summary["warnings"]] == warnings(bad)[1:]
     good = shared_run("-options_file options/impact-high-speed.opts")
     assert good.summary["warnings"] == []
-    assert not good.summary["contact"]["still_in_contact"]
+    assert not good.summary["contact"]["in_contact_at_end"]
 
 
 def test_inside_each_other(impakt):
     """A penalty that is far too soft leaves the bars inside each other where the run ends in contact."""
     run = impakt("-options_file options/impact-high-speed.opts -contact_type penalty -contact_penalty 1e3 -time_end 1e-4")
     summary = run.summary
-    assert summary["contact"]["still_in_contact"]
+    assert summary["contact"]["in_contact_at_end"]
     assert "still in contact at the end" in run.stdout
     assert any("inside each other" in text and "left:right" in text for text in summary["warnings"])
     assert summary["contact"]["gap_final"] < 0

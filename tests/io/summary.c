@@ -72,6 +72,8 @@ static void AddWholeImpact(void)
 static const char *const keys[] = {
     "contact.first_contact_time",
     "contact.release_time",
+    "contact.onset_time",
+    "contact.separation_time",
     "contact.onsets",
     "contact.steps_in_contact",
     "contact.force_mean",
@@ -138,6 +140,10 @@ static void keys_and_numbers(void **state)
   near(json_number_value(json_array_get(Find(root, "pairs.left:right.impulse_vector"), 0)), Number(root, "contact.impulse"), 1e-15);
   near(Number(root, "contact.first_contact_time"), COLLISION_STEP, 1e-15);
   between(Number(root, "contact.release_time"), 0.16, 0.26); /* 0.2 s after impact, but for what three elements do to the wave */
+  near(Number(root, "contact.onset_time"), 0, 1e-15);        /* they touch at the start */
+  between(Number(root, "contact.separation_time"), Number(root, "contact.release_time"),
+          Number(root, "contact.release_time") + COLLISION_STEP);
+  assert_true(json_is_false(Find(root, "contact.in_contact_at_end")));
   near(Number(root, "contact.onsets"), 1, 0);
   /* from the first step to the last one in contact, without a break */
   near(Number(root, "contact.steps_in_contact") * COLLISION_STEP, Number(root, "contact.release_time"), 1e-15);

@@ -20,6 +20,9 @@ THREE_BARS = "-options_file options/three-bars.opts"
 CONTACT = {
     "first_contact_time": float,
     "release_time": float,
+    "onset_time": float,
+    "separation_time": float,
+    "in_contact_at_end": bool,
     "onsets": int,
     "steps_in_contact": int,
     "force_mean": float,
@@ -31,7 +34,6 @@ CONTACT = {
     "max_penetration": float,
     "area_max": float,
     "active_max": int,
-    "still_in_contact": bool,
     "gap_final": float,
 }
 PAIR = {**CONTACT, "impulse_vector": list}

@@ -66,20 +66,36 @@ static Quality quality_of(DM dm)
   return (Quality){reduced[0], reduced[1], -reduced[2]};
 }
 
-/* Vertices of the surface are at this distance from a point */
-static void check_sphere(DM dm, PetscReal radius, const PetscReal centre[3])
+/* The nearest and farthest vertex of the surface from a point, and how far the surface reaches from there in a direction of length 1 */
+typedef struct {
+  PetscReal nearest, farthest, reach;
+} Extent;
+
+static Extent extent_of(DM dm, const PetscReal centre[3], const PetscReal direction[3])
 {
-  PetscInt n, *vertices;
+  Extent    extent = {PETSC_MAX_REAL, 0, -PETSC_MAX_REAL};
+  PetscReal reduced[3];
+  PetscInt  n, *vertices;
 
   ok(MeshGetNodeSet(dm, "surface", &n, &vertices));
   for (PetscInt i = 0; i < n; i++) {
-    PetscReal x[3], squared = 0;
+    PetscReal x[3], squared = 0, along = 0;
 
     position_of(dm, vertices[i], x);
-    for (PetscInt d = 0; d < 3; d++) squared += PetscSqr(x[d] - centre[d]);
-    near(PetscSqrtReal(squared), radius, 1e-14 * radius); /* round-off, of a sphere about as far from the origin as it is large */
+    for (PetscInt d = 0; d < 3; d++) {
+      squared += PetscSqr(x[d] - centre[d]);
+      along += (x[d] - centre[d]) * direction[d];
+    }
+    extent.nearest  = PetscMin(extent.nearest, PetscSqrtReal(squared));
+    extent.farthest = PetscMax(extent.farthest, PetscSqrtReal(squared));
+    extent.reach    = PetscMax(extent.reach, along);
   }
   ok(PetscFree(vertices));
+  reduced[0] = -extent.nearest;
+  reduced[1] = extent.farthest;
+  reduced[2] = extent.reach;
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, reduced, 3, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD), 0);
+  return (Extent){-reduced[0], reduced[1], reduced[2]};
 }
 
 static PetscReal exact_volume(PetscInt dim)
@@ -87,37 +103,98 @@ static PetscReal exact_volume(PetscInt dim)
   return dim == 2 ? PETSC_PI : 4 * PETSC_PI / 3;
 }
 
-/* Of a polygon with n equal sides and its corners on the unit circle */
-static PetscReal polygon_area(PetscInt n)
+/* The distance from the centre to the corners of a polygon with n equal sides and the area of the unit disc */
+static PetscReal polygon_radius(PetscInt n)
 {
-  return n / 2.0 * sin(2 * PETSC_PI / n);
+  return PetscSqrtReal(2 * PETSC_PI / n / sin(2 * PETSC_PI / n));
 }
 
-/* A polyhedron with its corners on the sphere lacks volume in proportion to h^2: one twice as fine a quarter of it. Graded
-   meshes are still far from that limit where they are coarse: 3.51 was measured with 4 and 8 divisions, 3.86 with 8 and 16. */
-static void volume_converges(void **state)
+/* The volume as the elements have it, whose faces need not be flat: of a quadrilateral or hexahedron exact with two points along each axis
+ */
+static PetscReal integrated_volume(DM dm, PetscBool simplex)
 {
+  PetscQuadrature  rule;
+  const PetscReal *weights;
+  PetscInt         dim, start, end, n;
+  PetscReal        sum = 0;
+
+  ok(DMGetDimension(dm, &dim));
+  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
+  if (simplex) ok(PetscDTStroudConicalQuadrature(dim, 1, 1, -1, 1, &rule));
+  else ok(PetscDTGaussTensorQuadrature(dim, 1, 2, -1, 1, &rule));
+  ok(PetscQuadratureGetData(rule, NULL, NULL, &n, NULL, &weights));
+  for (PetscInt c = start; c < end; c++) {
+    PetscReal x[24], J[72], inverse[72], determinant[8];
+
+    ok(DMPlexComputeCellGeometryFEM(dm, c, rule, x, J, inverse, determinant));
+    for (PetscInt q = 0; q < n; q++) {
+      assert_true(determinant[q] > 0);
+      sum += weights[q] * determinant[q];
+    }
+  }
+  ok(PetscQuadratureDestroy(&rule));
+  return sum_of_ranks(sum);
+}
+
+/* Whatever the mesh, the elements have the volume of the ball to round-off, and at its pole a graded one reaches as far as the ball */
+static void volume_kept(void **state)
+{
+  const char *const parts[]   = {"full", "half", "quarter"};
+  const PetscReal   centre[3] = {0.3, -0.2, 0}, pole[3] = {0, 0.6, -0.8}, in_plane[3] = {0, -1, 0};
+
+  (void)state;
+  for (PetscInt dim = 2; dim <= 3; dim++)
+    for (PetscInt part = 0; part < dim; part++)
+      for (PetscInt simplex = 0; simplex < 2; simplex++)
+        for (PetscReal grading = 1; grading <= 64; grading *= 8)
+          for (PetscInt divisions = grading == 1 ? (part ? 2 : 1) : grading == 8 ? 4 : 8; divisions <= 8; divisions *= 2) {
+            const PetscBool tilted = (PetscBool)(dim == 3 && part < 2);
+            DM dm = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_radius 0.7 -ball_centre 0.3,-0.2%s "
+                                "-ball_divisions %d -ball_grading %g -ball_part %s%s",
+                                (int)dim, (int)simplex, dim == 3 ? ",0" : "", (int)divisions, (double)grading, parts[part],
+                                tilted     ? " -ball_pole 0,3,-4"
+                                : dim == 3 ? " -ball_pole 0,0,-1"
+                                           : "");
+
+            near(integrated_volume(dm, (PetscBool)simplex) / (exact_volume(dim) * PetscPowReal(0.7, (PetscReal)dim)), 1.0 / (1 << part),
+                 1e-12);
+            if (grading > 1 && (dim == 2 || tilted)) near(extent_of(dm, centre, tilted ? pole : in_plane).reach, 0.7, 1e-14);
+            ok(DMDestroy(&dm));
+          }
+}
+
+/* For its volume a polyhedron has its corners outside the sphere, in proportion to h^2: one twice as fine by a quarter. Of graded ones
+   those opposite to the pole are outside most, and still far from that limit where they are coarse: 3.3 was measured with 4 and 8
+   divisions, 3.8 with 8 and 16. */
+static void nodes_near_sphere(void **state)
+{
+  const PetscReal origin[3] = {0}, down[2][3] = {{0, -1, 0}, {0, 0, -1}};
+
   (void)state;
   for (PetscInt dim = 2; dim <= 3; dim++)
     for (PetscInt grading = 1; grading <= 9; grading += 8) {
-      PetscReal missing[3];
+      PetscReal outside[3];
 
       for (PetscInt k = 0; k < 3; k++) {
-        DM dm = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -ball_divisions %d -ball_grading %d", (int)dim, 4 << k, (int)grading);
+        DM     dm = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -ball_divisions %d -ball_grading %d", (int)dim, 4 << k, (int)grading);
+        Extent extent = extent_of(dm, origin, down[dim - 2]);
 
-        missing[k] = 1 - volume_of(dm) / exact_volume(dim);
-        if (dim == 2 && grading == 1) near(volume_of(dm), polygon_area(16 << k), 1e-13);
+        outside[k] = extent.farthest - 1;
+        between(extent.nearest, 1 - 1e-14, grading == 1 ? 1 + outside[k] : 1 + 1e-14);
+        if (grading > 1) near(extent.reach, 1, 1e-14);
+        if (dim == 2 && grading == 1) {
+          near(extent.nearest, polygon_radius(16 << k), 1e-14);
+          near(extent.farthest, polygon_radius(16 << k), 1e-14);
+        }
         ok(DMDestroy(&dm));
       }
-      between(missing[0] / missing[1], 3.4, 4.05);
-      between(missing[1] / missing[2], 3.8, 4.05);
+      between(outside[0] / outside[1], grading == 1 ? 3.85 : 3.35, 4.05);
+      between(outside[1] / outside[2], grading == 1 ? 3.95 : 3.75, 4.05);
     }
 }
 
-static void nodes_on_sphere(void **state)
+static void cells_and_faces(void **state)
 {
-  const PetscReal centre[2][3] = {{0.3, -0.2, 0}, {0.3, -0.2, 0.1}};
-
   (void)state;
   for (PetscInt dim = 2; dim <= 3; dim++)
     for (PetscInt simplex = 0; simplex < 2; simplex++) {
@@ -128,20 +205,20 @@ static void nodes_on_sphere(void **state)
 
       if (simplex) cells *= dim == 2 ? 2 : 6;
       if (simplex && dim == 3) faces *= 2;
-      check_sphere(dm, 0.7, centre[dim - 2]);
       assert_int_equal(count_cells(dm), cells);
       assert_int_equal(surface_facts(dm, "surface").n, faces);
       assert_int_equal(surface_facts(dm, NULL).n, faces); /* cells that did not fit would have others */
-      between(volume_of(dm), 0.7 * exact_volume(dim) * pow(0.7, (double)dim), exact_volume(dim) * pow(0.7, (double)dim));
+      near(integrated_volume(dm, (PetscBool)simplex), exact_volume(dim) * pow(0.7, (double)dim), 1e-12);
       ok(DMDestroy(&dm));
     }
 }
 
-/* Conformal maps keep the shapes of small elements; those opposite to the pole are coarse here and lose some. Measured: 0.851,
-   0.782, 0.712, 0.306 for discs, 0.733, 0.630, 0.508, 0.093 for balls */
+/* Conformal maps keep the shapes of small elements; those opposite to the pole are coarse here and lose some, and some more as their outer
+   nodes move outward. Measured: 0.851, 0.779, 0.690, 0.306 for discs, 0.733, 0.626, 0.478, 0.093 for balls; the last ones of both are too
+   coarse to move */
 static void elements_well_shaped(void **state)
 {
-  const PetscReal least[2][4] = {{0.84, 0.77, 0.70, 0.30}, {0.72, 0.62, 0.50, 0.09}};
+  const PetscReal least[2][4] = {{0.84, 0.77, 0.68, 0.30}, {0.72, 0.62, 0.47, 0.09}};
 
   (void)state;
   for (PetscInt dim = 2; dim <= 3; dim++)
@@ -166,41 +243,47 @@ static void sizes_match(void **state)
   }
 }
 
-/* Edges on the unit sphere that leave its vertex at `pole` must have this length */
+/* From the origin, the surface's edges that leave its vertex in the direction of `pole` are seen under this angle */
 static void check_edges_at(DM dm, const PetscReal pole[3], PetscReal expected)
 {
-  PetscInt start, end, found = 0;
+  PetscInt start, end, n, *vertices, found = 0;
 
+  ok(MeshGetNodeSet(dm, "surface", &n, &vertices));
   ok(DMPlexGetDepthStratum(dm, 1, &start, &end));
   for (PetscInt e = start; e < end; e++) {
     const PetscInt *ends;
-    PetscReal       x[2][3], length = 0, from[2] = {0, 0}, radius[2] = {0, 0};
+    PetscReal       x[2][3], length[2] = {0, 0}, product = 0, angle[2], at_pole[2] = {0, 0};
+    PetscInt        on_surface = 0;
 
     ok(DMPlexGetCone(dm, e, &ends));
+    for (PetscInt i = 0; i < n; i++) on_surface += vertices[i] == ends[0] || vertices[i] == ends[1];
+    if (on_surface < 2) continue;
     for (PetscInt k = 0; k < 2; k++) position_of(dm, ends[k], x[k]);
     for (PetscInt d = 0; d < 3; d++) {
-      length += PetscSqr(x[1][d] - x[0][d]);
+      product += x[0][d] * x[1][d];
       for (PetscInt k = 0; k < 2; k++) {
-        from[k] += PetscSqr(x[k][d] - pole[d]);
-        radius[k] += PetscSqr(x[k][d]);
+        length[k] += PetscSqr(x[k][d]);
+        at_pole[k] += x[k][d] * pole[d];
       }
     }
-    if (PetscMin(from[0], from[1]) > 1e-20 || PetscMin(radius[0], radius[1]) < 1 - 1e-12) continue;
+    for (PetscInt k = 0; k < 2; k++) angle[k] = acos(PetscClipInterval(at_pole[k] / PetscSqrtReal(length[k]), -1, 1));
+    if (PetscMin(angle[0], angle[1]) > 1e-7) continue;
     found++;
-    near(PetscSqrtReal(length), expected, 1e-14);
+    near(acos(product / PetscSqrtReal(length[0] * length[1])) / expected, 1, 1e-3);
   }
+  ok(PetscFree(vertices));
   assert_true(sum_of_ranks((PetscReal)found) > 0);
 }
 
 /* On the sphere, the map takes the angle t from the pole to t' with tan(t'/2) = tan(t/2) / sqrt(g) (the shift of a stereographic
-   projection); the first node is at t = pi/(2 n). So edges at the pole and opposite to it have sizes in the ratio g, but for
-   what a coarse chord is shorter than its arc. */
+   projection); the first node is at t = pi/(2 n). Nodes move along their radii, but then the ball moves along its pole by the way of the
+   node there. */
 static void sizes_at_poles(void **state)
 {
   const char *const poles[]     = {"0,-1", "1,1", "0,0,-1", "0,2,0"};
   const PetscReal   places[][3] = {{0, -1, 0}, {PETSC_SQRT2 / 2, PETSC_SQRT2 / 2, 0}, {0, 0, -1}, {0, 1, 0}};
   const PetscReal   root = PetscSqrtReal(30.0), half = tan(PETSC_PI / 32 / 2);
-  const PetscReal   near_pole = 2 * sin(atan(half / root)), opposite = 2 * sin(atan(half * root));
+  const PetscReal   near_pole = 2 * atan(half / root), opposite = 2 * atan(half * root);
 
   (void)state;
   between(opposite / near_pole, 28, 30);
@@ -215,52 +298,24 @@ static void sizes_at_poles(void **state)
   }
 }
 
-/* The volume as the elements have it, whose faces need not be flat: of a hexahedron exact with two points along each axis */
-static PetscReal integrated_volume(DM dm)
-{
-  PetscQuadrature  rule;
-  const PetscReal *weights;
-  PetscInt         dim, start, end, n;
-  PetscReal        sum = 0;
-
-  ok(DMGetDimension(dm, &dim));
-  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
-  ok(PetscDTGaussTensorQuadrature(dim, 1, 2, -1, 1, &rule));
-  ok(PetscQuadratureGetData(rule, NULL, NULL, &n, NULL, &weights));
-  for (PetscInt c = start; c < end; c++) {
-    PetscReal x[24], J[72], inverse[72], determinant[8];
-
-    ok(DMPlexComputeCellGeometryFEM(dm, c, rule, x, J, inverse, determinant));
-    for (PetscInt q = 0; q < n; q++) {
-      assert_true(determinant[q] > 0);
-      sum += weights[q] * determinant[q];
-    }
-  }
-  ok(PetscQuadratureDestroy(&rule));
-  return sum_of_ranks(sum);
-}
-
-/* Half and a quarter of the volume, with flat cut planes and no other surface */
+/* Half or a quarter of the faces, with flat cut planes and no other surface */
 static void check_part(PetscInt dim, PetscInt part, PetscReal grading, PetscInt simplex)
 {
   const char *const parts[] = {"full", "half", "quarter"}, *const cuts[] = {"cut_x", "cut_y"};
-  const char      options[] = "-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_divisions 4 -ball_grading %g -ball_part %s";
-  DM              whole     = create_mesh(options, (int)dim, (int)simplex, (double)grading, parts[0]);
-  DM              dm        = create_mesh(options, (int)dim, (int)simplex, (double)grading, parts[part]);
-  PetscInt        n_faces   = surface_facts(dm, "surface").n;
-  const PetscReal ratio = simplex ? volume_of(dm) / volume_of(whole) : integrated_volume(dm) / integrated_volume(whole), origin[3] = {0};
+  const char options[] = "-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex %d -ball_divisions 4 -ball_grading %g -ball_part %s";
+  DM         whole     = create_mesh(options, (int)dim, (int)simplex, (double)grading, parts[0]);
+  DM         dm        = create_mesh(options, (int)dim, (int)simplex, (double)grading, parts[part]);
+  PetscInt   n_faces   = surface_facts(dm, "surface").n;
 
-  /* simplices are not cut in mirror images, so that their faces, and with them the volume, differ a little: at most by 0.0024, measured */
-  near(ratio, 1.0 / (1 << part), simplex && dim == 3 ? 0.003 : 1e-12);
-  check_sphere(dm, 1, origin);
   assert_int_equal(n_faces, surface_facts(whole, "surface").n >> part);
   for (PetscInt cut = 0; cut < part; cut++) {
     const SurfaceFacts facts = surface_facts(dm, cuts[cut]);
 
     (void)check_nodes_at(dm, cuts[cut], cut, 0);
     near(facts.centre[cut], 0, 1e-15);
-    /* the plane through the ball's middle, or half of it */
-    if (dim == 3 && grading == 1) near(facts.area, polygon_area(16) / part, 1e-13);
+    /* the disc through the ball's middle, or half of it: its corners are outside, so that it is larger: by 2.07 % of hexahedra, 1.99 % of
+     * tetrahedra */
+    if (dim == 3 && grading == 1) near(facts.area * part / PETSC_PI, 1.0203, 5e-4);
     n_faces += facts.n;
   }
   assert_int_equal(surface_facts(dm, NULL).n, n_faces);
@@ -307,12 +362,13 @@ static void back_of_ball(void **state)
 /* Centre (1, 0) and radius 0.5, all of it twice as large, then moved down by 3 */
 static void placed(void **state)
 {
-  const PetscReal centre[3] = {2, -3, 0};
-  DM              dm        = create_mesh("-dm_plex_shape ball -ball_radius 0.5 -ball_centre 1,0 -scale 2 -translate 0,-3");
+  const PetscReal centre[3] = {2, -3, 0}, down[3] = {0, -1, 0};
+  DM              dm = create_mesh("-dm_plex_shape ball -ball_radius 0.5 -ball_centre 1,0 -scale 2 -translate 0,-3");
 
   (void)state;
-  check_sphere(dm, 1, centre);
-  near(volume_of(dm), polygon_area(16), 1e-13);
+  near(extent_of(dm, centre, down).nearest, polygon_radius(16), 1e-14);
+  near(extent_of(dm, centre, down).farthest, polygon_radius(16), 1e-14);
+  near(volume_of(dm), PETSC_PI, 1e-13);
   ok(DMDestroy(&dm));
 }
 
@@ -342,9 +398,10 @@ static void refused_options(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(volume_converges), cmocka_unit_test(nodes_on_sphere), cmocka_unit_test(elements_well_shaped),
-      cmocka_unit_test(sizes_match),      cmocka_unit_test(sizes_at_poles),  cmocka_unit_test(symmetric_parts),
-      cmocka_unit_test(back_of_ball),     cmocka_unit_test(placed),          cmocka_unit_test(refused_options),
+      cmocka_unit_test(volume_kept),          cmocka_unit_test(nodes_near_sphere), cmocka_unit_test(cells_and_faces),
+      cmocka_unit_test(elements_well_shaped), cmocka_unit_test(sizes_match),       cmocka_unit_test(sizes_at_poles),
+      cmocka_unit_test(symmetric_parts),      cmocka_unit_test(back_of_ball),      cmocka_unit_test(placed),
+      cmocka_unit_test(refused_options),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,0 +1,35 @@
+/* What the files that make a ball share. Private to src/mesh. */
+#pragma once
+#include "meshimpl.h"
+
+typedef struct {
+  PetscInt  dim, divisions, layers;
+  PetscInt  n_cuts; /* planes that cut it: x = centre, then y = centre */
+  PetscReal radius, centre[3], pole[3], grading;
+  PetscBool simplex, keep_volume;
+} Ball;
+
+/* The central block, or the block of layers on one side of it: along the axis of that side places count layers */
+typedef struct {
+  PetscInt axis; /* -1: the central block */
+  PetscInt side; /* 0: lower, 1: upper */
+} BallBlock;
+
+/* Numbers of the nodes: those of the central block come first, along its axes; then those of each layer around it, in which there is a node
+   for each node on the rim of the central block */
+typedef struct {
+  MeshFile   *file;
+  const Ball *ball;
+  PetscInt    n[3], stride[3]; /* elements along the axes of the central block */
+  PetscInt    n_core, n_rim;   /* nodes of the central block, and of its rim */
+  PetscInt   *rim;             /* per node of the central block: its number on the rim, -1 inside */
+  PetscInt    n_blocks;
+  BallBlock   blocks[7]; /* the central one first */
+  PetscReal   missing;   /* part of the ball's volume that the mesh lacks */
+} BallGrid;
+
+PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);
+PETSC_INTERN PetscInt       BallGetNode(const BallGrid *, const BallBlock *, const PetscInt[3]);
+PETSC_INTERN PetscBool      BallBlockIsMirrored(const BallBlock *);
+PETSC_INTERN PetscBool      BallCellIsConvex(const BallGrid *, const BallBlock *, const PetscInt[], const PetscReal *[]);
+PETSC_INTERN PetscErrorCode BallKeepVolume(BallGrid *);

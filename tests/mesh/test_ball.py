@@ -1,0 +1,39 @@
+"""Bodies that are balls have the mass of balls, or the program says what they lack."""
+
+import numpy as np
+import pytest
+
+BODY = "-bodies a -a_dm_plex_shape ball -a_dm_plex_dim {} -a_density 1000 -a_youngs_modulus 1e9 -a_initial_velocity {} -time_step 1e-6 -time_end 1e-6"
+
+
+def mass(run):
+    return run.history["body"]["a"]["momentum"][0, 0]
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("mesh", ["", "-a_dm_plex_simplex true", "-a_ball_grading 8", "-a_ball_part half -a_ball_grading 8"])
+def test_mass(dim, mesh, shared_run):
+    """To round-off, by the integration of the elements themselves. Measured: 6e-15."""
+    run = shared_run(f"{BODY.format(dim, '1,0,0'[: 2 * dim - 1])} {mesh}")
+    exact = 1000 * (np.pi if dim == 2 else 4 / 3 * np.pi) / (2 if "half" in mesh else 1)
+    assert mass(run) == pytest.approx(exact, rel=1e-12)
+    assert "warning" not in run.stderr
+
+
+def test_too_coarse(shared_run):
+    """One element behind the ball spans so much of it that its corners would have to move beyond half the radius: they stay on the sphere, and the
+    program says how much volume that leaves out."""
+    run = shared_run(f"{BODY.format(3, '1,0,0')} -a_ball_divisions 4 -a_ball_grading 256")
+    missing = 1 - mass(run) / (4000 / 3 * np.pi)
+    assert 0.85 < missing < 0.95  # measured: 0.89
+    assert f"body 'a' has {100 * missing:.2g} % less volume" in run.stderr
+    assert "-a_ball_divisions" in run.stderr
+
+
+def test_nodes_at_the_radius(shared_run):
+    """If the volume is not to be kept: a polygon of 16 edges then has 2.6 % less area, which is said, but is no warning."""
+    run = shared_run(f"{BODY.format(2, '1,0')} -a_ball_keep_volume false")
+    area = 8 * np.sin(np.pi / 8)
+    assert mass(run) == pytest.approx(1000 * area, rel=1e-12)
+    assert f"body 'a' has {100 * (1 - area / np.pi):.2g} % less volume" in run.stdout
+    assert "warning" not in run.stderr
