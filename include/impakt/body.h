@@ -104,6 +104,7 @@ PETSC_EXTERN PetscErrorCode BodyGetMaterial(Body, Material *);
 PETSC_EXTERN PetscErrorCode BodyGetSubsteps(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetStableStep(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetMass(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetMassRedistribution(Body, PetscReal *, PetscReal *, PetscReal[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetSolution(Body, Vec *, Vec *, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetDimension(Body, PetscInt *);

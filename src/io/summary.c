@@ -106,6 +106,24 @@ static PetscErrorCode AddSchwarz(json_t *root, Contact contact, const Statistics
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The mass of a body, and what its massless contact layer has changed */
+static PetscErrorCode AddMass(json_t *object, Body body)
+{
+  PetscReal total, least, largest, shift[3] = {0}, inertia;
+  json_t   *mass;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetMass(body, &total));
+  PetscCall(BodyGetMassRedistribution(body, &least, &largest, shift, &inertia));
+  PetscCall(SetObject(object, "mass", &mass));
+  PetscCall(SetReal(mass, "total", total));
+  PetscCall(SetReal(mass, "factor_min", least));
+  PetscCall(SetReal(mass, "factor_max", largest));
+  PetscCall(SetVector(mass, "centre_shift", shift));
+  PetscCall(SetReal(mass, "inertia_error", inertia));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const StatisticsResults *results)
 {
   json_t     *objects, *object;
@@ -125,6 +143,7 @@ static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const Statist
     PetscCall(BodyGetTotalSubsteps(bodies[i], &substeps, NULL));
     PetscCall(SetObject(objects, name, &object));
     PetscCall(SetInteger(object, "dofs", dofs));
+    PetscCall(AddMass(object, bodies[i]));
     PetscCall(SetReal(object, "kinetic", body->kinetic));
     PetscCall(SetReal(object, "potential", body->potential));
     PetscCall(SetReal(object, "peak_potential", body->peak_potential));

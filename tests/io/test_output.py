@@ -50,6 +50,7 @@ SUMMARY = {
     "bodies": {
         name: {
             "dofs": int,
+            "mass": {"total": float, "factor_min": float, "factor_max": float, "centre_shift": list, "inertia_error": float},
             "kinetic": float,
             "potential": float,
             "peak_potential": float,

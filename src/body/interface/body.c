@@ -260,6 +260,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
   PetscCall(PetscFree(b->rows.kept_traces));
   PetscCall(PetscFree4(b->rows.conditions, b->rows.constrained, b->rows.flexibility, b->rows.robin));
+  PetscCall(PetscFree(b->mass.factor));
   PetscCall(PetscFree(b->layer.dofs));
   PetscCall(PetscFree(b->layer.contains));
   PetscCall(PetscFree(b->mesh.connectivity));

@@ -44,7 +44,11 @@ typedef struct {
   ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
   Vec               orphans;      /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
   PetscReal         total;        /* [kg] */
-  PetscReal         shift[3];     /* how far redistribution has moved the centre of mass [m] */
+  /* of a body with a massless contact layer */
+  PetscReal *factor;                       /* per local node: on the masses that are left; NULL: none */
+  PetscReal  least_factor, largest_factor; /* on nodes with mass; 0 without a factor */
+  PetscReal  shift[3];                     /* how far the centre of mass is off that of the full mass; 0: it is kept [m] */
+  PetscReal  inertia_error; /* largest relative change of a moment of inertia about an axis through the centre; 0: they are kept */
 } BodyMass;
 
 /* The contact nodes, and those of their dofs that are massless */
@@ -155,7 +159,9 @@ PETSC_INTERN PetscErrorCode BodyStateCopy(const BodyState *, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
+PETSC_INTERN PetscErrorCode BodyGetFullElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodyKeepMassMoments(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);

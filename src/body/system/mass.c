@@ -3,12 +3,10 @@
 
 const char *const BodyMassTypes[] = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
 
-/* The mass matrix of one element as the body uses it, row by row */
-PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
+/* The mass matrix of one element with contact nodes that keep their mass, row by row */
+PetscErrorCode BodyGetFullElementMass(Body body, PetscInt e, PetscScalar M[])
 {
-  const PetscInt *nodes   = body->mesh.connectivity + e * body->model.element->nodes;
-  const PetscInt  n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
-  PetscInt        inner = 0;
+  const PetscInt n = body->model.element->nodes * body->mesh.dim;
 
   PetscFunctionBegin;
   PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
@@ -25,7 +23,16 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
       M[i * n + i] += lumped * sum;
     }
   }
-  if (!body->mass.redistribute) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the mass of an element's contact nodes to its inner nodes, in equal parts */
+static PetscErrorCode MoveInside(Body body, const PetscInt nodes[], PetscScalar M[])
+{
+  const PetscInt n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
+  PetscInt       inner = 0;
+
+  PetscFunctionBegin;
   for (PetscInt a = 0; a < n_nodes; a++) inner += !body->layer.contains[nodes[a]];
   if (inner == n_nodes) PetscFunctionReturn(PETSC_SUCCESS);
   if (!inner) {
@@ -44,6 +51,22 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
     for (PetscInt a = 0; a < n_nodes; a++)
       if (!body->layer.contains[nodes[a]]) M[(a * dim + d) * n + a * dim + d] += moved / inner;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The mass matrix of one element as the body uses it, row by row. What elements without inner nodes have given to their neighbours is not
+   in it. */
+PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
+{
+  const PetscInt  dim = body->mesh.dim, n = body->model.element->nodes * dim;
+  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetFullElementMass(body, e, M));
+  if (body->mass.redistribute) PetscCall(MoveInside(body, nodes, M));
+  if (!body->mass.factor) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) M[i * n + j] *= PetscSqrtReal(body->mass.factor[nodes[i / dim]] * body->mass.factor[nodes[j / dim]]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -70,40 +93,6 @@ static PetscErrorCode AssembleMass(Body body)
     PetscCall(MatAssemblyBegin(body->mass.matrix, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(body->mass.matrix, MAT_FINAL_ASSEMBLY));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Mass times position, summed over this rank's elements as the shape functions have it, and over its nodes as the body has it */
-static PetscErrorCode ComputeMassShift(Body body)
-{
-  const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim;
-  PetscScalar        M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-  PetscReal          sums[3] = {0};
-  const PetscScalar *mass;
-
-  PetscFunctionBegin;
-  for (PetscInt e = 0; e < body->model.element->count; e++) {
-    const PetscInt *nodes = body->mesh.connectivity + e * n;
-    PetscBool       moved = PETSC_FALSE;
-
-    for (PetscInt a = 0; a < n; a++) moved = (PetscBool)(moved || body->layer.contains[nodes[a]]);
-    if (!moved) continue;
-    PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
-    for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < n; b++)
-        for (PetscInt d = 0; d < dim; d++) sums[d] -= M[(a * dim) * n * dim + b * dim] * body->mesh.coordinates[nodes[a] * dim + d];
-    PetscCall(BodyGetElementMass(body, e, M));
-    for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < n; b++)
-        for (PetscInt d = 0; d < dim; d++) sums[d] += M[(a * dim) * n * dim + b * dim] * body->mesh.coordinates[nodes[a] * dim + d];
-  }
-  if (body->mass.orphans) {
-    PetscCall(VecGetArrayRead(body->mass.orphans, &mass));
-    for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) sums[i % dim] += mass[i] * body->mesh.coordinates[i];
-    PetscCall(VecRestoreArrayRead(body->mass.orphans, &mass));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  for (PetscInt d = 0; d < dim; d++) body->mass.shift[d] = sums[d] / body->mass.total;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,7 +125,10 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
   PetscCall(AssembleMass(body));
-  if (body->mass.redistribute) PetscCall(BodyRedistributeOrphans(body));
+  if (body->mass.redistribute) {
+    PetscCall(BodyRedistributeOrphans(body));
+    PetscCall(BodyKeepMassMoments(body));
+  }
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));
@@ -144,7 +136,6 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscCall(VecDestroy(&ones));
   PetscCall(VecSum(body->mass.row_sum, &sum));
   body->mass.total = sum / body->mesh.dim;
-  if (body->mass.redistribute) PetscCall(ComputeMassShift(body));
   if (body->mass.diagonal) {
     PetscScalar       *inverse;
     const PetscScalar *mass;
