@@ -50,7 +50,9 @@ typedef struct {
   PetscReal momentum[3];         /* kg m/s */
   PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
   PetscReal mean_velocity[3];    /* mass-averaged, m/s */
-  PetscBool loaded;              /* whether forces from outside, held displacements or obstacles act at all */
+  PetscReal rotation[3]; /* mean rotation of a linear body since its undeformed state, about each axis, as long as it is small: zero for
+                            bodies that are nonlinear, whose rotation is not limited [rad] */
+  PetscBool loaded;      /* whether forces from outside, held displacements or obstacles act at all */
 } BodyMeasures;
 
 /*E

@@ -5,8 +5,9 @@
 /* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
    compared with it */
 #define NOTHING_AT_START 1e-9
-/* A body starts at rest if no node is faster than this part of its wave speed, and without strain if its energy is below that of this strain
-   everywhere: both are round-off of what the user gave, of velocities by formulas and of displacements that move the body as a whole */
+/* A body starts at rest if no node is faster than this part of its wave speed, and without strain if its energy is below that of this
+   strain everywhere: both are round-off of what the user gave, of velocities by formulas and of displacements that move the body as a whole
+ */
 #define NO_SPEED  1e-14
 #define NO_STRAIN 1e-10
 /* Mean, scatter and minimum of a force are those of the time from first contact to release without this part at either end, where the force
@@ -216,6 +217,31 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
+/* Notes how far bodies have turned, and tells where a linear one goes too far for its material; once for each body */
+static PetscErrorCode AddRotations(Statistics s, Controller controller, const ControllerFrame *frame)
+{
+  const Body *bodies;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    BodyStatistics *body  = &s->results.bodies[i];
+    const PetscReal angle = Norm(frame->bodies[i].rotation), before = body->rotation_max;
+    const char     *name;
+
+    body->rotation_max = PetscMax(before, angle);
+    if (before > STATISTICS_FAR_TURN || angle <= STATISTICS_FAR_TURN) continue;
+    PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
+    PetscCall(
+        PetscFPrintf(PetscObjectComm((PetscObject)controller), stderr,
+                     "impakt: warning: body '%s' has turned by %.3g rad at time %g s: its linear material counts rotations as strains, so "
+                     "that energy and angular momentum are wrong by terms of the angle squared; set -%s_material_type "
+                     "saint_venant_kirchhoff or neo_hookean\n",
+                     name, (double)angle, (double)frame->time, name));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds a step of one pair, or of all pairs together */
 static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
                        PetscReal time_step)
@@ -277,6 +303,7 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   PetscFunctionBegin;
   if (frame->step == 0) PetscCall(NoteInitialState(s, controller, frame));
   AddEnergies(s, frame);
+  PetscCall(AddRotations(s, controller, frame));
   if (frame->step > 0) {
     for (PetscInt i = 0; i < frame->n_pairs; i++) {
       AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time);

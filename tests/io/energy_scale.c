@@ -65,7 +65,8 @@ static void is_the_initial_energy_of_bodies_with_strain(void **state)
   ok(StatisticsDestroy(&statistics));
 }
 
-/* Bars at rest, one of them moved as a whole, which loads set in motion: 10 J of work each, 9 J of them found again, and at last 4 J of 4 J */
+/* Bars at rest, one of them moved as a whole, which loads set in motion: 10 J of work each, 9 J of them found again, and at last 4 J of 4 J
+ */
 static void is_the_largest_energy_of_bodies_from_rest(void **state)
 {
   Simulation              *simulation = (Simulation *)*state;

@@ -44,6 +44,9 @@ typedef struct {
   ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
   Vec               orphans;      /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
   PetscReal         total;        /* [kg] */
+  PetscReal         centre[3];    /* of the undeformed body [m] */
+  PetscReal
+      inverse_inertia[9]; /* inverse of the inertia tensor of the undeformed body about its centre; zero in one dimension [1/(kg m^2)] */
   /* of a body with a massless contact layer */
   PetscReal *factor;                       /* per local node: on the masses that are left; NULL: none */
   PetscReal  least_factor, largest_factor; /* on nodes with mass; 0 without a factor */
@@ -158,7 +161,10 @@ PETSC_INTERN PetscErrorCode BodyStateCreate(Body, PetscBool, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateCopy(const BodyState *, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
+PETSC_INTERN PetscErrorCode BodySetUpInertia(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
+PETSC_INTERN PetscErrorCode BodySumRotation(Body, PetscReal[3]);
+PETSC_INTERN void           BodyFinishRotation(Body, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodyGetFullElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyKeepMassMoments(Body);

@@ -136,6 +136,7 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscCall(VecDestroy(&ones));
   PetscCall(VecSum(body->mass.row_sum, &sum));
   body->mass.total = sum / body->mesh.dim;
+  PetscCall(BodySetUpInertia(body));
   if (body->mass.diagonal) {
     PetscScalar       *inverse;
     const PetscScalar *mass;
