@@ -56,6 +56,20 @@ typedef struct {
 } BodyMeasures;
 
 /*E
+   BodyMassMoments - what a body with massless contact nodes keeps of its full mass, beyond the total
+
+   Values:
++ `BODY_MASS_CENTRE`  - the centre of mass
+- `BODY_MASS_INERTIA` - that and, where positive masses allow, the moments of inertia (default)
+
+   Level: intermediate
+
+.seealso: `BodySetMassMoments()`, `BodySetMassRedistribute()`
+E*/
+typedef enum { BODY_MASS_CENTRE, BODY_MASS_INERTIA } BodyMassMoments;
+PETSC_EXTERN const char *const BodyMassMomentsNames[];
+
+/*E
    BodyTractionType - which nodal force of the prescribed nodes is handed to the partner
 
    Values:
@@ -106,6 +120,8 @@ PETSC_EXTERN PetscErrorCode BodyGetMaterial(Body, Material *);
 PETSC_EXTERN PetscErrorCode BodyGetSubsteps(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetStableStep(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetMass(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodySetMassMoments(Body, BodyMassMoments);
+PETSC_EXTERN PetscErrorCode BodyGetMassMoments(Body, BodyMassMoments *);
 PETSC_EXTERN PetscErrorCode BodyGetMassRedistribution(Body, PetscReal *, PetscReal *, PetscReal[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetSolution(Body, Vec *, Vec *, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);

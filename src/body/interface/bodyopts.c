@@ -27,8 +27,9 @@ static PetscErrorCode CreateMesh(Body body)
 
 static PetscErrorCode ReadMass(Body body)
 {
-  BodyMassType type;
-  PetscBool    redistribute = body->mass.redistribute;
+  BodyMassType    type;
+  BodyMassMoments moments      = body->mass.moments;
+  PetscBool       redistribute = body->mass.redistribute;
 
   PetscFunctionBegin;
   PetscCall(BodySetUpMassType(body));
@@ -37,7 +38,10 @@ static PetscErrorCode ReadMass(Body body)
   PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetMassType", BodyMassTypes, (PetscEnum)type, (PetscEnum *)&type, NULL));
   PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetMassRedistribute",
                              redistribute, &redistribute, NULL));
+  PetscCall(PetscOptionsEnum("-mass_moments", "What is kept when mass moves", "BodySetMassMoments", BodyMassMomentsNames,
+                             (PetscEnum)moments, (PetscEnum *)&moments, NULL));
   PetscOptionsEnd();
+  PetscCall(BodySetMassMoments(body, moments));
   PetscCall(BodySetMassType(body, type));
   PetscCall(BodySetMassRedistribute(body, redistribute));
   PetscCall(BodySetUpMassType(body));
@@ -58,6 +62,7 @@ static PetscErrorCode ReadMass(Body body)
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
 . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
 . -<body>_mass_redistribute (true|false)             - moves the mass of contact nodes to their inner neighbours, default true
+. -<body>_mass_moments (centre|inertia)              - what that keeps beside the total mass, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
 . -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
 . -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule

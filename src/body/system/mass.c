@@ -1,57 +1,81 @@
 /* Mass: lumped, consistent or averaged, with the mass of the contact layer moved inside where asked. */
 #include <body/layout/bodyimpl.h>
 
-const char *const BodyMassTypes[] = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
+const char *const BodyMassTypes[]        = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
+const char *const BodyMassMomentsNames[] = {"centre", "inertia", "BodyMassMoments", "BODY_MASS_", NULL};
 
-/* The mass matrix of one element with contact nodes that keep their mass, row by row */
-PetscErrorCode BodyGetFullElementMass(Body body, PetscInt e, PetscScalar M[])
+/* Moves the mass of an element's contact nodes to its inner nodes: what these have is scaled to the mass of the element, with the coupling
+   between them, so that the mass does not spread along the layer. Without inner nodes nothing is left: BodyFindOrphans() finds the mass a
+   place. */
+static void MoveInside(Body body, const PetscInt nodes[], PetscScalar M[])
 {
-  const PetscInt n = body->model.element->nodes * body->mesh.dim;
+  const PetscInt n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
+  PetscScalar    all = 0, inner = 0;
+  PetscBool      moves = PETSC_FALSE;
+
+  for (PetscInt a = 0; a < n_nodes; a++) {
+    if (body->layer.contains[nodes[a]]) moves = PETSC_TRUE;
+    for (PetscInt b = 0; b < n_nodes; b++) {
+      all += M[a * dim * n + b * dim];
+      if (!body->layer.contains[nodes[a]] && !body->layer.contains[nodes[b]]) inner += M[a * dim * n + b * dim];
+    }
+  }
+  if (!moves) return;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscBool kept = (PetscBool)(!body->layer.contains[nodes[i / dim]] && !body->layer.contains[nodes[j / dim]]);
+
+      M[i * n + j] = kept ? M[i * n + j] * all / inner : 0;
+    }
+}
+
+/* Row sums on the diagonal */
+static void Lump(PetscInt n, PetscScalar M[])
+{
+  for (PetscInt i = 0; i < n; i++) {
+    PetscScalar sum = 0;
+
+    for (PetscInt j = 0; j < n; j++) {
+      sum += M[i * n + j];
+      M[i * n + j] = 0;
+    }
+    M[i * n + i] = sum;
+  }
+}
+
+/* The two parts that the mass matrix of one element is the sum of, row by row, before any factor: lumped and consistent, or zero where the
+   type has none; with all mass where it is, or with that of contact nodes moved inside, each part by itself */
+PetscErrorCode BodyGetElementMassParts(Body body, PetscInt e, PetscBool move, PetscScalar lumped[], PetscScalar consistent[])
+{
+  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
+  const PetscInt  n     = body->model.element->nodes * body->mesh.dim;
+  const PetscReal share = body->mass.type == BODY_MASS_LUMPED ? 1 : body->mass.type == BODY_MASS_CONSISTENT ? 0 : 0.5;
 
   PetscFunctionBegin;
-  PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
-  if (body->mass.type != BODY_MASS_CONSISTENT) {
-    const PetscReal lumped = body->mass.type == BODY_MASS_LUMPED ? 1.0 : 0.5;
-
-    for (PetscInt i = 0; i < n; i++) {
-      PetscScalar sum = 0;
-
-      for (PetscInt j = 0; j < n; j++) {
-        sum += M[i * n + j];
-        M[i * n + j] *= 1 - lumped;
-      }
-      M[i * n + i] += lumped * sum;
-    }
+  PetscCall((*body->model.element->ops->mass)(body->model.element, e, consistent));
+  PetscCall(PetscArraycpy(lumped, consistent, n * n));
+  Lump(n, lumped);
+  if (move) MoveInside(body, nodes, lumped);
+  if (move) MoveInside(body, nodes, consistent);
+  for (PetscInt i = 0; i < n * n; i++) {
+    lumped[i] *= share;
+    consistent[i] *= 1 - share;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the mass of an element's contact nodes to its inner nodes, in equal parts */
-static PetscErrorCode MoveInside(Body body, const PetscInt nodes[], PetscScalar M[])
+/* The factor on the consistent part of an element: the mean over its inner nodes */
+static PetscReal MeanFactor(Body body, const PetscInt nodes[])
 {
-  const PetscInt n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
-  PetscInt       inner = 0;
+  PetscReal sum   = 0;
+  PetscInt  inner = 0;
 
-  PetscFunctionBegin;
-  for (PetscInt a = 0; a < n_nodes; a++) inner += !body->layer.contains[nodes[a]];
-  if (inner == n_nodes) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!inner) {
-    PetscCall(PetscArrayzero(M, n * n)); /* BodyRedistributeOrphans() finds its mass a place */
-    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt a = 0; a < body->model.element->nodes; a++) {
+    if (body->layer.contains[nodes[a]]) continue;
+    sum += body->mass.factor[nodes[a]];
+    inner++;
   }
-  for (PetscInt d = 0; d < dim; d++) {
-    PetscScalar moved = 0;
-
-    for (PetscInt a = 0; a < n_nodes; a++)
-      for (PetscInt b = 0; b < n_nodes; b++)
-        if (body->layer.contains[nodes[a]] || body->layer.contains[nodes[b]]) {
-          moved += M[(a * dim + d) * n + b * dim + d];
-          M[(a * dim + d) * n + b * dim + d] = 0;
-        }
-    for (PetscInt a = 0; a < n_nodes; a++)
-      if (!body->layer.contains[nodes[a]]) M[(a * dim + d) * n + a * dim + d] += moved / inner;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return inner ? sum / inner : 0;
 }
 
 /* The mass matrix of one element as the body uses it, row by row. What elements without inner nodes have given to their neighbours is not
@@ -60,13 +84,16 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 {
   const PetscInt  dim = body->mesh.dim, n = body->model.element->nodes * dim;
   const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
+  PetscScalar     consistent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscReal       mean = 1;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetFullElementMass(body, e, M));
-  if (body->mass.redistribute) PetscCall(MoveInside(body, nodes, M));
-  if (!body->mass.factor) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) M[i * n + j] *= PetscSqrtReal(body->mass.factor[nodes[i / dim]] * body->mass.factor[nodes[j / dim]]);
+  PetscCall(BodyGetElementMassParts(body, e, body->mass.redistribute, M, consistent));
+  if (body->mass.factor) {
+    mean = MeanFactor(body, nodes);
+    for (PetscInt i = 0; i < n; i++) M[i * n + i] *= body->mass.factor[nodes[i / dim]];
+  }
+  for (PetscInt i = 0; i < n * n; i++) M[i] += mean * consistent[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,6 +120,20 @@ static PetscErrorCode AssembleMass(Body body)
     PetscCall(MatAssemblyBegin(body->mass.matrix, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(body->mass.matrix, MAT_FINAL_ASSEMBLY));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The mass of elements without inner nodes, where it has gone */
+static PetscErrorCode AddOrphans(Body body)
+{
+  PetscScalar *mass;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArray(body->mass.orphans, &mass));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) mass[i] *= body->mass.factor[i / body->mesh.dim];
+  PetscCall(VecRestoreArray(body->mass.orphans, &mass));
+  if (body->mass.diagonal) PetscCall(VecAXPY(body->mass.diagonal, 1, body->mass.orphans));
+  else PetscCall(MatDiagonalSet(body->mass.matrix, body->mass.orphans, ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,11 +165,12 @@ PetscErrorCode BodySetUpMass(Body body)
 
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
-  PetscCall(AssembleMass(body));
   if (body->mass.redistribute) {
-    PetscCall(BodyRedistributeOrphans(body));
-    PetscCall(BodyKeepMassMoments(body));
+    PetscCall(BodyFindOrphans(body));
+    PetscCall(BodyFindMassFactor(body));
   }
+  PetscCall(AssembleMass(body));
+  if (body->mass.orphans) PetscCall(AddOrphans(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));

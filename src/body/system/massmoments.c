@@ -2,15 +2,15 @@
    A body whose contact layer is massless keeps its total mass, its centre of mass and, where positive masses allow, its moments of inertia.
 
    The mass of the layer has gone to the nodes next to the layer, which moves the centre of mass inwards. A smooth factor f(x) = 1 + p(x) on
-   the mass that is left puts the centre back, p being a polynomial and f kept above a bound. The mass matrix becomes S^1/2 M S^1/2 with
-   S = diag(f), which keeps the matrix symmetric and positive whatever its type. In a fine mesh f differs from 1 by terms of the size of the
-   layer, so that waves do not feel the factor.
+   the mass that is left puts the centre back, p being a polynomial and f kept above a bound. The factor acts on the lumped part of the mass
+   matrix node by node, and on the consistent part of an element, whose symmetry and sign must stay, as its mean over the element's inner
+   nodes. In a fine mesh f differs from 1 by terms of the size of the layer, so that waves do not feel the factor.
 
    With the fields phi = (1, x, y, z), the moments of M are the products phi_a' M phi_b. Momentum and angular momentum of a rigid motion
-   depend on M through these alone. Each condition says that a moment is what it is with the full mass. The polynomial p is a combination of
-   the same products phi_a phi_b: for a diagonal M, it has the least sum of m p^2 of all functions that satisfy the conditions, and its
-   coefficients are the multipliers of the conditions. Newton's method solves the conditions for the coefficients; they are nonlinear
-   because of the root in S^1/2 and of the bounds.
+   depend on M through these alone. The moments are sums over the nodes of f times a weight of the node. Each condition says that a moment
+   is what it is with the full mass. The polynomial p is a combination of the products phi_a phi_b: for a lumped M, it has the least sum of
+   m p^2 of all functions that satisfy the conditions, and its coefficients are the multipliers of the conditions. The conditions are linear
+   but for the bounds; Newton's method solves them for the coefficients.
 */
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
@@ -44,14 +44,16 @@ typedef struct {
   Body      body;
   PetscInt  n_fields, n_moments;                 /* moments: phi_a' M phi_b for a <= b */
   PetscInt  pair[MAX_MOMENTS][2];                /* a and b of a moment */
-  PetscReal centre[3], size[3];                  /* positions are (x - centre) / size in the fields [m] */
+  PetscReal axes[3][3];                          /* of the fields of first order, axis . (x - centre) / size */
+  PetscReal centre[3], size[3];                  /* [m] */
   PetscReal target[MAX_MOMENTS];                 /* of the full mass, over the total mass */
   PetscReal total;                               /* the full mass [kg] */
   PetscInt  n;                                   /* conditions */
   PetscReal condition[MAX_MOMENTS][MAX_MOMENTS]; /* weights of the moments in each condition */
   PetscReal softness[MAX_MOMENTS];
-  PetscReal most;                  /* the largest factor */
-  Vec       weighted[2], image[2]; /* S^1/2 phi, M S^1/2 phi: field a is component a % dim of vector a / dim */
+  PetscReal most; /* the largest factor */
+  PetscReal
+      *weights; /* per local node, ghosts too: what this rank's elements and the orphans' mass at it add to each moment, over the total */
 } Problem;
 
 static void GetFields(const Problem *problem, PetscInt node, PetscReal phi[4])
@@ -59,7 +61,11 @@ static void GetFields(const Problem *problem, PetscInt node, PetscReal phi[4])
   const PetscInt dim = problem->body->mesh.dim;
 
   phi[0] = 1;
-  for (PetscInt d = 0; d < dim; d++) phi[1 + d] = (problem->body->mesh.coordinates[node * dim + d] - problem->centre[d]) / problem->size[d];
+  for (PetscInt a = 0; a < dim; a++) {
+    phi[1 + a] = 0;
+    for (PetscInt d = 0; d < dim; d++)
+      phi[1 + a] += problem->axes[a][d] * (problem->body->mesh.coordinates[node * dim + d] - problem->centre[d]) / problem->size[a];
+  }
 }
 
 /* The polynomials that the conditions come with, at a node */
@@ -86,59 +92,31 @@ static PetscReal GetPolynomial(const Problem *problem, const PetscReal coefficie
 
 /* Moments of the mass under the factor, over the total mass; and, unless `slopes` is NULL, what the coefficients change in the conditions,
    column by column */
-static PetscErrorCode ComputeMoments(Problem *problem, const PetscReal coefficients[], PetscReal moments[], PetscReal slopes[])
+static PetscErrorCode ComputeMoments(const Problem *problem, const PetscReal coefficients[], PetscReal moments[], PetscReal slopes[])
 {
-  Body           body = problem->body;
-  const PetscInt dim = body->mesh.dim, n = problem->n;
-  PetscScalar   *weighted[2], *image[2];
-  PetscReal      sums[MAX_MOMENTS + MAX_MOMENTS * MAX_MOMENTS] = {0}, *slope = sums + problem->n_moments;
+  const PetscInt n = problem->n, n_moments = problem->n_moments;
+  PetscReal      sums[MAX_MOMENTS + MAX_MOMENTS * MAX_MOMENTS] = {0}, *slope = sums + n_moments;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) PetscCall(VecGetArrayWrite(problem->weighted[k], &weighted[k]));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    PetscReal psi[MAX_MOMENTS], phi[4], root;
+  for (PetscInt node = 0; node < problem->body->mesh.local_nodes; node++) {
+    const PetscReal *weights = problem->weights + node * n_moments;
+    PetscReal        psi[MAX_MOMENTS], polynomial, factor;
 
-    GetFields(problem, node, phi);
     GetPolynomials(problem, node, psi);
-    root = PetscSqrtReal(PetscClipInterval(GetPolynomial(problem, coefficients, psi), LEAST_FACTOR, problem->most));
-    for (PetscInt a = 0; a < 2 * dim; a++) weighted[a / dim][node * dim + a % dim] = a < problem->n_fields ? root * phi[a] : 0;
-  }
-  for (PetscInt k = 0; k < 2; k++) PetscCall(VecRestoreArrayWrite(problem->weighted[k], &weighted[k]));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(BodyMultiplyMass(body, problem->weighted[k], problem->image[k]));
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(VecGetArray(problem->weighted[k], &weighted[k]));
-    PetscCall(VecGetArray(problem->image[k], &image[k]));
-  }
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    PetscReal psi[MAX_MOMENTS], product[MAX_MOMENTS], factor;
-
-    if (body->layer.contains[node]) continue;
-    for (PetscInt m = 0; m < problem->n_moments; m++) {
-      const PetscInt  a = problem->pair[m][0], b = problem->pair[m][1];
-      const PetscReal ab = weighted[a / dim][node * dim + a % dim] * image[b / dim][node * dim + b % dim];
-      const PetscReal ba = weighted[b / dim][node * dim + b % dim] * image[a / dim][node * dim + a % dim];
-
-      product[m] = (ab + ba) / 2 / problem->total;
-      sums[m] += product[m];
-    }
-    if (!slopes) continue;
-    GetPolynomials(problem, node, psi);
-    factor = GetPolynomial(problem, coefficients, psi);
-    if (factor <= LEAST_FACTOR || factor >= problem->most) continue;
+    polynomial = GetPolynomial(problem, coefficients, psi);
+    factor     = PetscClipInterval(polynomial, LEAST_FACTOR, problem->most);
+    for (PetscInt m = 0; m < n_moments; m++) sums[m] += factor * weights[m];
+    if (!slopes || factor != polynomial) continue;
     for (PetscInt k = 0; k < n; k++) {
-      PetscReal value = 0;
+      PetscReal weight = 0;
 
-      for (PetscInt m = 0; m < problem->n_moments; m++) value += problem->condition[k][m] * product[m];
-      for (PetscInt l = 0; l < n; l++) slope[l * n + k] += value * psi[l] / factor;
+      for (PetscInt m = 0; m < n_moments; m++) weight += problem->condition[k][m] * weights[m];
+      for (PetscInt l = 0; l < n; l++) slope[l * n + k] += weight * psi[l];
     }
   }
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(VecRestoreArray(problem->image[k], &image[k]));
-    PetscCall(VecRestoreArray(problem->weighted[k], &weighted[k]));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(problem->n_moments + (slopes ? n * n : 0)), MPIU_REAL, MPIU_SUM,
-                             PetscObjectComm((PetscObject)body)));
-  PetscCall(PetscArraycpy(moments, sums, problem->n_moments));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(n_moments + (slopes ? n * n : 0)), MPIU_REAL, MPIU_SUM,
+                             PetscObjectComm((PetscObject)problem->body)));
+  PetscCall(PetscArraycpy(moments, sums, n_moments));
   if (slopes) PetscCall(PetscArraycpy(slopes, slope, n * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,39 +191,117 @@ static PetscErrorCode Solve(Problem *problem, PetscReal coefficients[], PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the moments of the full mass in the fields as they are */
-static PetscErrorCode ComputeFullMoments(Problem *problem, PetscReal moments[])
+/* phi' M phi of an element for each moment, field values by node */
+static void AddElementMoments(const Problem *problem, const PetscScalar M[], PetscReal phi[][4], PetscReal scale, PetscReal moments[])
+{
+  const PetscInt n = problem->body->model.element->nodes, dim = problem->body->mesh.dim;
+
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal entry = scale * M[i * dim * n * dim + j * dim];
+
+      if (entry == 0) continue;
+      for (PetscInt m = 0; m < problem->n_moments; m++) moments[m] += entry * phi[i][problem->pair[m][0]] * phi[j][problem->pair[m][1]];
+    }
+}
+
+/* The moments of the full mass in the fields as they are */
+static PetscErrorCode ComputeFullMoments(const Problem *problem, PetscReal moments[])
 {
   Body           body = problem->body;
-  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
-  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const PetscInt n    = body->model.element->nodes;
+  PetscScalar    lumped[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], consistent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
   PetscReal      phi[ELEMENT_MAX_DOFS][4];
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(moments, problem->n_moments));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
-    const PetscInt *nodes = body->mesh.connectivity + e * n;
-
-    PetscCall(BodyGetFullElementMass(body, e, M));
-    for (PetscInt i = 0; i < n; i++) GetFields(problem, nodes[i], phi[i]);
-    for (PetscInt i = 0; i < n; i++)
-      for (PetscInt j = 0; j < n; j++)
-        for (PetscInt m = 0; m < problem->n_moments; m++)
-          moments[m] += M[(i * dim) * n * dim + j * dim] * phi[i][problem->pair[m][0]] * phi[j][problem->pair[m][1]];
+    PetscCall(BodyGetElementMassParts(body, e, PETSC_FALSE, lumped, consistent));
+    for (PetscInt i = 0; i < n; i++) GetFields(problem, body->mesh.connectivity[e * n + i], phi[i]);
+    AddElementMoments(problem, lumped, phi, 1, moments);
+    AddElementMoments(problem, consistent, phi, 1, moments);
   }
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, moments, (PetscMPIInt)problem->n_moments, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Origin and unit of the fields: the centre of the full mass, and its radii of gyration along the axes; then its moments in them */
+/* What the mass at each node adds to the moments: lumped mass, its share of the consistent part of its elements, and orphans */
+static PetscErrorCode ComputeWeights(Problem *problem)
+{
+  Body               body = problem->body;
+  const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim, n_moments = problem->n_moments;
+  PetscScalar        lumped[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], consistent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscReal          phi[ELEMENT_MAX_DOFS][4];
+  const PetscScalar *orphans;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(body->mesh.local_nodes * n_moments, &problem->weights));
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    const PetscInt *nodes              = body->mesh.connectivity + e * n;
+    PetscReal       share[MAX_MOMENTS] = {0};
+    PetscInt        inner              = 0;
+
+    PetscCall(BodyGetElementMassParts(body, e, PETSC_TRUE, lumped, consistent));
+    for (PetscInt i = 0; i < n; i++) {
+      GetFields(problem, nodes[i], phi[i]);
+      inner += !body->layer.contains[nodes[i]];
+    }
+    if (!inner) continue;
+    AddElementMoments(problem, consistent, phi, 1 / (inner * problem->total), share);
+    for (PetscInt i = 0; i < n; i++) {
+      PetscReal *weights = problem->weights + nodes[i] * n_moments;
+
+      if (body->layer.contains[nodes[i]]) continue;
+      for (PetscInt m = 0; m < n_moments; m++)
+        weights[m] += share[m] +
+                      lumped[i * dim * n * dim + i * dim] * phi[i][problem->pair[m][0]] * phi[i][problem->pair[m][1]] / problem->total;
+    }
+  }
+  if (!body->mass.orphans) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(body->mass.orphans, &orphans));
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
+    GetFields(problem, node, phi[0]);
+    for (PetscInt m = 0; m < n_moments; m++)
+      problem->weights[node * n_moments + m] += orphans[node * dim] * phi[0][problem->pair[m][0]] * phi[0][problem->pair[m][1]] /
+                                                problem->total;
+  }
+  PetscCall(VecRestoreArrayRead(body->mass.orphans, &orphans));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The principal axes of the full mass, and its radii of gyration along them, from its moments in fields along the coordinates */
+static PetscErrorCode FindAxes(Problem *problem, const PetscReal moments[])
+{
+  const PetscInt dim = problem->body->mesh.dim;
+  PetscReal      J[9], squares[3], work[12];
+  PetscBLASInt   order = (PetscBLASInt)dim, lwork = 12, info;
+
+  PetscFunctionBegin;
+  for (PetscInt m = dim + 1; m < problem->n_moments; m++) {
+    const PetscInt a = problem->pair[m][0], b = problem->pair[m][1];
+
+    J[(a - 1) * dim + b - 1] = J[(b - 1) * dim + a - 1] = problem->size[a - 1] * problem->size[b - 1] *
+                                                          (moments[m] - moments[a] * moments[b] / problem->total) / problem->total;
+  }
+  for (PetscInt d = 0; d < dim; d++) problem->centre[d] += problem->size[d] * moments[1 + d] / problem->total;
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &order, J, &order, squares, work, &lwork, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev info %d", (int)info);
+  for (PetscInt a = 0; a < dim; a++) {
+    problem->size[a] = PetscSqrtReal(squares[a]);
+    for (PetscInt d = 0; d < dim; d++) problem->axes[a][d] = J[a * dim + d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fields of first order along the principal axes of the full mass, from its centre, in units of its radii of gyration; then its moments in
+   them. In such fields the conditions are well conditioned whatever the shape of the body and however it is turned. */
 static PetscErrorCode SetUpFields(Problem *problem)
 {
   const PetscInt dim = problem->body->mesh.dim;
   PetscReal      lower[3], upper[3], moments[MAX_MOMENTS];
 
   PetscFunctionBegin;
-  problem->n_fields = dim + 1;
   for (PetscInt a = 0; a <= dim; a++) {
     problem->pair[a][0] = 0;
     problem->pair[a][1] = a;
@@ -259,20 +315,13 @@ static PetscErrorCode SetUpFields(Problem *problem)
     }
   PetscCall(DMGetBoundingBox(problem->body->mesh.dm, lower, upper));
   for (PetscInt d = 0; d < dim; d++) {
-    problem->centre[d] = (lower[d] + upper[d]) / 2;
-    problem->size[d]   = upper[d] - lower[d];
+    problem->centre[d]  = (lower[d] + upper[d]) / 2;
+    problem->size[d]    = upper[d] - lower[d];
+    problem->axes[d][d] = 1;
   }
   PetscCall(ComputeFullMoments(problem, moments));
   problem->total = moments[0];
-  for (PetscInt m = 0; m < problem->n_moments; m++) {
-    const PetscInt a = problem->pair[m][0], b = problem->pair[m][1];
-
-    if (!a || a != b) continue;
-    /* the moments 1 to dim are those of first order */
-    moments[m] = moments[m] / problem->total - PetscSqr(moments[a] / problem->total);
-    problem->centre[a - 1] += problem->size[a - 1] * moments[a] / problem->total;
-    problem->size[a - 1] *= PetscSqrtReal(moments[m]);
-  }
+  PetscCall(FindAxes(problem, moments));
   PetscCall(ComputeFullMoments(problem, problem->target));
   for (PetscInt m = 0; m < problem->n_moments; m++) problem->target[m] /= problem->total;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -288,9 +337,14 @@ static PetscReal *AddCondition(Problem *problem, PetscInt moment, PetscReal soft
   return weights;
 }
 
-/* Total mass and centre, and all moments of second order. In two dimensions `polar` says whether their sum about the one axis that bodies
-   can turn about is a condition of its own, which is not soft. In one dimension nothing turns. */
-static void SetConditions(Problem *problem, PetscBool polar, PetscReal centre, PetscReal inertia)
+/* What is asked for beyond total mass and centre */
+typedef enum {
+  SECOND_ORDER,              /* all moments of second order: the kinetic energy of every linear field of velocities */
+  SECOND_ORDER_AND_ROTATION, /* the same, and, as a condition of its own that is not soft, that of the one rotation in two dimensions */
+  FIRST_ORDER                /* nothing */
+} Order;
+
+static void SetConditions(Problem *problem, Order order, PetscReal centre, PetscReal inertia)
 {
   const PetscInt  dim     = problem->body->mesh.dim;
   const PetscReal largest = PetscMax(problem->size[0], PetscMax(problem->size[1], problem->size[2]));
@@ -298,9 +352,9 @@ static void SetConditions(Problem *problem, PetscBool polar, PetscReal centre, P
   problem->n    = 0;
   problem->most = inertia > 0 ? MOST_FACTOR : PETSC_MAX_REAL;
   for (PetscInt m = 0; m <= dim; m++) (void)AddCondition(problem, m, m ? centre : 0);
-  if (dim == 1) return;
+  if (order == FIRST_ORDER) return;
   for (PetscInt m = dim + 1; m < problem->n_moments; m++) (void)AddCondition(problem, m, inertia);
-  if (polar) {
+  if (order == SECOND_ORDER_AND_ROTATION) {
     PetscReal *weights = AddCondition(problem, -1, 0);
 
     for (PetscInt m = dim + 1; m < problem->n_moments; m++)
@@ -363,58 +417,43 @@ static PetscErrorCode EvaluateFactor(Problem *problem, const PetscReal coefficie
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* M becomes S^1/2 M S^1/2 */
-static PetscErrorCode ApplyFactor(Body body, Vec root)
-{
-  PetscScalar *array;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(root, &array));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) array[i] = PetscSqrtReal(body->mass.factor[i / body->mesh.dim]);
-  PetscCall(VecRestoreArrayWrite(root, &array));
-  if (body->mass.diagonal) {
-    PetscCall(VecPointwiseMult(body->mass.diagonal, body->mass.diagonal, root));
-    PetscCall(VecPointwiseMult(body->mass.diagonal, body->mass.diagonal, root));
-  } else PetscCall(MatDiagonalScale(body->mass.matrix, root, root));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The first of these sets of conditions that can be satisfied gives the factor: everything is kept; in two dimensions, the moment of
-   inertia about the axis of rotation alone; the centre of mass; the total mass */
+/* The first of these sets of conditions that can be satisfied gives the factor. What is given up, in this order: in two
+   dimensions, moments of second order that no rotation needs; moments of inertia; the centre. */
 static PetscErrorCode FindFactor(Problem *problem)
 {
   const struct {
     PetscInt  dim; /* 0: in all dimensions */
-    PetscBool polar;
+    Order     order;
     PetscReal centre, inertia;
-  } attempts[]              = {{0, PETSC_FALSE, 0, 0},
-                               {2, PETSC_TRUE, 0, SOFT_INERTIA},
-                               {0, PETSC_FALSE, 0, SOFT_INERTIA},
-                               {0, PETSC_FALSE, SOFT_CENTRE, SOFT_INERTIA}};
+  } attempts[]              = {{0, SECOND_ORDER, 0, 0},
+                               {2, SECOND_ORDER_AND_ROTATION, 0, SOFT_INERTIA},
+                               {0, SECOND_ORDER, 0, SOFT_INERTIA},
+                               {0, SECOND_ORDER, SOFT_CENTRE, SOFT_INERTIA}};
   const PetscInt n_attempts = (PetscInt)(sizeof(attempts) / sizeof(attempts[0])), dim = problem->body->mesh.dim;
-  PetscReal      coefficients[MAX_MOMENTS], moments[MAX_MOMENTS];
-  PetscBool      converged = PETSC_FALSE;
+  /* in one dimension nothing turns */
+  const PetscBool centre_alone = (PetscBool)(dim == 1 || problem->body->mass.moments == BODY_MASS_CENTRE);
+  PetscReal       coefficients[MAX_MOMENTS], moments[MAX_MOMENTS];
+  PetscBool       converged = PETSC_FALSE;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n_attempts && !converged; i++) {
     if (attempts[i].dim && attempts[i].dim != dim) continue;
-    SetConditions(problem, attempts[i].polar, attempts[i].centre, attempts[i].inertia);
+    SetConditions(problem, centre_alone ? FIRST_ORDER : attempts[i].order, attempts[i].centre, attempts[i].inertia);
     PetscCall(Solve(problem, coefficients, &converged));
   }
   if (!converged) PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));
   PetscCall(EvaluateFactor(problem, coefficients));
   PetscCall(ComputeMoments(problem, coefficients, moments, NULL));
-  for (PetscInt d = 0; d < dim; d++) {
-    problem->body->mass.shift[d] = problem->size[d] * moments[1 + d];
-    if (PetscAbsReal(moments[1 + d]) <= KEPT) problem->body->mass.shift[d] = 0;
-  }
+  for (PetscInt a = 0; a < dim; a++)
+    for (PetscInt d = 0; d < dim && PetscAbsReal(moments[1 + a]) > KEPT; d++)
+      problem->body->mass.shift[d] += problem->axes[a][d] * problem->size[a] * moments[1 + a];
   PetscCall(CompareInertia(problem, moments, &problem->body->mass.inertia_error));
   if (problem->body->mass.inertia_error <= KEPT) problem->body->mass.inertia_error = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the mass matrix, whose contact layer is massless, the moments of the full mass */
-PetscErrorCode BodyKeepMassMoments(Body body)
+/* Finds the factor with which the mass that is left has the moments of the full mass, where any node is massless */
+PetscErrorCode BodyFindMassFactor(Body body)
 {
   Problem   problem = {.body = body};
   PetscBool any     = PETSC_FALSE;
@@ -423,16 +462,9 @@ PetscErrorCode BodyKeepMassMoments(Body body)
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) any = (PetscBool)(any || body->layer.contains[node]);
   PetscCall(BodyAnyRank(body, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(BodyCreateVec(body, &problem.weighted[k]));
-    PetscCall(BodyCreateVec(body, &problem.image[k]));
-  }
   PetscCall(SetUpFields(&problem));
+  PetscCall(ComputeWeights(&problem));
   PetscCall(FindFactor(&problem));
-  PetscCall(ApplyFactor(body, problem.weighted[0]));
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(VecDestroy(&problem.weighted[k]));
-    PetscCall(VecDestroy(&problem.image[k]));
-  }
+  PetscCall(PetscFree(problem.weights));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
