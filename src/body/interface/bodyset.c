@@ -257,6 +257,61 @@ PetscErrorCode BodySetMassRedistribute(Body body, PetscBool redistribute)
 }
 
 /*@
+  BodySetMassRedistributeNear - whether contact nodes that face nothing at the start keep their mass
+
+  Logically Collective
+
+  Input Parameters:
++ body - the `Body`, before the contact is set up
+- near - `PETSC_FALSE` (default): all nodes of its contact surfaces become massless
+
+  Options Database Key:
+. -<body>_mass_redistribute near - redistribution, and this
+
+  Level: intermediate
+
+  Notes:
+  Less mass moves then, so that a body swings more like one with its full mass: a plate that is hit on one side keeps the mass of its rim.
+
+  Contact that comes to a node with mass is an error.
+
+.seealso: `Body`, `BodySetMassRedistribute()`, `SurfaceKeepFacing()`
+@*/
+PetscErrorCode BodySetMassRedistributeNear(Body body, PetscBool near)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(body, near, 2);
+  CheckNotSetUp(body);
+  body->mass.near = near;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetMassRedistributeNear - whether contact nodes that face nothing at the start keep their mass
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. near - `PETSC_TRUE` if so; `PETSC_FALSE` also where no mass is moved
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetMassRedistributeNear()`
+@*/
+PetscErrorCode BodyGetMassRedistributeNear(Body body, PetscBool *near)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(near, 2);
+  *near = (PetscBool)(body->mass.redistribute && body->mass.near);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodySetMassMoments - what a body with massless contact nodes keeps of its full mass, beyond the total
 
   Logically Collective

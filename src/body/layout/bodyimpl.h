@@ -37,6 +37,7 @@ typedef struct {
 typedef struct {
   BodyMassType      type;
   PetscBool         redistribute; /* contact nodes become massless */
+  PetscBool         near;         /* but those that face no partner at the start, which keep their mass */
   Vec               row_sum;      /* M 1: the lumped mass */
   Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
   Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */

@@ -188,6 +188,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscTryTypeMethod(contact, accept);
+  PetscCall(ContactCheckNear(contact));
   if (contact->options.stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactAddImpulses(contact));
