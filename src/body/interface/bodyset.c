@@ -327,8 +327,8 @@ PetscErrorCode BodyGetMassRedistributeNear(Body body, PetscBool *near)
 
   Note:
   A smooth factor on the masses that are left keeps them. For the centre alone it is linear, for the moments of inertia quadratic, and that
-  moves mass from the middle of a body to its ends: in a bar of 50 elements whose end is massless the factor is 0.994 in the middle, and
-waves there have less force by half of that. Choose `centre` where waves matter and nothing turns. In one dimension nothing can.
+  moves mass from the middle of a body to its ends: in bars of 25 elements whose ends are massless, waves
+  have 0.4 % less force there. Choose `centre` where waves matter and nothing turns. In one dimension nothing can.
 
 .seealso: `Body`, `BodyGetMassMoments()`, `BodySetMassRedistribute()`, `BodyGetMassRedistribution()`
 @*/
