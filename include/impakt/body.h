@@ -50,8 +50,24 @@ typedef struct {
   PetscReal momentum[3];         /* kg m/s */
   PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
   PetscReal mean_velocity[3];    /* mass-averaged, m/s */
-  PetscBool loaded;              /* whether forces from outside, held displacements or obstacles act at all */
+  PetscReal rotation[3]; /* mean rotation of a linear body since its undeformed state, about each axis, as long as it is small: zero for
+                            bodies that are nonlinear, whose rotation is not limited [rad] */
+  PetscBool loaded;      /* whether forces from outside, held displacements or obstacles act at all */
 } BodyMeasures;
+
+/*E
+   BodyMassMoments - what a body with massless contact nodes keeps of its full mass, beyond the total
+
+   Values:
++ `BODY_MASS_CENTRE`  - the centre of mass
+- `BODY_MASS_INERTIA` - that and, where positive masses allow, the moments of inertia (default)
+
+   Level: intermediate
+
+.seealso: `BodySetMassMoments()`, `BodySetMassRedistribute()`
+E*/
+typedef enum { BODY_MASS_CENTRE, BODY_MASS_INERTIA } BodyMassMoments;
+PETSC_EXTERN const char *const BodyMassMomentsNames[];
 
 /*E
    BodyTractionType - which nodal force of the prescribed nodes is handed to the partner
@@ -105,6 +121,12 @@ PETSC_EXTERN PetscErrorCode BodyGetMaterial(Body, Material *);
 PETSC_EXTERN PetscErrorCode BodyGetSubsteps(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetStableStep(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetMass(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodySetMassRedistributeNear(Body, PetscBool);
+PETSC_EXTERN PetscErrorCode BodyGetMassRedistributeNear(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyGetForceOnMass(Body, const PetscReal[], PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodySetMassMoments(Body, BodyMassMoments);
+PETSC_EXTERN PetscErrorCode BodyGetMassMoments(Body, BodyMassMoments *);
+PETSC_EXTERN PetscErrorCode BodyGetMassRedistribution(Body, PetscReal *, PetscReal *, PetscReal[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetSolution(Body, Vec *, Vec *, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetDimension(Body, PetscInt *);

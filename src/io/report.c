@@ -94,6 +94,8 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
                                      (double)body->potential));
     if (!PetscIsNanReal(body->displacement_error))
       PetscCall(PrintPercent(viewer, "    error of the displacement", body->displacement_error));
+    if (body->rotation_max > STATISTICS_FAR_TURN)
+      PetscCall(PrintValue(viewer, "    rotation, far for linear", body->rotation_max, "rad", NAN));
     if (body->external_work != 0) PetscCall(PrintValue(viewer, "    work of its loads", body->external_work, "J", NAN));
   }
   PetscCall(PrintPercent(viewer, "system energy error, worst", worst));

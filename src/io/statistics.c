@@ -5,6 +5,11 @@
 /* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
    compared with it */
 #define NOTHING_AT_START 1e-9
+/* A body starts at rest if no node is faster than this part of its wave speed, and without strain if its energy is below that of this
+   strain everywhere: both are round-off of what the user gave, of velocities by formulas and of displacements that move the body as a whole
+ */
+#define NO_SPEED  1e-14
+#define NO_STRAIN 1e-10
 /* Mean, scatter and minimum of a force are those of the time from first contact to release without this part at either end, where the force
    rises and falls. Steps at the ends of what remains belong to it, within round-off of the time. */
 #define FORCE_MARGIN   0.2
@@ -26,7 +31,8 @@ struct _n_Statistics {
   PetscReal        *body_change;    /* least and largest change of the energy of each body since the start [J] */
   PetscReal         system_change[2];
   PetscReal         system_energy;             /* at the start [J] */
-  PetscReal         largest_energy;            /* energies and work of all bodies, so far [J] */
+  PetscReal         largest_energy;            /* energies and work of all bodies, so far: used where all start from rest [J] */
+  PetscBool         from_rest;                 /* all bodies start at rest without strain */
   PetscBool         loaded;                    /* forces from outside, or held displacements, act on some body */
   PetscReal         momentum[3];               /* of the system at the start [kg m/s] */
   PetscReal         momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
@@ -113,9 +119,33 @@ static PetscReal Norm(const PetscReal x[3])
   return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* Notes the initial energies and momenta, which later ones are compared with */
-static void NoteInitialState(Statistics s, const ControllerFrame *frame)
+/* Whether a body starts at rest and without strain */
+static PetscErrorCode StartsFromRest(Body body, const BodyMeasures *measures, PetscBool *rest)
 {
+  PetscReal density, modulus, mass, speed;
+  Material  material;
+  Vec       v;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(MaterialGetDensity(material, &density));
+  PetscCall(MaterialGetWaveModulus(material, &modulus));
+  PetscCall(BodyGetMass(body, &mass));
+  PetscCall(BodyGetSolution(body, NULL, &v, NULL));
+  PetscCall(VecNorm(v, NORM_INFINITY, &speed));
+  *rest = (PetscBool)(speed <= NO_SPEED * PetscSqrtReal(modulus / density) &&
+                      measures->potential <= 0.5 * modulus * mass / density * PetscSqr(NO_STRAIN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes the initial energies and momenta, which later ones are compared with */
+static PetscErrorCode NoteInitialState(Statistics s, Controller controller, const ControllerFrame *frame)
+{
+  const Body *bodies;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
+  s->from_rest = PETSC_TRUE;
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     s->initial_energy[i] = BodyEnergy(&frame->bodies[i]);
     s->system_energy += s->initial_energy[i];
@@ -126,7 +156,9 @@ static void NoteInitialState(Statistics s, const ControllerFrame *frame)
       s->angular[d] += frame->bodies[i].angular_momentum[d];
     }
     s->loaded = (PetscBool)(s->loaded || frame->bodies[i].loaded);
+    if (s->from_rest) PetscCall(StartsFromRest(bodies[i], &frame->bodies[i], &s->from_rest));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscReal Relative(PetscReal value, PetscReal scale)
@@ -156,7 +188,8 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   for (PetscInt i = 0; i < frame->n_bodies; i++)
     size += frame->bodies[i].kinetic + frame->bodies[i].potential + PetscAbsReal(frame->bodies[i].external_work);
   s->largest_energy = PetscMax(s->largest_energy, size);
-  scale             = Scale(s->system_energy, s->largest_energy);
+  /* only where there is nothing at the start: an energy that grows must not raise what it is compared with */
+  scale = s->from_rest || s->system_energy <= 0 ? s->largest_energy : s->system_energy;
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     const BodyMeasures *measures = &frame->bodies[i];
     BodyStatistics     *body     = &r->bodies[i];
@@ -187,6 +220,31 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
+/* Notes how far bodies have turned, and tells where a linear one goes too far for its material; once for each body */
+static PetscErrorCode AddRotations(Statistics s, Controller controller, const ControllerFrame *frame)
+{
+  const Body *bodies;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    BodyStatistics *body  = &s->results.bodies[i];
+    const PetscReal angle = Norm(frame->bodies[i].rotation), before = body->rotation_max;
+    const char     *name;
+
+    body->rotation_max = PetscMax(before, angle);
+    if (before > STATISTICS_FAR_TURN || angle <= STATISTICS_FAR_TURN) continue;
+    PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
+    PetscCall(
+        PetscFPrintf(PetscObjectComm((PetscObject)controller), stderr,
+                     "impakt: warning: body '%s' has turned by %.3g rad at time %g s: its linear material counts rotations as strains, so "
+                     "that energy and angular momentum are wrong by terms of the angle squared; set -%s_material_type "
+                     "saint_venant_kirchhoff or neo_hookean\n",
+                     name, (double)angle, (double)frame->time, name));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds a step of one pair, or of all pairs together */
 static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
                        PetscReal time_step)
@@ -205,9 +263,9 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   contact->area_max        = PetscMax(contact->area_max, state->area);
   contact->active_max      = PetscMax(contact->active_max, state->active);
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
-  contact->gap_final        = state->gap;
-  memory->touches           = touches;
-  memory->force             = state->force;
+  contact->gap_final = state->gap;
+  memory->touches    = touches;
+  memory->force      = state->force;
 }
 
 /* Appends time, forces and nodes in contact of a step to the series */
@@ -247,10 +305,10 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   ContactPairState   any = {.gap = PETSC_INFINITY};
 
   PetscFunctionBegin;
-  (void)controller;
-  if (frame->step == 0) NoteInitialState(s, frame);
+  if (frame->step == 0) PetscCall(NoteInitialState(s, controller, frame));
   AddEnergies(s, frame);
   PetscCall(ContactTimesAdd(s->times, frame));
+  PetscCall(AddRotations(s, controller, frame));
   if (frame->step > 0) {
     for (PetscInt i = 0; i < frame->n_pairs; i++) {
       AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time);

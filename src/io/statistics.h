@@ -3,6 +3,9 @@
 #include "contacttimes.h"
 #include "deviation.h"
 
+/* Mean rotation of a linear body from which on the user is warned [rad]: its material counts 1 - cos of the angle as strain, 0.1 % here */
+#define STATISTICS_FAR_TURN 0.05
+
 /* How one pair, or all pairs together, touched. Times and forces are not-a-number if there was no contact. */
 typedef struct {
   PetscReal first_contact_time;               /* end of the first controller step in contact [s] */
@@ -24,6 +27,7 @@ typedef struct {
   PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
   PetscReal displacement_error;                 /* at the end, relative L2, against an exact displacement; not-a-number without one */
   PetscReal external_work;                      /* at the end, by loads [J] */
+  PetscReal rotation_max;                       /* largest mean rotation of a linear body, 0 for others [rad] */
   PetscReal energy_error_min,
       energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;

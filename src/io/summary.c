@@ -129,6 +129,24 @@ static PetscErrorCode AddStepControl(json_t *root, Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The mass of a body, and what its massless contact layer has changed */
+static PetscErrorCode AddMass(json_t *object, Body body)
+{
+  PetscReal total, least, largest, shift[3] = {0}, inertia;
+  json_t   *mass;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetMass(body, &total));
+  PetscCall(BodyGetMassRedistribution(body, &least, &largest, shift, &inertia));
+  PetscCall(SetObject(object, "mass", &mass));
+  PetscCall(SetReal(mass, "total", total));
+  PetscCall(SetReal(mass, "factor_min", least));
+  PetscCall(SetReal(mass, "factor_max", largest));
+  PetscCall(SetVector(mass, "centre_shift", shift));
+  PetscCall(SetReal(mass, "inertia_error", inertia));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const StatisticsResults *results)
 {
   json_t     *objects, *object;
@@ -148,10 +166,12 @@ static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const Statist
     PetscCall(BodyGetTotalSubsteps(bodies[i], &substeps, NULL));
     PetscCall(SetObject(objects, name, &object));
     PetscCall(SetInteger(object, "dofs", dofs));
+    PetscCall(AddMass(object, bodies[i]));
     PetscCall(SetReal(object, "kinetic", body->kinetic));
     PetscCall(SetReal(object, "potential", body->potential));
     PetscCall(SetReal(object, "peak_potential", body->peak_potential));
     PetscCall(SetReal(object, "external_work", body->external_work));
+    PetscCall(SetReal(object, "rotation_max", body->rotation_max));
     if (!PetscIsNanReal(body->displacement_error)) PetscCall(SetReal(object, "displacement_error", body->displacement_error));
     PetscCall(SetReal(object, "total_energy_error_min", body->energy_error_min));
     PetscCall(SetReal(object, "total_energy_error_max", body->energy_error_max));

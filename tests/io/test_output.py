@@ -58,10 +58,12 @@ SUMMARY = {
     "bodies": {
         name: {
             "dofs": int,
+            "mass": {"total": float, "factor_min": float, "factor_max": float, "centre_shift": list, "inertia_error": float},
             "kinetic": float,
             "potential": float,
             "peak_potential": float,
             "external_work": float,
+            "rotation_max": float,
             "total_energy_error_min": float,
             "total_energy_error_max": float,
             "substeps": int,

@@ -37,6 +37,7 @@ def solid(b, shape):
     words = [f"-{b}_dm_plex_dim {dim} -{b}_dm_plex_box_faces {','.join([str(ELEMENTS)] + [str(n)] * (dim - 1))}"]
     words.append(f"-{b}_dm_plex_box_lower {low}{',0' * (dim - 1)} -{b}_dm_plex_box_upper {high}{f',{WIDTH}' * (dim - 1)}")
     words.append(f"-{b}_rotate {degrees if dim == 2 else ','.join(map(str, (*axis, degrees)))} -{b}_initial_velocity {','.join(f'{SPEEDS[b] * c:.17g}' for c in NORMAL[shape])}")
+    words.append(f"-{b}_mass_moments centre")  # as in one dimension, where nothing turns
     if dim == 2:
         words.append(f"-{b}_thickness {WIDTH}")
     return " ".join(words)

@@ -289,6 +289,7 @@ PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpRows(Contact);
+PETSC_INTERN PetscErrorCode ContactCheckNear(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactFindSharedNodes(Contact);

@@ -18,29 +18,83 @@
 /* What a sum of a few products loses, in units of the largest number in it: a node belongs to some 8 elements */
 #define ROUND_OFF (8 * PETSC_MACHINE_EPSILON)
 
+/* sqrt(sum of (a_i b_i)^2) over all dofs, in the first work vector */
+static PetscErrorCode ProductNorm(Vec a, Vec b, Vec work, PetscReal *norm)
+{
+  PetscFunctionBegin;
+  PetscCall(VecPointwiseMult(work, a, b));
+  PetscCall(VecNorm(work, NORM_2, norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Sizes of a nonlinear residual: of the forces that it is the balance of, and of the round-off of the largest numbers in it; `inertia` is
    M A, or NULL */
 static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
   Vec           product  = body->work.nodes[2];
-  PetscReal     force, stiffness, mass = 0, position = 0;
+  PetscReal     force, stiffness, mass = 0, position = 0, start = 0, motion = 0;
 
   PetscFunctionBegin;
   PetscCall(VecNorm(body->state.internal_force, NORM_2, &force));
   /* the internal force is a sum of displacements times stiffnesses, which may cancel: a body that moves as a whole has none */
   PetscCall(MatGetDiagonal(implicit->matrix, product));
-  PetscCall(VecPointwiseMult(product, product, U));
-  PetscCall(VecNorm(product, NORM_2, &stiffness));
+  PetscCall(ProductNorm(product, U, product, &stiffness));
   if (inertia) {
     PetscCall(VecNorm(inertia, NORM_2, &mass));
-    /* the acceleration is a difference of displacements over dt^2 */
-    PetscCall(VecPointwiseMult(product, body->mass.row_sum, U));
-    PetscCall(VecNorm(product, NORM_2, &position));
-    position *= implicit->shift;
+    /* the acceleration is a difference of displacements, and of what the velocity makes of them, over dt^2: either displacement may be zero
+     */
+    PetscCall(ProductNorm(body->mass.row_sum, U, product, &position));
+    PetscCall(ProductNorm(body->mass.row_sum, body->substep_start.u, product, &start));
+    PetscCall(ProductNorm(body->mass.row_sum, body->substep_start.v, product, &motion));
   }
   implicit->terms     = force + mass;
-  implicit->round_off = ROUND_OFF * (position + force + stiffness);
+  implicit->round_off = ROUND_OFF *
+                        (implicit->shift * (position + start + body->time.step * motion) + force + stiffness + implicit->unit_strain);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Per dof: the length of the shortest edge of this rank's elements at its node [m] */
+static PetscErrorCode GetShortestEdges(Body body, Vec edges)
+{
+  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
+  PetscReal     *shortest;
+  PetscScalar   *array;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(body->mesh.local_nodes, &shortest));
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++) shortest[node] = PETSC_MAX_REAL;
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    const PetscInt *nodes = body->mesh.connectivity + e * n;
+
+    for (PetscInt a = 0; a < n; a++)
+      for (PetscInt b = 0; b < a; b++) {
+        PetscReal square = 0;
+
+        for (PetscInt d = 0; d < dim; d++)
+          square += PetscSqr(body->mesh.coordinates[nodes[a] * dim + d] - body->mesh.coordinates[nodes[b] * dim + d]);
+        shortest[nodes[a]] = PetscMin(shortest[nodes[a]], PetscSqrtReal(square));
+        shortest[nodes[b]] = PetscMin(shortest[nodes[b]], PetscSqrtReal(square));
+      }
+  }
+  PetscCall(VecGetArrayWrite(edges, &array));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) array[i] = shortest[i / dim];
+  PetscCall(VecRestoreArrayWrite(edges, &array));
+  PetscCall(PetscFree(shortest));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces that displacements of the size of an element would make: strains are differences from the unit tensor, so that stresses of a
+   nonlinear material have the round-off of strains of size 1, however small they are [N] */
+static PetscErrorCode ComputeUnitStrainForce(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  PetscCall(BodyAssembleTangent(body, NULL, implicit->matrix));
+  PetscCall(MatGetDiagonal(implicit->matrix, body->work.nodes[0]));
+  PetscCall(GetShortestEdges(body, body->work.nodes[1]));
+  PetscCall(ProductNorm(body->work.nodes[0], body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,7 +186,8 @@ static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's method has converged where the residual is small against the forces that it is the balance of */
+/* Newton's method has converged where the residual is small against the forces that it is the balance of, or is their round-off. The
+   residual of the first iterate may be that already: then no iteration could make it smaller. */
 static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm, SNESConvergedReason *reason,
                                     void *ctx)
 {
@@ -146,7 +201,8 @@ static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, Pet
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
   else if (fnorm <= atol) *reason = SNES_CONVERGED_FNORM_ABS;
-  else if (it && fnorm <= rtol * implicit->terms + implicit->round_off) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  else if (fnorm <= implicit->round_off || (it && fnorm <= rtol * implicit->terms + implicit->round_off))
+    *reason = SNES_CONVERGED_FNORM_RELATIVE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,6 +280,7 @@ static PetscErrorCode CreateSolver(Body body, Vec u)
   if (body->integrator->has_inertia) implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
   PetscCall(BodyCreateMatrix(body, &implicit->matrix));
   implicit->matrices[body->time.level] = implicit->matrix;
+  if (!body->model.linear && implicit->unit_strain == 0) PetscCall(ComputeUnitStrainForce(body));
   PetscCall(AssembleMatrix(body, u));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
   PetscCall(ConstrainedSolverCreate(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,

@@ -34,6 +34,7 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   PetscCallMPI(MPI_Comm_size(comm, &(*body)->rows.size));
   (*body)->mass.type         = (BodyMassType)PETSC_DECIDE;
   (*body)->mass.redistribute = PETSC_TRUE;
+  (*body)->mass.moments      = BODY_MASS_INERTIA;
   PetscCall(ElementCreate(comm, &(*body)->model.element));
   PetscCall(ElementSetOptionsPrefix((*body)->model.element, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -317,6 +318,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
   PetscCall(PetscFree(b->rows.kept_traces));
   PetscCall(PetscFree4(b->rows.conditions, b->rows.constrained, b->rows.flexibility, b->rows.robin));
+  PetscCall(PetscFree(b->mass.factor));
   PetscCall(PetscFree(b->layer.dofs));
   PetscCall(PetscFree(b->layer.contains));
   PetscCall(PetscFree(b->mesh.connectivity));

@@ -25,21 +25,50 @@ static PetscErrorCode CreateMesh(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A value of an option that has other values than yes and no too */
+static PetscErrorCode ReadBool(Body body, const char name[], const char value[], PetscBool *flag)
+{
+  static const char *const words[] = {"true", "yes", "on", "1", "false", "no", "off", "0"};
+  PetscBool                same    = PETSC_FALSE;
+  PetscInt                 which   = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 8 && !same; i++) {
+    PetscCall(PetscStrcasecmp(value, words[i], &same));
+    which = i;
+  }
+  PetscCheck(same, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s is true, false or near, not '%s'",
+             ((PetscObject)body)->prefix, name, value);
+  *flag = (PetscBool)(which < 4);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ReadMass(Body body)
 {
-  BodyMassType type;
-  PetscBool    redistribute = body->mass.redistribute;
+  BodyMassType    type;
+  BodyMassMoments moments      = body->mass.moments;
+  PetscBool       redistribute = body->mass.redistribute, near = body->mass.near, given;
+  char            value[16] = "";
 
   PetscFunctionBegin;
   PetscCall(BodySetUpMassType(body));
   type = body->mass.type;
   PetscObjectOptionsBegin((PetscObject)body);
   PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetMassType", BodyMassTypes, (PetscEnum)type, (PetscEnum *)&type, NULL));
-  PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetMassRedistribute",
-                             redistribute, &redistribute, NULL));
+  PetscCall(PetscOptionsString("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetMassRedistribute",
+                               near ? "near" : PetscBools[redistribute], value, sizeof(value), &given));
+  if (given) {
+    PetscCall(PetscStrcasecmp(value, "near", &near));
+    redistribute = PETSC_TRUE;
+    if (!near && value[0]) PetscCall(ReadBool(body, "mass_redistribute", value, &redistribute));
+  }
+  PetscCall(PetscOptionsEnum("-mass_moments", "What is kept when mass moves", "BodySetMassMoments", BodyMassMomentsNames,
+                             (PetscEnum)moments, (PetscEnum *)&moments, NULL));
   PetscOptionsEnd();
+  PetscCall(BodySetMassMoments(body, moments));
   PetscCall(BodySetMassType(body, type));
   PetscCall(BodySetMassRedistribute(body, redistribute));
+  PetscCall(BodySetMassRedistributeNear(body, near));
   PetscCall(BodySetUpMassType(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -57,10 +86,11 @@ static PetscErrorCode ReadMass(Body body)
 . -<body>_material_type, -<body>_density, ...        - the material, see `MaterialSetFromOptions()`
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
 . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
-. -<body>_mass_redistribute (true|false)             - moves the mass of contact nodes to their inner neighbours, default true
-. -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
-. -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
-. -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
+. -<body>_mass_redistribute (true|false|near)        - moves the mass of contact nodes to their inner neighbours, default true; near: of
+those that face a partner at the start . -<body>_mass_moments (centre|inertia)              - what that keeps beside the total mass, default
+inertia . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2 . -<body>_ts_time_step
+(auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step . -<body>_ts_alpha_... -
+parameters of `TSALPHA2`, default Newmark's trapezoidal rule
 - -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
 
   Level: beginner

@@ -11,9 +11,24 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->mesh.cell_shape]));
   if (body->integrator->needs_stable_step)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->time.stable_step));
-  if (body->mass.shift[0] != 0 || body->mass.shift[1] != 0 || body->mass.shift[2] != 0)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n",
-                                     (double)body->mass.shift[0], (double)body->mass.shift[1], (double)body->mass.shift[2]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the massless contact layer has changed */
+static PetscErrorCode ViewLayer(Body body, PetscViewer viewer)
+{
+  const BodyMass *mass = &body->mass;
+
+  PetscFunctionBegin;
+  if (!mass->factor) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: factor %g to %g on the masses that are left\n",
+                                   (double)mass->least_factor, (double)mass->largest_factor));
+  if (mass->shift[0] != 0 || mass->shift[1] != 0 || mass->shift[2] != 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n", (double)mass->shift[0],
+                                     (double)mass->shift[1], (double)mass->shift[2]));
+  if (mass->inertia_error != 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: moments of inertia changed by up to %g %%\n",
+                                     100 * (double)mass->inertia_error));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,6 +66,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
       body->mass.redistribute && body->rows.global ? ", contact layer massless" : "", type, body->time.shared * body->time.substeps,
       body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
+  PetscCall(ViewLayer(body, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

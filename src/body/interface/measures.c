@@ -1,4 +1,4 @@
-/* Energies and momentum. */
+/* Energies, momentum and mean rotation. */
 #include <body/layout/bodyimpl.h>
 
 /* Sum of a[i] b[i]: four sums, since each addition to a single one would wait for the one before it */
@@ -134,7 +134,7 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  PetscReal sums[11] = {0};
+  PetscReal sums[14] = {0};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -145,11 +145,13 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
     PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
     for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
   }
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 11, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(BodySumRotation(body, sums + 11));
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 14, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   measures->kinetic       = sums[0];
   measures->potential     = sums[1];
   measures->external_work = body->state.external_work;
-  measures->loaded        = (PetscBool)(body->loads != NULL);
+  BodyFinishRotation(body, sums + 11, measures->rotation);
+  measures->loaded = (PetscBool)(body->loads != NULL);
   for (PetscInt d = 0; d < 3; d++) {
     measures->momentum[d]         = sums[2 + d];
     measures->angular_momentum[d] = sums[5 + d];

@@ -51,6 +51,39 @@ PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
 }
 
 /*@
+  BodyGetMassRedistribution - what a massless contact layer has changed
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ least   - smallest factor on the masses that are left, 1 if no node is massless, or `NULL`
+. largest - largest factor, or `NULL`
+. shift   - how far the centre of mass is off that of the full mass, `dim` values, 0: it is kept [m]; or `NULL`
+- inertia - largest change of a moment of inertia about an axis through the centre of mass, relative to it, 0: all are kept; or `NULL`
+
+  Level: intermediate
+
+  Note:
+  The total mass is always kept.
+
+.seealso: `Body`, `BodySetMassRedistribute()`, `BodyView()`
+@*/
+PetscErrorCode BodyGetMassRedistribution(Body body, PetscReal *least, PetscReal *largest, PetscReal shift[], PetscReal *inertia)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  if (least) *least = body->mass.factor ? body->mass.least_factor : 1;
+  if (largest) *largest = body->mass.factor ? body->mass.largest_factor : 1;
+  for (PetscInt d = 0; shift && d < body->mesh.dim; d++) shift[d] = body->mass.shift[d];
+  if (inertia) *inertia = body->mass.inertia_error;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetCrossSection - what lengths and points of the mesh are multiplied by to give areas
 
   Not Collective

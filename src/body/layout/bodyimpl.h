@@ -39,6 +39,7 @@ typedef struct {
 typedef struct {
   BodyMassType      type;
   PetscBool         redistribute; /* contact nodes become massless */
+  PetscBool         near;         /* but those that face no partner at the start, which keep their mass */
   Vec               row_sum;      /* M 1: the lumped mass */
   Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
   Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
@@ -46,7 +47,15 @@ typedef struct {
   ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
   Vec               orphans;      /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
   PetscReal         total;        /* [kg] */
-  PetscReal         shift[3];     /* how far redistribution has moved the centre of mass [m] */
+  PetscReal         centre[3];    /* of the undeformed body [m] */
+  PetscReal
+      inverse_inertia[9]; /* inverse of the inertia tensor of the undeformed body about its centre; zero in one dimension [1/(kg m^2)] */
+  /* of a body with a massless contact layer */
+  BodyMassMoments moments;
+  PetscReal      *factor;                       /* per local node: on the masses that are left; NULL: none */
+  PetscReal       least_factor, largest_factor; /* on nodes with mass; 0 without a factor */
+  PetscReal       shift[3];                     /* how far the centre of mass is off that of the full mass; 0: it is kept [m] */
+  PetscReal       inertia_error; /* largest relative change of a moment of inertia about an axis through the centre; 0: they are kept */
 } BodyMass;
 
 /* The contact nodes, and those of their dofs that are massless */
@@ -173,8 +182,13 @@ PETSC_INTERN PetscErrorCode BodyStateCreate(Body, PetscBool, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateCopy(const BodyState *, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
+PETSC_INTERN PetscErrorCode BodySetUpInertia(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
+PETSC_INTERN PetscErrorCode BodySumRotation(Body, PetscReal[3]);
+PETSC_INTERN void           BodyFinishRotation(Body, const PetscReal[3], PetscReal[3]);
+PETSC_INTERN PetscErrorCode BodyGetElementMassParts(Body, PetscInt, PetscBool, PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
@@ -188,7 +202,7 @@ PETSC_INTERN PetscErrorCode BodyAddExternalForce(Body, PetscReal, PetscScalar, V
 PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
 PETSC_INTERN PetscErrorCode BodyAddWork(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
-PETSC_INTERN PetscErrorCode BodyRedistributeOrphans(Body);
+PETSC_INTERN PetscErrorCode BodyFindOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);

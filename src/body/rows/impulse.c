@@ -217,3 +217,47 @@ PetscErrorCode BodyAddImpulse(Body body, const PetscScalar force[])
   PetscCall(VecCopy(body->state.a, body->saved.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodyGetForceOnMass - how much of the forces on the rows acts on nodes with mass
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, set up
+- force - of each row of this rank [N]
+
+  Output Parameters:
++ on_mass - largest nodal force on a node with mass [N]
+- largest - largest nodal force [N]
+
+  Level: developer
+
+.seealso: `Body`, `BodySetMassRedistributeNear()`
+@*/
+PetscErrorCode BodyGetForceOnMass(Body body, const PetscReal force[], PetscReal *on_mass, PetscReal *largest)
+{
+  const PetscScalar *nodal;
+  PetscScalar       *row;
+  PetscReal          most[2] = {0, 0};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->rows.local) PetscAssertPointer(force, 2);
+  PetscAssertPointer(on_mass, 3);
+  PetscAssertPointer(largest, 4);
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = force[i];
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], body->work.nodes[0]));
+  PetscCall(VecGetArrayRead(body->work.nodes[0], &nodal));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) {
+    most[1] = PetscMax(most[1], PetscAbsReal(nodal[i]));
+    if (!body->layer.contains[i / body->mesh.dim]) most[0] = PetscMax(most[0], PetscAbsReal(nodal[i]));
+  }
+  PetscCall(VecRestoreArrayRead(body->work.nodes[0], &nodal));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
+  *on_mass = most[0];
+  *largest = most[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,49 +1,99 @@
 /* Mass: lumped, consistent or averaged, with the mass of the contact layer moved inside where asked. */
 #include <body/layout/bodyimpl.h>
 
-const char *const BodyMassTypes[] = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
+const char *const BodyMassTypes[]        = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
+const char *const BodyMassMomentsNames[] = {"centre", "inertia", "BodyMassMoments", "BODY_MASS_", NULL};
 
-/* The mass matrix of one element as the body uses it, row by row */
-PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
+/* Moves the mass of an element's contact nodes to its inner nodes: what these have is scaled to the mass of the element, with the coupling
+   between them, so that the mass does not spread along the layer. Without inner nodes nothing is left: BodyFindOrphans() finds the mass a
+   place. */
+static void MoveInside(Body body, const PetscInt nodes[], PetscScalar M[])
 {
-  const PetscInt *nodes   = body->mesh.connectivity + e * body->model.element->nodes;
-  const PetscInt  n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
-  PetscInt        inner = 0;
+  const PetscInt n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
+  PetscScalar    all = 0, inner = 0;
+  PetscBool      moves = PETSC_FALSE;
 
-  PetscFunctionBegin;
-  PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
-  if (body->mass.type != BODY_MASS_CONSISTENT) {
-    const PetscReal lumped = body->mass.type == BODY_MASS_LUMPED ? 1.0 : 0.5;
-
-    for (PetscInt i = 0; i < n; i++) {
-      PetscScalar sum = 0;
-
-      for (PetscInt j = 0; j < n; j++) {
-        sum += M[i * n + j];
-        M[i * n + j] *= 1 - lumped;
-      }
-      M[i * n + i] += lumped * sum;
+  for (PetscInt a = 0; a < n_nodes; a++) {
+    if (body->layer.contains[nodes[a]]) moves = PETSC_TRUE;
+    for (PetscInt b = 0; b < n_nodes; b++) {
+      all += M[a * dim * n + b * dim];
+      if (!body->layer.contains[nodes[a]] && !body->layer.contains[nodes[b]]) inner += M[a * dim * n + b * dim];
     }
   }
-  if (!body->mass.redistribute) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt a = 0; a < n_nodes; a++) inner += !body->layer.contains[nodes[a]];
-  if (inner == n_nodes) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!inner) {
-    PetscCall(PetscArrayzero(M, n * n)); /* BodyRedistributeOrphans() finds its mass a place */
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt d = 0; d < dim; d++) {
-    PetscScalar moved = 0;
+  if (!moves) return;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscBool kept = (PetscBool)(!body->layer.contains[nodes[i / dim]] && !body->layer.contains[nodes[j / dim]]);
 
-    for (PetscInt a = 0; a < n_nodes; a++)
-      for (PetscInt b = 0; b < n_nodes; b++)
-        if (body->layer.contains[nodes[a]] || body->layer.contains[nodes[b]]) {
-          moved += M[(a * dim + d) * n + b * dim + d];
-          M[(a * dim + d) * n + b * dim + d] = 0;
-        }
-    for (PetscInt a = 0; a < n_nodes; a++)
-      if (!body->layer.contains[nodes[a]]) M[(a * dim + d) * n + a * dim + d] += moved / inner;
+      M[i * n + j] = kept ? M[i * n + j] * all / inner : 0;
+    }
+}
+
+/* Row sums on the diagonal */
+static void Lump(PetscInt n, PetscScalar M[])
+{
+  for (PetscInt i = 0; i < n; i++) {
+    PetscScalar sum = 0;
+
+    for (PetscInt j = 0; j < n; j++) {
+      sum += M[i * n + j];
+      M[i * n + j] = 0;
+    }
+    M[i * n + i] = sum;
   }
+}
+
+/* The two parts that the mass matrix of one element is the sum of, row by row, before any factor: lumped and consistent, or zero where the
+   type has none; with all mass where it is, or with that of contact nodes moved inside, each part by itself */
+PetscErrorCode BodyGetElementMassParts(Body body, PetscInt e, PetscBool move, PetscScalar lumped[], PetscScalar consistent[])
+{
+  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
+  const PetscInt  n     = body->model.element->nodes * body->mesh.dim;
+  const PetscReal share = body->mass.type == BODY_MASS_LUMPED ? 1 : body->mass.type == BODY_MASS_CONSISTENT ? 0 : 0.5;
+
+  PetscFunctionBegin;
+  PetscCall((*body->model.element->ops->mass)(body->model.element, e, consistent));
+  PetscCall(PetscArraycpy(lumped, consistent, n * n));
+  Lump(n, lumped);
+  if (move) MoveInside(body, nodes, lumped);
+  if (move) MoveInside(body, nodes, consistent);
+  for (PetscInt i = 0; i < n * n; i++) {
+    lumped[i] *= share;
+    consistent[i] *= 1 - share;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The factor on the consistent part of an element: the mean over its inner nodes */
+static PetscReal MeanFactor(Body body, const PetscInt nodes[])
+{
+  PetscReal sum   = 0;
+  PetscInt  inner = 0;
+
+  for (PetscInt a = 0; a < body->model.element->nodes; a++) {
+    if (body->layer.contains[nodes[a]]) continue;
+    sum += body->mass.factor[nodes[a]];
+    inner++;
+  }
+  return inner ? sum / inner : 0;
+}
+
+/* The mass matrix of one element as the body uses it, row by row. What elements without inner nodes have given to their neighbours is not
+   in it. */
+PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
+{
+  const PetscInt  dim = body->mesh.dim, n = body->model.element->nodes * dim;
+  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
+  PetscScalar     consistent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscReal       mean = 1;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetElementMassParts(body, e, body->mass.redistribute, M, consistent));
+  if (body->mass.factor) {
+    mean = MeanFactor(body, nodes);
+    for (PetscInt i = 0; i < n; i++) M[i * n + i] *= body->mass.factor[nodes[i / dim]];
+  }
+  for (PetscInt i = 0; i < n * n; i++) M[i] += mean * consistent[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,37 +123,17 @@ static PetscErrorCode AssembleMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mass times position, summed over this rank's elements as the shape functions have it, and over its nodes as the body has it */
-static PetscErrorCode ComputeMassShift(Body body)
+/* The mass of elements without inner nodes, where it has gone */
+static PetscErrorCode AddOrphans(Body body)
 {
-  const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim;
-  PetscScalar        M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-  PetscReal          sums[3] = {0};
-  const PetscScalar *mass;
+  PetscScalar *mass;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < body->model.element->count; e++) {
-    const PetscInt *nodes = body->mesh.connectivity + e * n;
-    PetscBool       moved = PETSC_FALSE;
-
-    for (PetscInt a = 0; a < n; a++) moved = (PetscBool)(moved || body->layer.contains[nodes[a]]);
-    if (!moved) continue;
-    PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
-    for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < n; b++)
-        for (PetscInt d = 0; d < dim; d++) sums[d] -= M[(a * dim) * n * dim + b * dim] * body->mesh.coordinates[nodes[a] * dim + d];
-    PetscCall(BodyGetElementMass(body, e, M));
-    for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < n; b++)
-        for (PetscInt d = 0; d < dim; d++) sums[d] += M[(a * dim) * n * dim + b * dim] * body->mesh.coordinates[nodes[a] * dim + d];
-  }
-  if (body->mass.orphans) {
-    PetscCall(VecGetArrayRead(body->mass.orphans, &mass));
-    for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) sums[i % dim] += mass[i] * body->mesh.coordinates[i];
-    PetscCall(VecRestoreArrayRead(body->mass.orphans, &mass));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  for (PetscInt d = 0; d < dim; d++) body->mass.shift[d] = sums[d] / body->mass.total;
+  PetscCall(VecGetArray(body->mass.orphans, &mass));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) mass[i] *= body->mass.factor[i / body->mesh.dim];
+  PetscCall(VecRestoreArray(body->mass.orphans, &mass));
+  if (body->mass.diagonal) PetscCall(VecAXPY(body->mass.diagonal, 1, body->mass.orphans));
+  else PetscCall(MatDiagonalSet(body->mass.matrix, body->mass.orphans, ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -135,8 +165,12 @@ PetscErrorCode BodySetUpMass(Body body)
 
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
+  if (body->mass.redistribute) {
+    PetscCall(BodyFindOrphans(body));
+    PetscCall(BodyFindMassFactor(body));
+  }
   PetscCall(AssembleMass(body));
-  if (body->mass.redistribute) PetscCall(BodyRedistributeOrphans(body));
+  if (body->mass.orphans) PetscCall(AddOrphans(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));
@@ -144,7 +178,7 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscCall(VecDestroy(&ones));
   PetscCall(VecSum(body->mass.row_sum, &sum));
   body->mass.total = sum / body->mesh.dim;
-  if (body->mass.redistribute) PetscCall(ComputeMassShift(body));
+  PetscCall(BodySetUpInertia(body));
   if (body->mass.diagonal) {
     PetscScalar       *inverse;
     const PetscScalar *mass;

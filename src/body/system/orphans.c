@@ -180,8 +180,8 @@ static PetscErrorCode CopyToComponents(Body body, Vec mass)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the mass of elements without inner nodes to the mass matrix */
-PetscErrorCode BodyRedistributeOrphans(Body body)
+/* Finds the mass of elements without inner nodes a place, if there is any */
+PetscErrorCode BodyFindOrphans(Body body)
 {
   Orphans   orphans;
   Vec       work;
@@ -210,7 +210,5 @@ PetscErrorCode BodyRedistributeOrphans(Body body)
              "mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false",
              body->hdr.name, (double)left, ((PetscObject)body)->prefix);
   PetscCall(CopyToComponents(body, orphans.mass));
-  if (body->mass.diagonal) PetscCall(VecAXPY(body->mass.diagonal, 1, orphans.mass));
-  else PetscCall(MatDiagonalSet(body->mass.matrix, orphans.mass, ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

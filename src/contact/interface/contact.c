@@ -206,6 +206,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscTryTypeMethod(contact, accept);
   PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
+  PetscCall(ContactCheckNear(contact));
   if (contact->options.stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactBookWork(contact));

@@ -9,6 +9,60 @@
 /* -contact_tolerance by default, in parts of the largest coordinate of any mesh, whose round-off is 10^4 times smaller: what a converged
    outer iteration leaves of the gap must not count as penetration in the next free trial */
 #define PENETRATION_TOLERANCE 3e-12
+/* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
+#define FORCE_ROUND_OFF 1e-9
+
+/* A surface of a pair, and that of its partner, with the faces alone that face the partner at the start; the partner's is NULL for an
+ * obstacle */
+static PetscErrorCode CreateFacing(Contact contact, const ContactPair *pair, Surface surfaces[2])
+{
+  PetscFunctionBegin;
+  surfaces[0] = surfaces[1] = NULL;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    DM dm;
+
+    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
+    PetscCall(SurfaceCreate(dm, pair->surface[side], &surfaces[side]));
+  }
+  PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], pair->obstacle, PETSC_TRUE, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells a body whose far nodes keep their mass which of the nodes of a pair may touch: those that face the partner at the start */
+static PetscErrorCode MarkNearNodes(Contact contact, const ContactPair *pair, PetscInt side)
+{
+  const PetscInt *vertices;
+  PetscInt        n;
+  Surface         surfaces[2];
+
+  PetscFunctionBegin;
+  PetscCall(CreateFacing(contact, pair, surfaces));
+  PetscCall(SurfaceGetVertices(surfaces[side], &n, &vertices));
+  PetscCall(BodySetContactNodes(contact->bodies[pair->body[side]], n, vertices));
+  for (PetscInt s = 0; s < 2; s++) PetscCall(SurfaceDestroy(&surfaces[s]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends with an error if contact forces act on nodes that keep their mass since they faced nothing at the start: the methods count on
+   massless nodes, and such nodes would chatter without a word */
+PetscErrorCode ContactCheckNear(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool near;
+    PetscReal on_mass, largest;
+
+    PetscCall(BodyGetMassRedistributeNear(contact->bodies[b], &near));
+    if (!near) continue;
+    PetscCall(BodyGetForceOnMass(contact->bodies[b], contact->end.force, &on_mass, &largest));
+    PetscCheck(on_mass <= FORCE_ROUND_OFF * largest, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "Contact has come to nodes of body '%s' that faced nothing at the start, where -%s_mass_redistribute near leaves mass (%g "
+               "N); set it "
+               "to true",
+               ((PetscObject)contact->bodies[b])->name, ((PetscObject)contact->bodies[b])->name, (double)on_mass);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* Tells both bodies of a pair which of their nodes may touch: all nodes of both surfaces, since any of them may come to lie opposite to the
    partner as bodies slide */
@@ -19,10 +73,13 @@ static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
     const SurfaceData *data;
     const PetscInt    *vertices;
     PetscInt           n, rstart, body = pair->body[side];
+    PetscBool          near;
     Vec                positions;
 
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
-    PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
+    PetscCall(BodyGetMassRedistributeNear(contact->bodies[body], &near));
+    if (near) PetscCall(MarkNearNodes(contact, pair, side));
+    else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
     if (contact->nodes.n_all[body]) continue;
     /* the contact position and velocity of a body in the history are those of its first pair */
     PetscCall(SurfaceGetData(pair->surfaces[side], &data));
@@ -230,18 +287,12 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
    not lie opposite at the start. */
 static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 {
-  Surface surfaces[2] = {NULL, NULL};
-  int     any[2]      = {0, 1};
+  Surface surfaces[2];
+  int     any[2] = {0, 1};
 
   PetscFunctionBegin;
   if (pair->chosen || !contact->options.facing) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    DM dm;
-
-    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
-    PetscCall(SurfaceCreate(dm, pair->surface[side], &surfaces[side]));
-  }
-  PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], pair->obstacle, PETSC_TRUE, PETSC_TRUE));
+  PetscCall(CreateFacing(contact, pair, surfaces));
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     const SurfaceData *data;
 

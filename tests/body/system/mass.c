@@ -28,40 +28,99 @@ static void get_column(Body body, PetscInt node, PetscReal column[3])
   ok(VecDestroy(&Me));
 }
 
-/* Two elements of length 1 m with 6 kg each. An element has [2 1; 1 2] consistent, diag(3, 3) lumped, [2.5 0.5; 0.5 2.5]
-   averaged; without mass at x = 2, all 6 kg of the second element are at x = 1. */
+/* A bar of elements of length 1 m with 6 kg each, on whose last node nothing may rest where mass is moved */
+static PetscOptions create_bar(Body *body, PetscInt elements, PetscInt type, PetscInt moved)
+{
+  const PetscReal end     = elements;
+  PetscOptions    options = bar_create(
+      body, "-dm_plex_box_faces %d -dm_plex_box_upper %d -density 3 -cross_section 2 -youngs_modulus 1 -mass_type %s -mass_redistribute %d",
+      (int)elements, (int)elements, types[type], (int)moved);
+  PetscBool redistributed;
+  Rows      rows;
+
+  set_rows(*body, 1, &end, &rows);
+  ok(BodySetControllerStep(*body, 0, 0.1));
+  ok(BodySetUp(*body));
+  ok(BodyIsRedistributed(*body, &redistributed));
+  assert_int_equal(redistributed, moved);
+  return options;
+}
+
+/* An element has [2 1; 1 2] consistent, diag(3, 3) lumped, [2.5 0.5; 0.5 2.5] averaged */
 static void is_that_found_by_hand(void **state)
 {
-  const PetscReal expected[2][3][3][3] = {
-      {{{3, 0, 0}, {0, 6, 0}, {0, 0, 3}}, {{2, 1, 0}, {1, 4, 1}, {0, 1, 2}}, {{2.5, 0.5, 0}, {0.5, 5, 0.5}, {0, 0.5, 2.5}}},
-      {{{3, 0, 0}, {0, 9, 0}, {0, 0, 0}}, {{2, 1, 0}, {1, 8, 0}, {0, 0, 0}}, {{2.5, 0.5, 0}, {0.5, 8.5, 0}, {0, 0, 0}}},
-  };
-  const PetscReal end = 2;
+  const PetscReal expected[3][3][3] = {
+      {{3, 0, 0}, {0, 6, 0}, {0, 0, 3}}, {{2, 1, 0}, {1, 4, 1}, {0, 1, 2}}, {{2.5, 0.5, 0}, {0.5, 5, 0.5}, {0, 0.5, 2.5}}};
 
   (void)state;
   skip_beyond_ranks(2);
-  for (PetscInt moved = 0; moved < 2; moved++)
-    for (PetscInt type = 0; type < 3; type++) {
-      Body         body;
-      PetscOptions options = bar_create(
-          &body,
-          "-dm_plex_box_faces 2 -dm_plex_box_upper 2 -density 3 -cross_section 2 -youngs_modulus 1 -mass_type %s -mass_redistribute %d",
-          types[type], (int)moved);
-      PetscReal column[3];
-      PetscBool redistributed;
-      Rows      rows;
+  for (PetscInt type = 0; type < 3; type++) {
+    Body         body;
+    PetscOptions options = create_bar(&body, 2, type, 0);
+    PetscReal    column[3];
 
-      set_rows(body, 1, &end, &rows);
-      ok(BodySetControllerStep(body, 0, 0.1));
-      ok(BodySetUp(body));
-      ok(BodyIsRedistributed(body, &redistributed));
-      assert_int_equal(redistributed, moved);
-      for (PetscInt j = 0; j < 3; j++) {
-        get_column(body, j, column);
-        for (PetscInt i = 0; i < 3; i++) near(column[i], expected[moved][type][i][j], 1e-14); /* round-off of 9 kg */
-      }
-      bar_destroy(&body, options);
+    for (PetscInt j = 0; j < 3; j++) {
+      get_column(body, j, column);
+      for (PetscInt i = 0; i < 3; i++) near(column[i], expected[type][i][j], 1e-14); /* round-off of 6 kg */
     }
+    bar_destroy(&body, options);
+  }
+}
+
+/* Three elements, without mass at x = 3: all 6 kg of the last one are at x = 2, and then a factor f = a + b x brings the centre of the 18
+   kg back to x = 1.5. Lumped mass has the factor of its node: 3 f0 + 6 f1 + 9 f2 = 18 and 6 f1 + 18 f2 = 27 = 18 * 1.5. Consistent mass of
+   an element has the mean factor of its inner nodes: the same total, and 3 (f0 + f1) / 2 + 9 (f1 + f2) / 2 + 12 f2 = 27. Averaged mass is
+   the mean of both. */
+static void keeps_its_centre_without_mass_at_an_end(void **state)
+{
+  const PetscReal slope[3] = {0.3, 3. / 7, 6. / 17}; /* and a = 1 - 4 b / 3 */
+
+  (void)state;
+  skip_beyond_ranks(3);
+  for (PetscInt type = 0; type < 3; type++) {
+    Body            body;
+    PetscOptions    options     = create_bar(&body, 3, type, 1);
+    const PetscReal f[3]        = {1 - 4 * slope[type] / 3, 1 - slope[type] / 3, 1 + 2 * slope[type] / 3};
+    const PetscReal mean[2]     = {(f[0] + f[1]) / 2, (f[1] + f[2]) / 2};
+    const PetscReal parts[2][9] = {
+        {3 * f[0], 0, 0, 0, 6 * f[1], 0, 0, 0, 9 * f[2]},
+        {2 * mean[0], mean[0], 0, mean[0], 2 * mean[0] + 2 * mean[1], mean[1], 0, mean[1], 2 * mean[1] + 6 * f[2]}};
+    const PetscReal share = type == 0 ? 1 : type == 1 ? 0 : 0.5;
+    PetscReal       column[3], least, largest, shift;
+
+    for (PetscInt j = 0; j < 3; j++) {
+      get_column(body, j, column);
+      for (PetscInt i = 0; i < 3; i++) near(column[i], share * parts[0][3 * i + j] + (1 - share) * parts[1][3 * i + j], 1e-12);
+    }
+    get_column(body, 3, column);
+    for (PetscInt i = 0; i < 3; i++) near(column[i], 0, 0);
+    ok(BodyGetMassRedistribution(body, &least, &largest, &shift, NULL));
+    near(least, f[0], 1e-12);
+    near(largest, f[2], 1e-12);
+    near(shift, 0, 0);
+    bar_destroy(&body, options);
+  }
+}
+
+/* Two elements: the 12 kg would have to be at x = 1 for their centre to stay. The factor at x = 0 is the least there is, 0.3; with lumped
+   mass 0.9 kg are left there, and the centre is at 11.1 / 12. */
+static void tells_where_its_centre_cannot_be_kept(void **state)
+{
+  Body         body;
+  PetscOptions options;
+  PetscReal    column[3], least, shift;
+
+  (void)state;
+  skip_beyond_ranks(2);
+  options = create_bar(&body, 2, 0, 1);
+  ok(BodyGetMassRedistribution(body, &least, NULL, &shift, NULL));
+  near(least, 0.3, 0);
+  near(shift, -0.9 / 12, 1e-13);
+  get_column(body, 0, column);
+  near(column[0], 0.9, 1e-13);
+  get_column(body, 1, column);
+  near(column[1], 11.1, 1e-12);
+  bar_destroy(&body, options);
 }
 
 /* rho A L = 3 * 0.5 * 1.4 = 2.1 kg, with one or both ends massless or none; momentum and kinetic energy at 1 m/s */
@@ -185,6 +244,8 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(is_that_found_by_hand),
+      cmocka_unit_test(keeps_its_centre_without_mass_at_an_end),
+      cmocka_unit_test(tells_where_its_centre_cannot_be_kept),
       cmocka_unit_test(adds_up_to_that_of_the_body),
       cmocka_unit_test(is_refused_without_a_place_to_go),
       cmocka_unit_test(gives_vibrations_their_order_in_space),

@@ -163,7 +163,9 @@ static PetscReal energy_of(Body body)
 }
 
 /* Central differences keep the energy of a linear body, with staggered kinetic energy, to round-off of 300 steps; that of a nonlinear one
-   swings by (omega dt)^2 with what is excited, and by less with smaller steps, but does not drift. Momentum is kept where nothing pulls. */
+   swings by (omega dt)^2 with what is excited, and by less with smaller steps, but does not drift. With two substeps to a controller step
+   of 0.05 s its swing is below 5e-4; nodes that carry 0.3 of their mass, as three layers of triangles have, set the largest omega. Momentum
+   is kept where nothing pulls. */
 static void keeps_the_energy(void **state)
 {
   (void)state;
@@ -172,7 +174,7 @@ static void keeps_the_energy(void **state)
       PetscReal    first, least, most, halves[2] = {0};
       BodyMeasures before, after;
       Body         body;
-      PetscOptions options = create(&body, kind, material, "");
+      PetscOptions options = create(&body, kind, material, material ? "-ts_time_step 0.025" : "");
 
       ok(BodySetUp(body));
       ok(BodySetInitialState(body, Scattered, NULL));

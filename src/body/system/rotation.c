@@ -1,0 +1,85 @@
+/*
+   How far a linear body has turned since its undeformed state. Its strains are those of small rotations: a body that turns by an angle a
+   loses angular momentum and energy by terms of a^2.
+
+   The angle is I^-1 sum m (X - C) x u with the inertia tensor I about the centre of mass C: u = R X - X of a rotation R by a small angle,
+   in the least squares. Vibrations of a free body, which are orthogonal to its rigid motions, do not count.
+*/
+#include <body/layout/bodyimpl.h>
+
+/* An inertia tensor is singular, and the body a line, if its determinant is below this part of the cube of its trace */
+#define SINGULAR 1e-12
+
+/* a x b */
+static void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
+{
+  for (PetscInt d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
+/* Centre of mass and inverse inertia tensor; plane bodies turn about the third axis alone */
+PetscErrorCode BodySetUpInertia(Body body)
+{
+  const PetscInt     dim     = body->mesh.dim;
+  PetscReal          sums[9] = {0}, inertia[9], trace, determinant = 0;
+  const PetscScalar *mass;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) sums[i % dim] += mass[i] * body->mesh.coordinates[i];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  for (PetscInt d = 0; d < 3; d++) body->mass.centre[d] = sums[d] / body->mass.total;
+  PetscCall(PetscArrayzero(sums, 9));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i += dim) {
+    PetscReal r[3] = {0};
+
+    for (PetscInt d = 0; d < dim; d++) r[d] = body->mesh.coordinates[i + d] - body->mass.centre[d];
+    for (PetscInt k = 0; k < 9; k++) sums[k] += mass[i] * r[k / 3] * r[k % 3];
+  }
+  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 9, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(PetscArrayzero(body->mass.inverse_inertia, 9));
+  trace = sums[0] + sums[4] + sums[8];
+  for (PetscInt k = 0; k < 9; k++) inertia[k] = (k % 4 ? 0 : trace) - sums[k];
+  if (dim == 2 && trace > 0) body->mass.inverse_inertia[8] = 1 / trace;
+  if (dim < 3) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt row = 0; row < 3; row++) Cross(inertia + 3 * ((row + 1) % 3), inertia + 3 * ((row + 2) % 3), sums + 3 * row);
+  for (PetscInt k = 0; k < 3; k++) determinant += inertia[k] * sums[k];
+  if (determinant <= SINGULAR * trace * trace * trace) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 9; k++) body->mass.inverse_inertia[k] = sums[k] / determinant; /* cofactors of a symmetric matrix */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sum m (X - C) x u over this rank's nodes of a linear body, else zero */
+PetscErrorCode BodySumRotation(Body body, PetscReal sum[3])
+{
+  const PetscInt     dim = body->mesh.dim;
+  const PetscScalar *mass, *u;
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 3; d++) sum[d] = 0;
+  if (!body->model.linear || dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
+  PetscCall(VecGetArrayRead(body->state.u, &u));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i += dim) {
+    PetscReal r[3] = {0}, moved[3] = {0}, product[3];
+
+    for (PetscInt d = 0; d < dim; d++) {
+      r[d]     = mass[i] * (body->mesh.coordinates[i + d] - body->mass.centre[d]);
+      moved[d] = u[i + d];
+    }
+    Cross(r, moved, product);
+    for (PetscInt d = 0; d < 3; d++) sum[d] += product[d];
+  }
+  PetscCall(VecRestoreArrayRead(body->state.u, &u));
+  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The mean rotation from that sum over all ranks [rad] */
+void BodyFinishRotation(Body body, const PetscReal sum[3], PetscReal rotation[3])
+{
+  for (PetscInt d = 0; d < 3; d++) {
+    rotation[d] = 0;
+    for (PetscInt k = 0; k < 3; k++) rotation[d] += body->mass.inverse_inertia[3 * d + k] * sum[k];
+  }
+}

@@ -1,0 +1,51 @@
+"""Bodies whose linear material turns far: a warning, once for each body, and the angle in the summary."""
+
+import pytest
+
+# Boxes of 1 x 0.5 (x 0.5) m off the origin, which spin about their centres by 2 rad/s about an axis
+COMMON = "-bodies b -b_density 1000 -b_youngs_modulus 1e7 -b_poissons_ratio 0.3 -time_step 1e-3"
+PLANE = "-b_dm_plex_dim 2 -b_dm_plex_simplex 0 -b_dm_plex_box_faces 4,2 -b_dm_plex_box_lower 3,4 -b_dm_plex_box_upper 4,4.5 -b_initial_velocity 5-2*(y-4.25),2*(x-3.5)"
+SPACE = (
+    "-b_dm_plex_dim 3 -b_dm_plex_simplex 1 -b_dm_plex_box_faces 4,2,2 -b_dm_plex_box_lower 3,4,5 -b_dm_plex_box_upper 4,4.5,5.5 "
+    "-b_initial_velocity 5+1.2*(z-5.25),-1.6*(z-5.25),1.6*(y-4.25)-1.2*(x-3.5)"  # about (1.6, 1.2, 0) rad/s
+)
+
+
+def warnings(run):
+    return [line for line in run.stderr.splitlines() if "warning" in line]
+
+
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
+@pytest.mark.parametrize("body", [PLANE, SPACE], ids=["plane", "space"])
+def test_far(impakt, body, ranks):
+    """After 0.04 s a linear body has turned by 0.08 rad. The linear body stretches as it turns, and follows a rotation by a growing error: measured
+    0.08 to 5e-3 of it."""
+    run = impakt(f"{COMMON} {body} -time_end 0.04", ranks)
+    (line,) = warnings(run)
+    assert "'b'" in line
+    assert "0.025 s" in line or "0.026 s" in line
+    assert "saint_venant_kirchhoff" in line
+    assert run.summary["bodies"]["b"]["rotation_max"] == pytest.approx(0.08, rel=0.02)
+
+
+def test_not_far(impakt):
+    run = impakt(f"{COMMON} {PLANE} -time_end 0.02")
+    assert not warnings(run)
+    assert run.summary["bodies"]["b"]["rotation_max"] == pytest.approx(0.04, rel=0.01)
+
+
+def test_nonlinear(impakt):
+    """A nonlinear material may turn as far as it likes."""
+    run = impakt(f"{COMMON} {PLANE} -b_material_type neo_hookean -time_end 0.04")
+    assert not warnings(run)
+    assert run.summary["bodies"]["b"]["rotation_max"] == 0
+
+
+def test_vibration(impakt):
+    """A body that bends to and fro, free of rotation, has turned by nothing, though its ends have."""
+    run = impakt(
+        f"{COMMON} -b_dm_plex_dim 2 -b_dm_plex_simplex 0 -b_dm_plex_box_faces 40,4 -b_dm_plex_box_lower -1,0 -b_dm_plex_box_upper 1,0.1 "
+        "-b_initial_velocity 0,3*(x^2-1/3) -time_end 0.04"
+    )
+    assert not warnings(run)
+    assert run.summary["bodies"]["b"]["rotation_max"] <= 1e-10
