@@ -152,6 +152,9 @@ typedef struct {
 typedef struct {
   PetscReal     *speeds;     /* per body */
   PetscReal     *last_gap;   /* per row */
+  PetscReal     *last_force; /* per row */
+  PetscReal     *handover;   /* two numbers per row */
+  PetscInt      *intervals;  /* per row */
   BodyCondition *conditions; /* per row */
   PetscBool     *stabilized; /* per row */
 } ContactWork;

@@ -251,6 +251,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->rows.matrix));
   PetscCall(MatDestroy(&b->rows.free_matrix));
   PetscCall(BodyGramDestroy(&b->rows.gram));
+  PetscCall(BodyHandoverDestroy(&b->rows.handover));
   PetscCall(TSDestroy(&b->time.ts));
   PetscCall(BodyLayerElementsDestroy(&b->layer.elements));
   PetscCall(ElementDestroy(&b->model.element));

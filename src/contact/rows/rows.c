@@ -73,6 +73,7 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->ranks.offsets));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
+  PetscCall(PetscCalloc3(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
@@ -358,6 +359,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->ranks.offsets));
   PetscCall(PetscFree6(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
                        contact->held.merged_gap));
+  PetscCall(PetscFree3(contact->work.last_force, contact->work.handover, contact->work.intervals));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

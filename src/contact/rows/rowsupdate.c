@@ -186,6 +186,57 @@ static void DropShifts(Contact contact)
   }
 }
 
+/* Intervals of the controller step between which the force of a pair is linear: at their ends its Dirichlet side tells its reaction, or the
+   force is an unknown at the times that both sides have. Methods that do not prescribe displacements know the force at the end alone. */
+static PetscErrorCode CountIntervals(Contact contact, const ContactPair *pair, PetscInt *intervals)
+{
+  PetscInt substeps[2];
+
+  PetscFunctionBegin;
+  *intervals = 1;
+  if (!contact->prescribes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetSubsteps(contact->bodies[pair->body[pair->dirichlet]], &substeps[0]));
+  *intervals = substeps[0];
+  if (!pair->by_force) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1 - pair->dirichlet]], &substeps[1]));
+  while (substeps[1]) {
+    const PetscInt rest = *intervals % substeps[1];
+
+    *intervals  = substeps[1];
+    substeps[1] = rest;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells the bodies what force they begin the step with, along the rows as they were. `before` are the forces at its start, of which those
+   of rows that have been let go are gone. */
+static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
+{
+  PetscReal *old = contact->work.handover, *now = contact->work.handover + contact->rows.n;
+  PetscInt  *intervals = contact->work.intervals, fewest = PETSC_INT_MAX;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscInt           n;
+
+    PetscCall(CountIntervals(contact, pair, &n));
+    fewest = PetscMin(fewest, n);
+    for (PetscInt i = pair->begin; i < pair->end; i++) intervals[i] = n;
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+      const PetscInt     sign = (pair->body[1] == b) - (pair->body[0] == b);
+
+      old[i] = sign * before[i];
+      now[i] = sign * contact->start.force[i];
+    }
+    PetscCall(BodyHandOver(contact->bodies[b], old, now, intervals, fewest));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough. Rows in contact
    that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
@@ -220,11 +271,13 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactDropShared(contact));
+  PetscCall(PetscArraycpy(contact->work.last_force, contact->start.force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (contact->rows.opposite[i]) continue;
     contact->start.active[i] = PETSC_FALSE;
     contact->start.force[i]  = 0;
   }
+  PetscCall(HandOver(contact, contact->work.last_force));
   PetscCall(ShiftGaps(contact, contact->work.last_gap));
   PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);
