@@ -47,8 +47,12 @@ typedef struct {
 typedef struct {
   PetscInt    row, dof, owner_index;
   PetscMPIInt owner_rank;
-  PetscReal   value;
+  PetscReal   value; /* its weight */
+  PetscReal   goal;  /* what the weight is to become as a row that follows the surfaces slips on; of other rows the weight itself */
 } Share;
+
+/* Partners of a row that follows the surfaces, at most: on a surface with this many faces to one of the other side it hardly slips by a bound */
+#define FOLLOW_MAX 256
 
 /* What lies opposite to a Dirichlet node: nothing; nothing, but the partner ends on a face beside the node; a face of the partner */
 enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
@@ -57,6 +61,7 @@ enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
 typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
+  PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
   PetscInt   n_columns;            /* number of distinct Neumann nodes that the shares name */
@@ -80,7 +85,10 @@ struct _p_Transfer {
   PetscReal     *built_slip;    /* per row: the part of sum_j P_ij x_j - x_i across the normal at the last build, 3 numbers each [m] */
   PetscReal     *slip;     /* per row: how far the partner had slipped since the row was built, as of the last update [parts of the face] */
   PetscBool     *keep;     /* per row: in the next build it stays as it is, being near contact and within the bounds */
-  PetscReal     *column_x; /* work space: present positions of the columns */
+  PetscBool     *followed; /* per row: it has followed the surfaces since the last update, see TransferFollow() */
+  PetscBool     *goes_on;  /* per row: in the next build its weights go on from where they are */
+  PetscReal     *follow_x; /* work space: positions of the owned Dirichlet nodes */
+  PetscReal     *column_x, *column_next, *column_reference; /* positions of the columns: present, expected, in the mesh */
   TransferCounts counts;
 };
 
@@ -130,6 +138,7 @@ PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, Pe
 
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
+PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);

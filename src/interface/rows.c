@@ -21,6 +21,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
   PetscCall(PetscMemzero(set, sizeof(*set)));
   PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
                          &set->offsets));
+  PetscCall(PetscCalloc1(n, &set->rest));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,6 +30,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
+  PetscCall(PetscFree(set->rest));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -61,10 +63,14 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
     while (share < n_shares && shares[share].row == row) {
       Share sum = shares[share];
 
-      sum.value = 0;
-      while (share < n_shares && shares[share].row == row && shares[share].dof == sum.dof) sum.value += shares[share++].value;
+      sum.value = sum.goal = 0;
+      for (; share < n_shares && shares[share].row == row && shares[share].dof == sum.dof; share++) {
+        sum.value += shares[share].value;
+        sum.goal += shares[share].goal;
+      }
       sum.value /= lumped[row];
-      if (covered && PetscAbsReal(sum.value) > PRUNE) set->shares[count++] = sum;
+      sum.goal /= lumped[row];
+      if (covered && (PetscAbsReal(sum.value) > PRUNE || PetscAbsReal(sum.goal) > PRUNE)) set->shares[count++] = sum;
     }
     set->opposite[row] = (PetscBool)(count > set->offsets[row]);
   }
@@ -152,6 +158,32 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
   }
 }
 
+/* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known. */
+static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal *gap,
+                           PetscReal *present, RowSet *set)
+{
+  const SurfaceData *data  = &transfer->dirichlet->data;
+  const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
+  const PetscReal   *normal = transfer->rows.normals + dim * row;
+
+  PetscFunctionBegin;
+  *gap = 0;
+  for (PetscInt d = 0; d < dim; d++) {
+    PetscReal now = 0, there = 0;
+
+    set->normals[dim * row + d] = normal[d];
+    for (PetscInt j = 0; j < n; j++) {
+      now += set->shares[first + j].value * x[3 * set->columns[first + j] + d];
+      there += set->shares[first + j].value * reference[3 * set->columns[first + j] + d];
+    }
+    *gap += normal[d] * (there - data->reference[3 * row + d] - (now - data->positions[3 * row + d]));
+  }
+  if (set->beyond[row]) *present = end;
+  *gap += *present;
+  set->rest[row] = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
    touches when the end of the partner does, not before or after. */
@@ -169,7 +201,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(n, &weights, n, &partners));
   for (PetscInt j = 0; j < n; j++) {
-    weights[j]  = set->shares[first + j].value;
+    weights[j]  = set->shares[first + j].goal;
     partners[j] = x + 3 * set->columns[first + j];
   }
   for (PetscInt pass = 0; pass < 2; pass++)
@@ -185,9 +217,13 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += normal[d] * (there - data->reference[3 * row + d]);
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
-  for (PetscInt j = 0; j < n; j++) set->shares[first + j].value = weights[j];
+  for (PetscInt j = 0; j < n; j++) {
+    set->shares[first + j].goal = weights[j];
+    if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
+  }
   PetscCall(PetscFree2(weights, partners));
-  if (set->beyond[row]) {
+  if (transfer->goes_on[row]) PetscCall(GoOn(transfer, row, x, reference, end, &gap, &present, set));
+  else if (set->beyond[row]) {
     gap += end - present;
     present = end;
   }
@@ -196,7 +232,8 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the shares of rows that are to stay as they are in place of their new ones */
+/* Puts the shares of rows that are to stay as they are in place of their new ones. Those of rows that go on from where they are come to
+   their new ones, which are their goals. */
 static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt *n_shares, Share *shares[])
 {
   const RowSet *old  = &transfer->rows;
@@ -205,17 +242,23 @@ static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt
 
   PetscFunctionBegin;
   for (PetscInt row = 0; row < transfer->n; row++)
-    if (transfer->keep[row]) kept += old->offsets[row + 1] - old->offsets[row];
+    if (transfer->keep[row] || transfer->goes_on[row]) kept += old->offsets[row + 1] - old->offsets[row];
+  for (PetscInt i = 0; i < *n_shares; i++) {
+    (*shares)[i].goal = (*shares)[i].value;
+    if (transfer->goes_on[(*shares)[i].row]) (*shares)[i].value = 0;
+  }
   if (!kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(*n_shares + kept, &all));
   for (PetscInt i = 0; i < *n_shares; i++)
     if (!transfer->keep[(*shares)[i].row]) all[count++] = (*shares)[i];
   for (PetscInt row = 0; row < transfer->n; row++) {
-    if (!transfer->keep[row]) continue;
-    lumped[row] = old->area[row];
+    if (!transfer->keep[row] && !transfer->goes_on[row]) continue;
+    if (transfer->keep[row]) lumped[row] = old->area[row];
     for (PetscInt i = old->offsets[row]; i < old->offsets[row + 1]; i++) {
       all[count] = old->shares[i];
-      all[count++].value *= lumped[row];
+      all[count].value *= lumped[row];
+      all[count].goal = transfer->keep[row] ? all[count].goal * lumped[row] : 0;
+      count++;
     }
   }
   PetscCall(PetscFree(*shares));
@@ -229,6 +272,7 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
 {
   set->opposite[row] = PETSC_TRUE;
   set->gap[row]      = transfer->rows.gap[row];
+  set->rest[row]     = transfer->rows.rest[row];
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
 }
 
@@ -253,10 +297,11 @@ static PetscBool SameRow(PetscInt dim, PetscReal size, const RowSet *a, const Ro
 }
 
 /* Marks the rows that have changed. Those that have not keep their numbers to the last bit. */
-static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], PetscBool first, const RowSet *old, RowSet *set)
+static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], PetscBool first, const PetscBool goes_on[], const RowSet *old,
+                        RowSet *set)
 {
   for (PetscInt row = 0; row < n; row++) {
-    set->changed[row] = (PetscBool)(first || !SameRow(dim, sizes[row], old, set, row));
+    set->changed[row] = (PetscBool)(first || goes_on[row] || !SameRow(dim, sizes[row], old, set, row));
     if (set->changed[row]) continue;
     set->gap[row]  = old->gap[row];
     set->area[row] = old->area[row];
@@ -306,11 +351,13 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
     else PetscCall(FinishRow(transfer, row, x, reference, ends[row], near, behind, &set));
     set.area[row] = set.opposite[row] ? lumped[row] : 0;
   }
-  CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, &transfer->rows, &set);
+  CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
-  PetscCall(PetscFree(transfer->column_x));
-  PetscCall(PetscMalloc1(3 * set.n_columns, &transfer->column_x));
+  PetscCall(PetscFree3(transfer->column_x, transfer->column_next, transfer->column_reference));
+  PetscCall(PetscMalloc3(3 * set.n_columns, &transfer->column_x, 3 * set.n_columns, &transfer->column_next, 3 * set.n_columns,
+                         &transfer->column_reference));
+  PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
   PetscCall(PetscFree2(x, reference));
   PetscCall(PetscFree3(marks, lumped, ends));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -343,7 +390,7 @@ PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
       if (set.opposite[row]) set.gap[row] -= gradient[d] * (x[d] - reference[d]);
     }
   }
-  CompareRows(dim, transfer->n, data->sizes, (PetscBool)!transfer->built, &transfer->rows, &set);
+  CompareRows(dim, transfer->n, data->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -57,6 +57,7 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
   PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n,
                          &t->slip, t->n, &t->keep));
+  PetscCall(PetscCalloc3(t->n, &t->followed, t->n, &t->goes_on, 3 * t->n, &t->follow_x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,7 +84,8 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
-  PetscCall(PetscFree((*transfer)->column_x));
+  PetscCall(PetscFree3((*transfer)->followed, (*transfer)->goes_on, (*transfer)->follow_x));
+  PetscCall(PetscFree3((*transfer)->column_x, (*transfer)->column_next, (*transfer)->column_reference));
   PetscCall(PetscHeaderDestroy(transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -176,6 +178,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->normals  = set->normals;
   rows->size     = transfer->dirichlet->data.sizes;
   rows->changed  = set->changed;
+  rows->followed = transfer->followed;
   rows->slip     = transfer->slip;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -68,12 +68,12 @@ static void SplitOffset(PetscInt dim, const PetscReal normal[], PetscReal offset
   for (PetscInt d = 0; d < dim; d++) offset[d] -= *gap * normal[d];
 }
 
-/* Brings the present positions of the partner's nodes to the ranks whose rows name them */
-static PetscErrorCode GetColumnPositions(Transfer transfer)
+/* Brings vectors of the partner's nodes to the ranks whose rows name them */
+PetscErrorCode TransferGetColumns(Transfer transfer, const PetscReal vectors[], PetscReal columns[])
 {
   PetscFunctionBegin;
-  PetscCall(PetscSFBcastBegin(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(transfer->rows.vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(transfer->rows.vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,7 +86,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
-  if (transfer->neumann) PetscCall(GetColumnPositions(transfer));
+  if (transfer->neumann) PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscReal *normal = transfer->rows.normals + dim * row, *present = data->normals + 3 * row, size = data->sizes[row];
     PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3];
@@ -145,7 +145,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   }
   PetscCallMPI(MPIU_Allreduce(&size, &transfer->smallest_size, 1, MPIU_REAL, MPIU_MIN, transfer->comm));
   if (transfer->neumann) {
-    PetscCall(GetColumnPositions(transfer));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
     for (PetscInt row = 0; row < transfer->n; row++) {
       PetscReal gap;
 
@@ -229,7 +229,12 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   *rebuilt = (PetscBool)(!transfer->built || near > transfer->built_near);
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
+  if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (!*rebuilt) PetscCall(HasMoved(transfer, rebuilt));
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->followed[row] && !transfer->keep[row]);
+    transfer->followed[row] = PETSC_FALSE;
+  }
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetReach(transfer, near, &reach));
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));

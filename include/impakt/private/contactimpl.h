@@ -101,6 +101,7 @@ typedef struct {
   PetscBool *tied;        /* it stays in contact whatever its force */
   PetscBool *by_force;    /* its force is an unknown of the method, on both sides; NULL: of no row */
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
+  PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
 } ContactRows;
 
@@ -152,6 +153,9 @@ typedef struct {
 typedef struct {
   PetscReal     *speeds;     /* per body */
   PetscReal     *last_gap;   /* per row */
+  Vec           *expected;   /* per body: displacement at the end of the controller step */
+  PetscBool     *is_expected; /* per body: it is known */
+  PetscBool     *moved;      /* per row */
   PetscReal     *last_force; /* per row */
   PetscReal     *handover;   /* two numbers per row */
   PetscInt      *intervals;  /* per row */

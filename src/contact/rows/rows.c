@@ -73,7 +73,9 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->ranks.offsets));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
-  PetscCall(PetscCalloc3(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals));
+  PetscCall(PetscCalloc5(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
+                         &contact->rows.followed, n, &contact->work.moved));
+  PetscCall(PetscCalloc2(contact->n_bodies, &contact->work.expected, contact->n_bodies, &contact->work.is_expected));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
@@ -138,6 +140,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
                                                          : CONTACT_NO_GAP;
       contact->rows.area[i]        = rows.area[node];
       contact->rows.changed[i]     = rows.changed[node];
+      contact->rows.followed[i]    = rows.followed[node];
       if (contact->options.law == CONTACT_LAW_TIED) {
         contact->rows.tied[i] = (PetscBool)(rows.opposite[node] &&
                                             PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * (dim == 1 ? point_size : rows.size[node]));
@@ -359,7 +362,10 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->ranks.offsets));
   PetscCall(PetscFree6(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
                        contact->held.merged_gap));
-  PetscCall(PetscFree3(contact->work.last_force, contact->work.handover, contact->work.intervals));
+  PetscCall(PetscFree5(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,
+                       contact->work.moved));
+  for (PetscInt b = 0; contact->work.expected && b < contact->n_bodies; b++) PetscCall(VecDestroy(&contact->work.expected[b]));
+  PetscCall(PetscFree2(contact->work.expected, contact->work.is_expected));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

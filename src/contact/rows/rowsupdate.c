@@ -237,37 +237,76 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough. Rows in contact
-   that have no partner opposite any more are let go. */
+/* Where a body is expected to be at the end of the controller step: as far as its velocity leads */
+static PetscErrorCode GetExpected(Contact contact, PetscInt b, Vec *expected)
+{
+  Vec u, v;
+
+  PetscFunctionBegin;
+  *expected = contact->work.expected[b];
+  if (contact->work.is_expected[b]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
+  if (!*expected) PetscCall(VecDuplicate(u, &contact->work.expected[b]));
+  *expected = contact->work.expected[b];
+  PetscCall(VecWAXPY(*expected, contact->step, v, u));
+  contact->work.is_expected[b] = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of two bodies with inertia follow their surfaces, so that neither angular momentum nor energy is lost as they slide and turn. Rows of
+   static bodies are built anew at the place where they are, and merged rows are means of several. */
+static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *any)
+{
+  PetscBool is_static = PETSC_FALSE;
+  Vec       expected[2];
+
+  PetscFunctionBegin;
+  *any = PETSC_FALSE;
+  if (pair->obstacle || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt side = 0; side < 2 && !is_static; side++) PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+  if (is_static) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt side = 0; side < 2; side++) PetscCall(GetExpected(contact, pair->body[side], &expected[side]));
+  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, expected[0], expected[1], any));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those near
+   contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
   PetscReal near = 0;
-  PetscBool any  = PETSC_FALSE;
+  PetscBool any = PETSC_FALSE, built = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetReach(contact, &near));
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
+  PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
+  PetscCall(PetscArrayzero(contact->work.is_expected, contact->n_bodies));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     Vec          u[2] = {NULL, NULL};
-    PetscBool    rebuilt;
+    PetscBool    rebuilt, followed;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
       PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
     PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, &rebuilt));
-    if (!rebuilt) continue;
-    any = PETSC_TRUE;
+    PetscCall(FollowPair(contact, pair, near, &followed));
+    if (!rebuilt && !followed) continue;
+    built = (PetscBool)(built || rebuilt);
+    any   = PETSC_TRUE;
     PetscCall(ContactDescribeRows(contact, pair));
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  contact->counts.rebuilds++;
+  if (built) contact->counts.rebuilds++;
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    contact->work.moved[i] = (PetscBool)(contact->rows.changed[i] || contact->rows.followed[i]);
   for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->rows.changed));
+    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.moved));
   PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactDropShared(contact));

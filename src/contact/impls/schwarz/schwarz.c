@@ -148,7 +148,7 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->rows.changed[i]) schwarz->known[i] = PETSC_FALSE;
+    if (contact->rows.changed[i] || contact->rows.followed[i]) schwarz->known[i] = PETSC_FALSE;
   schwarz->stale = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
