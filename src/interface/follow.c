@@ -2,8 +2,10 @@
    Rows that follow the surfaces between two builds.
 
    A force along a row has the same moment on both sides if sum_j P_ij x_j - x_i is along the normal n_i where the force acts: at the end of
-   the controller step. So the normal becomes that of the surface there, and the weights follow the slip, see RowCorrect(), with the
-   positions to which the present velocities lead. What is left of the moment is of second order in the step.
+   the controller step. So the weights follow the slip, see RowCorrect(), ahead by what the partner is expected to slip in the step. What is
+   left of the moment is of second order in the step. The slip that is expected is a mean of those of the last steps, since the massless
+   nodes move with the forces, so that weights which answered to every motion of them would make them swing. The normal is that of the
+   surface at the start of the step.
 
    The gap goes on from where it was. With rows B_0 of the last step and B of this one, and the way dx that is expected, the gap that the
    step begins with is
@@ -12,72 +14,133 @@
 
    so that in the step it changes by 1/2 (B_0 + B) dx, the trapezoidal rule for the path of the gap. Then what forces do along rows that
    change, 1/2 (f_0 B_0 + f B) dx in a closed gap, adds up to nothing but for terms of second order in the step.
+
+   When a row is built again, other nodes of the partner come in, and its weights would jump, which loses energy. Its new weights are the
+   goal, to which those that it has go as it slips on, by the slip after which rows are built.
 */
 #include "interfaceimpl.h"
 
-/* What a row makes of positions of the nodes: n . (sum_j P_j x_j - x) [m] */
-static PetscReal RowOf(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[])
+/* Part of the last step's slip in the mean. With all of it, bars that meet at a fifth of their wave speed chatter. */
+#define LATEST 0.5
+/* Rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit. Bars that meet head on
+   far above the load at which they buckle do so from round-off otherwise. */
+#define STILL 1e-6
+
+/* What a row makes of vectors of the nodes: n . (sum_j P_j x_j - x), and the part across the normal */
+static PetscReal SplitRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[], PetscReal across[])
 {
   const RowSet    *set    = &transfer->rows;
   const PetscReal *normal = set->normals + transfer->dim * row;
-  PetscReal        gap    = 0;
+  PetscReal        along  = 0;
 
   for (PetscInt d = 0; d < transfer->dim; d++) {
-    PetscReal offset = -x[3 * row + d];
-
-    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
-      offset += set->shares[j].value * columns[3 * set->columns[j] + d];
-    gap += normal[d] * offset;
+    across[d] = -x[3 * row + d];
+    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++) across[d] += set->shares[j].value * columns[3 * set->columns[j] + d];
+    along += normal[d] * across[d];
   }
-  return gap;
+  for (PetscInt d = 0; d < transfer->dim; d++) across[d] -= along * normal[d];
+  return along;
 }
 
-/* The part of sum_j P_j x_j - x across the normal [m] */
-static void AcrossOf(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[], PetscReal across[])
+static PetscReal AlongRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[])
 {
-  const RowSet    *set    = &transfer->rows;
-  const PetscReal *normal = set->normals + transfer->dim * row, gap = RowOf(transfer, row, x, columns);
+  PetscReal across[3];
+
+  return SplitRow(transfer, row, x, columns, across);
+}
+
+/* Takes the slip of the last step into the mean. `across`: that slip [m] */
+static void ExpectSlip(Transfer transfer, PetscInt row, const PetscReal across[], PetscReal ratio)
+{
+  PetscReal *slip = transfer->follow.slip + 3 * row;
 
   for (PetscInt d = 0; d < transfer->dim; d++) {
-    across[d] = -x[3 * row + d] - gap * normal[d];
-    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
-      across[d] += set->shares[j].value * columns[3 * set->columns[j] + d];
+    slip[d] *= ratio;
+    slip[d] += (transfer->follow.known[row] ? LATEST : 1) * (ratio * across[d] - slip[d]);
   }
 }
 
-/* New normal and weights of a row, and the gap without displacements that has its gap go on */
-static PetscErrorCode FollowRow(Transfer transfer, PetscInt row)
+/* Weights that have sum_j P_j x_j - x across the normal where it is wanted, from those given. `ahead`: where the partner is expected, from
+   where it is now [m] */
+static PetscErrorCode Correct(Transfer transfer, PetscInt row, const PetscReal ahead[], PetscReal weights[])
 {
-  const SurfaceData *data = &transfer->dirichlet->data;
-  RowSet            *set = &transfer->rows;
+  const SurfaceData *data  = &transfer->dirichlet->data;
+  const RowSet      *set   = &transfer->rows;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   *now = transfer->follow_x, *next = data->positions, *columns[3] = {transfer->column_reference, transfer->column_x, transfer->column_next};
   const PetscReal   *partners[FOLLOW_MAX];
-  PetscReal          weights[FOLLOW_MAX], gap, way, before[3] = {0}, after[3] = {0}, slip[3] = {0}, rest, part;
+  PetscReal          x[3] = {0}, normal[3] = {0};
 
   PetscFunctionBegin;
-  gap = set->gap[row] + RowOf(transfer, row, now, columns[1]) - RowOf(transfer, row, data->reference, columns[0]);
-  way = RowOf(transfer, row, next, columns[2]) - RowOf(transfer, row, now, columns[1]);
-  AcrossOf(transfer, row, now, columns[1], before);
-  AcrossOf(transfer, row, next, columns[2], slip);
-  rest           = PetscMax(set->rest[row] - PetscSqrtReal(Dot(slip, slip)) / (transfer->slip_bound * data->sizes[row]), 0);
-  part           = set->rest[row] > 0 ? 1 - rest / set->rest[row] : 0;
-  set->rest[row] = rest;
-  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = data->normals[3 * row + d];
-  for (PetscInt j = 0; j < n; j++) partners[j] = columns[2] + 3 * set->columns[first + j];
-  if (part > 0) {
-    for (PetscInt j = 0; j < n; j++) weights[j] = set->shares[first + j].goal;
-    RowCorrect(dim, n, next + 3 * row, data->normals + 3 * row, partners, data->sizes[row], weights);
-    for (PetscInt j = 0; j < n; j++) set->shares[first + j].goal = weights[j];
+  for (PetscInt j = 0; j < n; j++) partners[j] = transfer->column_x + 3 * set->columns[first + j];
+  for (PetscInt d = 0; d < dim; d++) {
+    x[d]      = data->positions[3 * row + d] - ahead[d];
+    normal[d] = set->normals[dim * row + d];
   }
-  for (PetscInt j = 0; j < n; j++) weights[j] = set->shares[first + j].value + part * (set->shares[first + j].goal - set->shares[first + j].value);
-  for (PetscInt pass = 0; pass < 2; pass++)
-    RowCorrect(dim, n, next + 3 * row, data->normals + 3 * row, partners, data->sizes[row], weights); /* twice for round-off */
+  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, x, normal, partners, data->sizes[row], weights); /* twice for round-off */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The weights go to their goals by the part of the way that the slip of this step is of the bound */
+static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal ahead[])
+{
+  RowSet         *set   = &transfer->rows;
+  const PetscInt  first = set->offsets[row], n = set->offsets[row + 1] - first;
+  const PetscReal slip  = PetscSqrtReal(Dot(ahead, ahead)) / (transfer->slip_bound * transfer->dirichlet->data.sizes[row]);
+  const PetscReal rest = PetscMax(set->rest[row] - slip, 0), part = set->rest[row] > 0 ? 1 - rest / set->rest[row] : 0;
+  PetscReal       weights[FOLLOW_MAX];
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < n; j++) weights[j] = set->shares[first + j].goal;
+  if (set->rest[row] > 0) PetscCall(Correct(transfer, row, ahead, weights));
+  for (PetscInt j = 0; j < n; j++) {
+    set->shares[first + j].goal = weights[j];
+    weights[j]                  = set->shares[first + j].value + part * (weights[j] - set->shares[first + j].value);
+  }
+  PetscCall(Correct(transfer, row, ahead, weights));
   for (PetscInt j = 0; j < n; j++) set->shares[first + j].value = weights[j];
-  way = RowOf(transfer, row, next, columns[2]) - RowOf(transfer, row, now, columns[1]) - way;
-  set->gap[row] = gap - 0.5 * way - RowOf(transfer, row, now, columns[1]) + RowOf(transfer, row, data->reference, columns[0]);
+  set->rest[row] = rest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether neither the slip that is expected nor the turn of the normal since the row was changed is worth a change */
+static PetscBool IsStill(const Transfer transfer, PetscInt row, const PetscReal across[], const PetscReal ahead[])
+{
+  const SurfaceData *data = &transfer->dirichlet->data;
+  PetscReal          slip = 0, turn = 0;
+
+  for (PetscInt d = 0; d < transfer->dim; d++) {
+    slip += PetscSqr(across[d] + ahead[d]);
+    turn += PetscSqr(data->normals[3 * row + d] - transfer->rows.normals[transfer->dim * row + d]);
+  }
+  return (PetscBool)(slip < PetscSqr(STILL * data->sizes[row]) && turn < PetscSqr(STILL));
+}
+
+/* New normal and weights of a row, and the gap without displacements that has its gap go on. `ratio`: of this step to the last one */
+static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal ratio)
+{
+  const SurfaceData *data   = &transfer->dirichlet->data;
+  Follow            *follow = &transfer->follow;
+  RowSet            *set    = &transfer->rows;
+  const PetscInt     dim    = transfer->dim;
+  PetscReal          gap, way, across[3] = {0}, before[3] = {0}, after[3] = {0}, ahead[3] = {0};
+
+  PetscFunctionBegin;
+  gap = set->gap[row] - AlongRow(transfer, row, data->reference, transfer->column_reference) +
+        SplitRow(transfer, row, data->positions, transfer->column_x, before);
+  way = SplitRow(transfer, row, follow->moved, transfer->column_moved, across);
+  ExpectSlip(transfer, row, across, ratio);
+  if (follow->known[row]) PetscCall(PetscArraycpy(ahead, follow->slip + 3 * row, dim));
+  follow->known[row] = PETSC_TRUE;
+  if (IsStill(transfer, row, before, ahead)) {
+    transfer->followed[row] = PETSC_FALSE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = data->normals[3 * row + d];
+  PetscCall(Approach(transfer, row, ahead));
+  way = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
+  set->gap[row] = gap - 0.5 * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
+                  SplitRow(transfer, row, data->positions, transfer->column_x, after);
   /* slips are counted from the last build on */
-  AcrossOf(transfer, row, now, columns[1], after);
   for (PetscInt d = 0; d < dim; d++) transfer->built_slip[3 * row + d] += after[d] - before[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -87,12 +150,11 @@ static PetscReal PresentGap(Transfer transfer, PetscInt row)
 {
   const SurfaceData *data = &transfer->dirichlet->data;
 
-  return transfer->rows.gap[row] + RowOf(transfer, row, data->positions, transfer->column_x) -
-         RowOf(transfer, row, data->reference, transfer->column_reference);
+  return transfer->rows.gap[row] + AlongRow(transfer, row, data->positions, transfer->column_x) -
+         AlongRow(transfer, row, data->reference, transfer->column_reference);
 }
 
-/* Marks rows that are to follow: those of nodes that touch, or may within the reach. Rows with more partners than usual have little slip
-   in parts of them. */
+/* Marks rows that are to follow: those of nodes that touch, or may within the reach */
 static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscBool *any)
 {
   const RowSet *set   = &transfer->rows;
@@ -103,12 +165,30 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];
 
-    transfer->followed[row] = (PetscBool)(set->opposite[row] && n <= FOLLOW_MAX &&
-                                          (touches[row] || PresentGap(transfer, row) <= reach));
+    transfer->followed[row] =
+        (PetscBool)(set->opposite[row] && n <= FOLLOW_MAX && (touches[row] || PresentGap(transfer, row) <= reach));
     if (transfer->followed[row]) found = 1;
+    else transfer->follow.known[row] = PETSC_FALSE;
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));
   *any = (PetscBool)found;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes where the nodes of both sides are, and how they have moved since the step before */
+static PetscErrorCode NoteMotion(Transfer transfer)
+{
+  const SurfaceData *data[2] = {&transfer->dirichlet->data, &transfer->neumann->data};
+  Follow            *follow  = &transfer->follow;
+  PetscReal         *moved[2] = {follow->moved, follow->partner_moved};
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < 2; side++)
+    for (PetscInt i = 0; i < 3 * data[side]->n_owned; i++) {
+      moved[side][i]     = follow->has_last ? data[side]->positions[i] - follow->x[side][i] : 0;
+      follow->x[side][i] = data[side]->positions[i];
+    }
+  follow->has_last = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,11 +198,10 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   Collective
 
   Input Parameters:
-+ transfer    - the `Transfer`, between two surfaces, after `TransferUpdate()`
-. touches     - for each row of this rank, whether it is in contact
-. reach       - other rows follow if their gap is not larger than that [m]
-. u_dirichlet - displacements that the body of the Dirichlet side is expected to have where the force acts
-- u_neumann   - of the Neumann side
++ transfer - the `Transfer`, between two surfaces, after `TransferUpdate()`
+. touches  - for each row of this rank, whether it is in contact
+. reach    - other rows follow if their gap is not larger than that [m]
+- step     - until the next update [s]
 
   Output Parameter:
 . any - whether any row on any rank has followed; which, `TransferRows` tells
@@ -130,30 +209,36 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   Level: developer
 
   Notes:
-  The normal becomes that of the surface in these displacements. The weights of the partner's nodes are changed as little as possible so
-  that a force along the normal has no moment there. The gap goes on from where it was.
-
-  Surfaces are left in these displacements, until the next `TransferUpdate()`.
+  The normal becomes that of the surface. The weights of the partner's nodes are changed as little as possible so that a force along the
+  normal has no moment where the surfaces are expected to be after the step. The gap goes on from where it was.
 
 .seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
 @*/
-PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, Vec u_dirichlet, Vec u_neumann, PetscBool *any)
+PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal step, PetscBool *any)
 {
+  Follow *follow = &transfer->follow;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscValidLogicalCollectiveReal(transfer, reach, 3);
-  PetscValidHeaderSpecific(u_dirichlet, VEC_CLASSID, 4);
-  PetscValidHeaderSpecific(u_neumann, VEC_CLASSID, 5);
-  PetscAssertPointer(any, 6);
+  PetscValidLogicalCollectiveReal(transfer, step, 4);
+  PetscAssertPointer(any, 5);
   PetscCheck(transfer->built && transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
              "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
+  PetscCheck(step > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The step %g s must be positive", (double)step);
+  PetscCall(NoteMotion(transfer));
   PetscCall(MarkFollowers(transfer, touches, reach, any));
-  if (!*any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(transfer->follow_x, transfer->dirichlet->data.positions, 3 * transfer->n));
-  PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
-  PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_next));
-  for (PetscInt row = 0; row < transfer->n; row++)
-    if (transfer->followed[row]) PetscCall(FollowRow(transfer, row));
+  if (*any) {
+    int found = 0;
+
+    PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
+    for (PetscInt row = 0; row < transfer->n; row++) {
+      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, follow->step > 0 ? step / follow->step : 1));
+      if (transfer->followed[row]) found = 1;
+    }
+    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));
+    *any = (PetscBool)found;
+  }
+  follow->step = step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

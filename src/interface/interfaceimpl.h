@@ -69,6 +69,16 @@ typedef struct {
   PetscSF    vectors;              /* from their owners to these nodes, three numbers for each */
 } RowSet;
 
+/* What rows that follow the surfaces know of the step before */
+typedef struct {
+  PetscBool  has_last;
+  PetscReal  step;                    /* [s] */
+  PetscReal *x[2];                    /* positions of the owned nodes of both sides at the last update [m] */
+  PetscReal *moved, *partner_moved;   /* since the update before [m] */
+  PetscReal *slip;                    /* per row: what the partner is expected to slip in a step, 3 numbers each [m] */
+  PetscBool *known;                   /* per row: it has followed in the last step too */
+} Follow;
+
 struct _p_Transfer {
   PETSCHEADER(int);
   MPI_Comm       comm;
@@ -87,8 +97,8 @@ struct _p_Transfer {
   PetscBool     *keep;     /* per row: in the next build it stays as it is, being near contact and within the bounds */
   PetscBool     *followed; /* per row: it has followed the surfaces since the last update, see TransferFollow() */
   PetscBool     *goes_on;  /* per row: in the next build its weights go on from where they are */
-  PetscReal     *follow_x; /* work space: positions of the owned Dirichlet nodes */
-  PetscReal     *column_x, *column_next, *column_reference; /* positions of the columns: present, expected, in the mesh */
+  Follow         follow;
+  PetscReal     *column_x, *column_moved, *column_reference; /* of the columns: present positions, motion in the last step, positions in the mesh */
   TransferCounts counts;
 };
 

@@ -354,8 +354,8 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
-  PetscCall(PetscFree3(transfer->column_x, transfer->column_next, transfer->column_reference));
-  PetscCall(PetscMalloc3(3 * set.n_columns, &transfer->column_x, 3 * set.n_columns, &transfer->column_next, 3 * set.n_columns,
+  PetscCall(PetscFree3(transfer->column_x, transfer->column_moved, transfer->column_reference));
+  PetscCall(PetscMalloc3(3 * set.n_columns, &transfer->column_x, 3 * set.n_columns, &transfer->column_moved, 3 * set.n_columns,
                          &transfer->column_reference));
   PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
   PetscCall(PetscFree2(x, reference));

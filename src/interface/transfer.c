@@ -57,7 +57,10 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
   PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n,
                          &t->slip, t->n, &t->keep));
-  PetscCall(PetscCalloc3(t->n, &t->followed, t->n, &t->goes_on, 3 * t->n, &t->follow_x));
+  PetscCall(PetscCalloc2(t->n, &t->followed, t->n, &t->goes_on));
+  if (neumann)
+    PetscCall(PetscCalloc6(3 * t->n, &t->follow.x[0], 3 * neumann->data.n_owned, &t->follow.x[1], 3 * t->n, &t->follow.moved,
+                           3 * neumann->data.n_owned, &t->follow.partner_moved, 3 * t->n, &t->follow.slip, t->n, &t->follow.known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,8 +87,10 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
-  PetscCall(PetscFree3((*transfer)->followed, (*transfer)->goes_on, (*transfer)->follow_x));
-  PetscCall(PetscFree3((*transfer)->column_x, (*transfer)->column_next, (*transfer)->column_reference));
+  PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
+  PetscCall(PetscFree6((*transfer)->follow.x[0], (*transfer)->follow.x[1], (*transfer)->follow.moved, (*transfer)->follow.partner_moved,
+                       (*transfer)->follow.slip, (*transfer)->follow.known));
+  PetscCall(PetscFree3((*transfer)->column_x, (*transfer)->column_moved, (*transfer)->column_reference));
   PetscCall(PetscHeaderDestroy(transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -232,7 +232,7 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (!*rebuilt) PetscCall(HasMoved(transfer, rebuilt));
   for (PetscInt row = 0; row < transfer->n; row++) {
-    transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->followed[row] && !transfer->keep[row]);
+    transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->follow.known && transfer->follow.known[row] && !transfer->keep[row]);
     transfer->followed[row] = PETSC_FALSE;
   }
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);

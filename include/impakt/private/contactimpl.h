@@ -153,8 +153,6 @@ typedef struct {
 typedef struct {
   PetscReal     *speeds;     /* per body */
   PetscReal     *last_gap;   /* per row */
-  Vec           *expected;   /* per body: displacement at the end of the controller step */
-  PetscBool     *is_expected; /* per body: it is known */
   PetscBool     *moved;      /* per row */
   PetscReal     *last_force; /* per row */
   PetscReal     *handover;   /* two numbers per row */

@@ -75,7 +75,6 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscCalloc5(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
                          &contact->rows.followed, n, &contact->work.moved));
-  PetscCall(PetscCalloc2(contact->n_bodies, &contact->work.expected, contact->n_bodies, &contact->work.is_expected));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
@@ -364,8 +363,6 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->held.merged_gap));
   PetscCall(PetscFree5(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,
                        contact->work.moved));
-  for (PetscInt b = 0; contact->work.expected && b < contact->n_bodies; b++) PetscCall(VecDestroy(&contact->work.expected[b]));
-  PetscCall(PetscFree2(contact->work.expected, contact->work.is_expected));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

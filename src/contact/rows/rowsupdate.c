@@ -237,36 +237,18 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where a body is expected to be at the end of the controller step: as far as its velocity leads */
-static PetscErrorCode GetExpected(Contact contact, PetscInt b, Vec *expected)
-{
-  Vec u, v;
-
-  PetscFunctionBegin;
-  *expected = contact->work.expected[b];
-  if (contact->work.is_expected[b]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
-  if (!*expected) PetscCall(VecDuplicate(u, &contact->work.expected[b]));
-  *expected = contact->work.expected[b];
-  PetscCall(VecWAXPY(*expected, contact->step, v, u));
-  contact->work.is_expected[b] = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Rows of two bodies with inertia follow their surfaces, so that neither angular momentum nor energy is lost as they slide and turn. Rows of
    static bodies are built anew at the place where they are, and merged rows are means of several. */
 static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *any)
 {
   PetscBool is_static = PETSC_FALSE;
-  Vec       expected[2];
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
   if (pair->obstacle || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < 2 && !is_static; side++) PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
   if (is_static) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt side = 0; side < 2; side++) PetscCall(GetExpected(contact, pair->body[side], &expected[side]));
-  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, expected[0], expected[1], any));
+  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, contact->step, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -283,7 +265,6 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
-  PetscCall(PetscArrayzero(contact->work.is_expected, contact->n_bodies));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     Vec          u[2] = {NULL, NULL};
