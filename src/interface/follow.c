@@ -22,9 +22,6 @@
 
 /* Part of the last step's slip in the mean. With all of it, bars that meet at a fifth of their wave speed chatter. */
 #define LATEST 0.5
-/* Rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit. Bars that meet head on
-   far above the load at which they buckle do so from round-off otherwise. */
-#define STILL 1e-6
 
 /* What a row makes of vectors of the nodes: n . (sum_j P_j x_j - x), and the part across the normal */
 static PetscReal SplitRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[], PetscReal across[])
@@ -103,7 +100,7 @@ static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal 
 }
 
 /* Whether neither the slip that is expected nor the turn of the normal since the row was changed is worth a change */
-static PetscBool IsStill(const Transfer transfer, PetscInt row, const PetscReal across[], const PetscReal ahead[])
+static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, const PetscReal across[], const PetscReal ahead[])
 {
   const SurfaceData *data = &transfer->dirichlet->data;
   PetscReal          slip = 0, turn = 0;
@@ -112,11 +109,11 @@ static PetscBool IsStill(const Transfer transfer, PetscInt row, const PetscReal 
     slip += PetscSqr(across[d] + ahead[d]);
     turn += PetscSqr(data->normals[3 * row + d] - transfer->rows.normals[transfer->dim * row + d]);
   }
-  return (PetscBool)(slip < PetscSqr(STILL * data->sizes[row]) && turn < PetscSqr(STILL));
+  return (PetscBool)(slip < PetscSqr(still * data->sizes[row]) && turn < PetscSqr(still));
 }
 
 /* New normal and weights of a row, and the gap without displacements that has its gap go on. `ratio`: of this step to the last one */
-static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal ratio)
+static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still, PetscReal ratio)
 {
   const SurfaceData *data   = &transfer->dirichlet->data;
   Follow            *follow = &transfer->follow;
@@ -131,7 +128,7 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal ratio
   ExpectSlip(transfer, row, across, ratio);
   if (follow->known[row]) PetscCall(PetscArraycpy(ahead, follow->slip + 3 * row, dim));
   follow->known[row] = PETSC_TRUE;
-  if (IsStill(transfer, row, before, ahead)) {
+  if (IsStill(transfer, row, still, before, ahead)) {
     transfer->followed[row] = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -201,6 +198,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 + transfer - the `Transfer`, between two surfaces, after `TransferUpdate()`
 . touches  - for each row of this rank, whether it is in contact
 . reach    - other rows follow if their gap is not larger than that [m]
+. still    - rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit
 - step     - until the next update [s]
 
   Output Parameter:
@@ -214,15 +212,16 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 
 .seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
 @*/
-PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal step, PetscBool *any)
+PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscReal step, PetscBool *any)
 {
   Follow *follow = &transfer->follow;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscValidLogicalCollectiveReal(transfer, reach, 3);
-  PetscValidLogicalCollectiveReal(transfer, step, 4);
-  PetscAssertPointer(any, 5);
+  PetscValidLogicalCollectiveReal(transfer, still, 4);
+  PetscValidLogicalCollectiveReal(transfer, step, 5);
+  PetscAssertPointer(any, 6);
   PetscCheck(transfer->built && transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
              "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
   PetscCheck(step > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The step %g s must be positive", (double)step);
@@ -233,7 +232,7 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
 
     PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
     for (PetscInt row = 0; row < transfer->n; row++) {
-      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, follow->step > 0 ? step / follow->step : 1));
+      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, still, follow->step > 0 ? step / follow->step : 1));
       if (transfer->followed[row]) found = 1;
     }
     PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));
