@@ -100,7 +100,7 @@ static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal 
 }
 
 /* Whether neither the slip that is expected nor the turn of the normal since the row was changed is worth a change */
-static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, const PetscReal across[], const PetscReal ahead[])
+static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, const PetscReal across[], const PetscReal ahead[])
 {
   const SurfaceData *data = &transfer->dirichlet->data;
   PetscReal          slip = 0, turn = 0;
@@ -109,11 +109,11 @@ static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still,
     slip += PetscSqr(across[d] + ahead[d]);
     turn += PetscSqr(data->normals[3 * row + d] - transfer->rows.normals[transfer->dim * row + d]);
   }
-  return (PetscBool)(slip < PetscSqr(still * data->sizes[row]) && turn < PetscSqr(still));
+  return (PetscBool)(slip < PetscSqr(still * data->sizes[row]) && (!turns || turn < PetscSqr(still)));
 }
 
 /* New normal and weights of a row, and the gap without displacements that has its gap go on. `ratio`: of this step to the last one */
-static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still, PetscReal ratio)
+static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, PetscReal ratio)
 {
   const SurfaceData *data   = &transfer->dirichlet->data;
   Follow            *follow = &transfer->follow;
@@ -128,11 +128,11 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
   ExpectSlip(transfer, row, across, ratio);
   if (follow->known[row]) PetscCall(PetscArraycpy(ahead, follow->slip + 3 * row, dim));
   follow->known[row] = PETSC_TRUE;
-  if (IsStill(transfer, row, still, before, ahead)) {
+  if (IsStill(transfer, row, still, turns, before, ahead)) {
     transfer->followed[row] = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = data->normals[3 * row + d];
+  for (PetscInt d = 0; d < dim && turns; d++) set->normals[dim * row + d] = data->normals[3 * row + d];
   PetscCall(Approach(transfer, row, ahead));
   way = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
   set->gap[row] = gap - 0.5 * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
@@ -151,7 +151,8 @@ static PetscReal PresentGap(Transfer transfer, PetscInt row)
          AlongRow(transfer, row, data->reference, transfer->column_reference);
 }
 
-/* Marks rows that are to follow: those of nodes that touch, or may within the reach */
+/* Marks rows that are to follow: those of nodes that touch, or may within the reach. Nodes beyond the end of the partner have their gap from
+   where it ends, which only a build tells. */
 static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscBool *any)
 {
   const RowSet *set   = &transfer->rows;
@@ -163,7 +164,7 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];
 
     transfer->followed[row] =
-        (PetscBool)(set->opposite[row] && n <= FOLLOW_MAX && (touches[row] || PresentGap(transfer, row) <= reach));
+        (PetscBool)(set->opposite[row] && !set->beyond[row] && n <= FOLLOW_MAX && (touches[row] || PresentGap(transfer, row) <= reach));
     if (transfer->followed[row]) found = 1;
     else transfer->follow.known[row] = PETSC_FALSE;
   }
@@ -199,6 +200,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 . touches  - for each row of this rank, whether it is in contact
 . reach    - other rows follow if their gap is not larger than that [m]
 . still    - rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit
+. turns    - whether normals become those of the surface, which they else do where rows are built
 - step     - until the next update [s]
 
   Output Parameter:
@@ -207,12 +209,13 @@ static PetscErrorCode NoteMotion(Transfer transfer)
   Level: developer
 
   Notes:
-  The normal becomes that of the surface. The weights of the partner's nodes are changed as little as possible so that a force along the
+  The weights of the partner's nodes are changed as little as possible so that a force along the
   normal has no moment where the surfaces are expected to be after the step. The gap goes on from where it was.
 
 .seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
 @*/
-PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscReal step, PetscBool *any)
+PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns, PetscReal step,
+                              PetscBool *any)
 {
   Follow *follow = &transfer->follow;
 
@@ -220,8 +223,9 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscValidLogicalCollectiveReal(transfer, reach, 3);
   PetscValidLogicalCollectiveReal(transfer, still, 4);
-  PetscValidLogicalCollectiveReal(transfer, step, 5);
-  PetscAssertPointer(any, 6);
+  PetscValidLogicalCollectiveBool(transfer, turns, 5);
+  PetscValidLogicalCollectiveReal(transfer, step, 6);
+  PetscAssertPointer(any, 7);
   PetscCheck(transfer->built && transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
              "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
   PetscCheck(step > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The step %g s must be positive", (double)step);
@@ -232,7 +236,7 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
 
     PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
     for (PetscInt row = 0; row < transfer->n; row++) {
-      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, still, follow->step > 0 ? step / follow->step : 1));
+      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, still, turns, follow->step > 0 ? step / follow->step : 1));
       if (transfer->followed[row]) found = 1;
     }
     PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));

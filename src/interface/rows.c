@@ -164,7 +164,7 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   *normal = transfer->rows.normals + dim * row;
+  const PetscReal   *normal = data->normals + 3 * row;
 
   PetscFunctionBegin;
   *gap = 0;

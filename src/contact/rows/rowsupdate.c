@@ -15,8 +15,8 @@
    load at which they buckle would do so from round-off. */
 #define STILL 1e-6
 /* The same between two linear bodies, whose displacements are small: those pressed together, with rows as in the undeformed state, have the
-   pressure of the closed form to 1e-8. They do not keep angular momentum themselves as they turn. */
-#define STILL_LINEAR 0.01
+   pressure of the closed form to 1e-8. They do not turn far, nor keep angular momentum themselves as they do. */
+#define STILL_LINEAR 0.003
 
 /* Cosine of the angle between the normals of two rows */
 static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
@@ -262,7 +262,7 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
     PetscCall(MaterialIsLinear(material, &is_linear));
     linear = (PetscBool)(linear && is_linear);
   }
-  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL,
+  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
                            contact->step, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
