@@ -103,11 +103,13 @@ static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal 
 static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, const PetscReal across[], const PetscReal ahead[])
 {
   const SurfaceData *data = &transfer->dirichlet->data;
-  PetscReal          slip = 0, turn = 0;
+  PetscReal          slip = 0, turn = 0, normal[3];
+
+  TransferPresentNormal(transfer, row, normal);
 
   for (PetscInt d = 0; d < transfer->dim; d++) {
     slip += PetscSqr(across[d] + ahead[d]);
-    turn += PetscSqr(data->normals[3 * row + d] - transfer->rows.normals[transfer->dim * row + d]);
+    turn += PetscSqr(normal[d] - transfer->rows.normals[transfer->dim * row + d]);
   }
   return (PetscBool)(slip < PetscSqr(still * data->sizes[row]) && (!turns || turn < PetscSqr(still)));
 }
@@ -132,7 +134,7 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
     transfer->followed[row] = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt d = 0; d < dim && turns; d++) set->normals[dim * row + d] = data->normals[3 * row + d];
+  if (turns) TransferPresentNormal(transfer, row, set->normals + dim * row);
   PetscCall(Approach(transfer, row, ahead));
   way = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
   set->gap[row] = gap - 0.5 * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
@@ -160,6 +162,7 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
 
   PetscFunctionBegin;
   PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];
 

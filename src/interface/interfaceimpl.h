@@ -98,7 +98,8 @@ struct _p_Transfer {
   PetscBool     *followed; /* per row: it has followed the surfaces since the last update, see TransferFollow() */
   PetscBool     *goes_on;  /* per row: in the next build its weights go on from where they are */
   Follow         follow;
-  PetscReal     *column_x, *column_moved, *column_reference; /* of the columns: present positions, motion in the last step, positions in the mesh */
+  PetscReal     *column_x, *column_normals; /* of the columns: present positions and normals, */
+  PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
   TransferCounts counts;
 };
 
@@ -149,7 +150,10 @@ PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, Pe
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
+PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
+PETSC_INTERN void RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[], const PetscReal[]);
 PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

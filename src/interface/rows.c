@@ -14,6 +14,8 @@
 #define LEAST_DEPTH 0.5
 /* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
 #define OBLIQUE 2
+/* Normals of nodes whose angle has a smaller cosine are those of an edge, not of a bend: 26 degrees */
+#define BENT 0.9
 
 PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSet *set)
 {
@@ -158,20 +160,58 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
   }
 }
 
+/* The normal of a row is half way between that of its node and those of the partner, where they are opposed but for a bend: so it does not
+   depend on which of the surfaces has the nodes of the rows */
+void RowNormal(PetscInt dim, PetscInt n, const PetscReal node[], const PetscReal *normals[], const PetscReal weights[], PetscReal normal[])
+{
+  PetscReal partner[3] = {0}, sum[3] = {0}, square = 0, cosine = 0;
+
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt d = 0; d < dim; d++) partner[d] -= weights[j] * normals[j][d];
+  if (Normalize(partner) > 0) cosine = Dot(partner, node);
+  for (PetscInt d = 0; d < 3; d++) {
+    sum[d] = d < dim ? node[d] + (cosine > BENT ? partner[d] : 0) : 0;
+    square += PetscSqr(sum[d]);
+  }
+  for (PetscInt d = 0; d < dim; d++) normal[d] = square > 0 ? sum[d] / PetscSqrtReal(square) : node[d];
+}
+
+/* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its nodes
+   and the planes through them across their normals a surface of second order is met:
+
+     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)) */
+PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
+                   const PetscReal *normals[], const PetscReal weights[])
+{
+  PetscReal bulge = 0;
+
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal along = 0, plane = 0, cosine = 0;
+
+    for (PetscInt d = 0; d < dim; d++) {
+      along += normal[d] * (partners[j][d] - x[d]);
+      plane += normals[j][d] * (partners[j][d] - x[d]);
+      cosine += normals[j][d] * normal[d];
+    }
+    if (-cosine < BENT) return 0;
+    bulge += 0.5 * weights[j] * (along - plane / cosine);
+  }
+  return bulge;
+}
+
 /* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known. */
 static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal *gap,
                            PetscReal *present, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   *normal = data->normals + 3 * row;
+  const PetscReal   *normal = set->normals + dim * row;
 
   PetscFunctionBegin;
   *gap = 0;
   for (PetscInt d = 0; d < dim; d++) {
     PetscReal now = 0, there = 0;
 
-    set->normals[dim * row + d] = normal[d];
     for (PetscInt j = 0; j < n; j++) {
       now += set->shares[first + j].value * x[3 * set->columns[first + j] + d];
       there += set->shares[first + j].value * reference[3 * set->columns[first + j] + d];
@@ -187,23 +227,26 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
    touches when the end of the partner does, not before or after. */
-static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end,
+static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], const PetscReal column_normals[], PetscReal end,
                                 PetscReal ahead, PetscReal behind, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   *normal = data->normals + 3 * row, **partners;
-  PetscReal         *weights, gap, present;
+  const PetscReal   **normals, **partners;
+  PetscReal         *weights, gap, present, bulge, normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   set->gap[row] = PETSC_MAX_REAL;
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(n, &weights, n, &partners));
+  PetscCall(PetscMalloc3(n, &weights, n, &partners, n, &normals));
   for (PetscInt j = 0; j < n; j++) {
     weights[j]  = set->shares[first + j].goal;
     partners[j] = x + 3 * set->columns[first + j];
+    normals[j]  = column_normals + 3 * set->columns[first + j];
   }
+  RowNormal(dim, n, data->normals + 3 * row, normals, weights, normal);
+  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   for (PetscInt pass = 0; pass < 2; pass++)
     RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
   gap = present = 0;
@@ -217,11 +260,16 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += normal[d] * (there - data->reference[3 * row + d]);
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
+  bulge = RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights);
+  if (!set->beyond[row]) {
+    gap -= bulge;
+    present -= bulge;
+  }
   for (PetscInt j = 0; j < n; j++) {
     set->shares[first + j].goal = weights[j];
     if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
   }
-  PetscCall(PetscFree2(weights, partners));
+  PetscCall(PetscFree3(weights, partners, normals));
   if (transfer->goes_on[row]) PetscCall(GoOn(transfer, row, x, reference, end, &gap, &present, set));
   else if (set->beyond[row]) {
     gap += end - present;
@@ -326,7 +374,7 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
-  PetscReal         *lumped, *ends, *x, *reference, behind;
+  PetscReal         *lumped, *ends, *x, *reference, *normals, behind;
   PetscInt           n_shares, *marks;
   Share             *shares;
   RowSet             set;
@@ -340,7 +388,9 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
   PetscCall(PetscFree(shares));
   PetscCall(ConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
-  PetscCall(PetscMalloc2(3 * set.n_columns, &x, 3 * set.n_columns, &reference));
+  PetscCall(PetscMalloc3(3 * set.n_columns, &x, 3 * set.n_columns, &reference, 3 * set.n_columns, &normals));
+  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
@@ -348,17 +398,17 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   for (PetscInt row = 0; row < transfer->n; row++) {
     set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
-    else PetscCall(FinishRow(transfer, row, x, reference, ends[row], near, behind, &set));
+    else PetscCall(FinishRow(transfer, row, x, reference, normals, ends[row], near, behind, &set));
     set.area[row] = set.opposite[row] ? lumped[row] : 0;
   }
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
-  PetscCall(PetscFree3(transfer->column_x, transfer->column_moved, transfer->column_reference));
-  PetscCall(PetscMalloc3(3 * set.n_columns, &transfer->column_x, 3 * set.n_columns, &transfer->column_moved, 3 * set.n_columns,
-                         &transfer->column_reference));
+  PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
+  PetscCall(PetscMalloc4(3 * set.n_columns, &transfer->column_x, 3 * set.n_columns, &transfer->column_normals, 3 * set.n_columns,
+                         &transfer->column_moved, 3 * set.n_columns, &transfer->column_reference));
   PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
-  PetscCall(PetscFree2(x, reference));
+  PetscCall(PetscFree3(x, reference, normals));
   PetscCall(PetscFree3(marks, lumped, ends));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -90,7 +90,7 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
   PetscCall(PetscFree6((*transfer)->follow.x[0], (*transfer)->follow.x[1], (*transfer)->follow.moved, (*transfer)->follow.partner_moved,
                        (*transfer)->follow.slip, (*transfer)->follow.known));
-  PetscCall(PetscFree3((*transfer)->column_x, (*transfer)->column_moved, (*transfer)->column_reference));
+  PetscCall(PetscFree4((*transfer)->column_x, (*transfer)->column_normals, (*transfer)->column_moved, (*transfer)->column_reference));
   PetscCall(PetscHeaderDestroy(transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

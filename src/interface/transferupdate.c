@@ -77,6 +77,21 @@ PetscErrorCode TransferGetColumns(Transfer transfer, const PetscReal vectors[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The normal that a row would have now */
+void TransferPresentNormal(Transfer transfer, PetscInt row, PetscReal normal[])
+{
+  const RowSet    *set   = &transfer->rows;
+  const PetscInt   first = set->offsets[row], n = set->offsets[row + 1] - first;
+  const PetscReal *normals[FOLLOW_MAX];
+  PetscReal        weights[FOLLOW_MAX];
+
+  for (PetscInt j = 0; j < PetscMin(n, FOLLOW_MAX); j++) {
+    normals[j] = transfer->column_normals + 3 * set->columns[first + j];
+    weights[j] = set->shares[first + j].value;
+  }
+  RowNormal(transfer->dim, PetscMin(n, FOLLOW_MAX), transfer->dirichlet->data.normals + 3 * row, normals, weights, normal);
+}
+
 /* Whether a row of this rank near contact has slipped or turned beyond the bounds. Marks those that have not, and notes all slips. */
 static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 {
@@ -86,10 +101,13 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
-  if (transfer->neumann) PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  if (transfer->neumann) {
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+  }
   for (PetscInt row = 0; row < transfer->n; row++) {
-    const PetscReal *normal = transfer->rows.normals + dim * row, *present = data->normals + 3 * row, size = data->sizes[row];
-    PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3];
+    const PetscReal *normal = transfer->rows.normals + dim * row, size = data->sizes[row];
+    PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3], present[3];
     PetscBool        within;
 
     transfer->keep[row] = PETSC_FALSE;
@@ -98,6 +116,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     if (transfer->neumann) {
       GetOffset(transfer, row, offset);
       SplitOffset(dim, normal, offset, &gap);
+      TransferPresentNormal(transfer, row, present);
       for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(offset[d] - transfer->built_slip[3 * row + d]);
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(present[d] - normal[d]);
       transfer->slip[row] = PetscSqrtReal(slip) / size;
