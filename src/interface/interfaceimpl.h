@@ -86,6 +86,7 @@ struct _p_Transfer {
   Obstacle       obstacle;
   PetscInt       dim, n;
   PetscReal      slip_bound, angle_bound;
+  PetscBool      curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
   PetscBool      guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
   RowSet         rows;
   PetscBool      built;

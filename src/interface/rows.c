@@ -245,7 +245,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     partners[j] = x + 3 * set->columns[first + j];
     normals[j]  = column_normals + 3 * set->columns[first + j];
   }
-  RowNormal(dim, n, data->normals + 3 * row, normals, weights, normal);
+  if (transfer->curved) RowNormal(dim, n, data->normals + 3 * row, normals, weights, normal);
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   for (PetscInt pass = 0; pass < 2; pass++)
     RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
@@ -260,7 +260,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += normal[d] * (there - data->reference[3 * row + d]);
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
-  bulge = RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights);
+  bulge = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights) : 0;
   if (!set->beyond[row]) {
     gap -= bulge;
     present -= bulge;

@@ -153,6 +153,35 @@ PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
 }
 
 /*@
+  TransferSetCurved - whether rows take the bend of both surfaces into account
+
+  Logically Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, before the first `TransferUpdate()`
+- curved   - false by default
+
+  Level: developer
+
+  Notes:
+  If so, the normal of a row is half way between that of its node and those of the partner opposite, and its gap is counted to a surface of
+  second order that has the normals of the partner's nodes. Then what comes of it hardly depends on which surface has the nodes of the rows,
+  nor on where the corners of the faces are. Where normals differ by more than 26 degrees, which is an edge, the row is as it is otherwise:
+  with the normal of its node, and the gap to the faces.
+
+.seealso: `Transfer`, `TransferUpdate()`
+@*/
+PetscErrorCode TransferSetCurved(Transfer transfer, PetscBool curved)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(transfer, curved, 2);
+  PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
+  transfer->curved = curved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferGetRows - the rows of the nodes that this rank owns
 
   Not Collective

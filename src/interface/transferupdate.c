@@ -85,6 +85,10 @@ void TransferPresentNormal(Transfer transfer, PetscInt row, PetscReal normal[])
   const PetscReal *normals[FOLLOW_MAX];
   PetscReal        weights[FOLLOW_MAX];
 
+  if (!transfer->curved) {
+    for (PetscInt d = 0; d < transfer->dim; d++) normal[d] = transfer->dirichlet->data.normals[3 * row + d];
+    return;
+  }
   for (PetscInt j = 0; j < PetscMin(n, FOLLOW_MAX); j++) {
     normals[j] = transfer->column_normals + 3 * set->columns[first + j];
     weights[j] = set->shares[first + j].value;

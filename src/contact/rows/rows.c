@@ -262,15 +262,19 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscReal *extent)
 {
   PetscBool rebuilt;
+  PetscBool inertia = PETSC_TRUE;
   PetscInt  dims[2] = {contact->dim, contact->dim};
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal lower[3], upper[3];
+    PetscBool is_static;
     DM        dm;
 
     PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
     PetscCall(DMGetCoordinateDim(dm, &dims[side]));
+    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+    inertia = (PetscBool)(inertia && !is_static);
     PetscCall(SurfaceCreate(dm, pair->surface[side], &pair->surfaces[side]));
     PetscCall(DMGetBoundingBox(dm, lower, upper));
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
@@ -285,6 +289,7 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
+  PetscCall(TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia)));
   PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
