@@ -273,6 +273,7 @@ PETSC_EXTERN PetscErrorCode ContactGetAllowUnstable(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetSharedTimes(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetSharedTimes(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);
+PETSC_EXTERN PetscErrorCode ContactSetStartEnergies(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetEnergyCap(Contact, PetscBool, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyCap(Contact, PetscBool *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);

@@ -40,7 +40,8 @@ typedef struct {
                                 [m^2; m in two dimensions; 1 in one] */
   const PetscReal *normals;  /* dim each: outward unit normal of the Dirichlet side; against that of an obstacle */
   const PetscReal *size;     /* edge length of the smallest face at the node [m; 1 in one dimension] */
-  const PetscBool *changed;  /* the last build has changed the row */
+  const PetscBool *changed;  /* the last update has built the row anew, and has changed it */
+  const PetscBool *followed; /* the row has followed the surfaces since, see TransferFollow() */
   const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
 } TransferRows;
 
@@ -62,6 +63,8 @@ PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscReal, PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferSetCurved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, PetscInt, PetscInt, Mat, Mat);

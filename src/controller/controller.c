@@ -66,7 +66,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
   PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
                          &controller->contact_velocities, n_pairs, &controller->pair_states));
-  PetscCall(PetscCalloc1(n, &controller->guard.start));
+  PetscCall(PetscCalloc2(n, &controller->guard.start, n, &controller->energies));
   for (PetscInt p = 0; p < n_pairs; p++) {
     Body first, second;
 
@@ -209,7 +209,7 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscCall(ContactDestroy(&c->contact));
   for (PetscInt b = 0; b < c->n_bodies; b++) PetscCall(BodyDestroy(&c->bodies[b]));
   PetscCall(PetscFree(c->bodies));
-  PetscCall(PetscFree(c->guard.start));
+  PetscCall(PetscFree2(c->guard.start, c->energies));
   PetscCall(PetscFree5(c->measures, c->has_obstacle, c->contact_positions, c->contact_velocities, c->pair_states));
   PetscCall(PetscHeaderDestroy(controller));
   PetscFunctionReturn(PETSC_SUCCESS);

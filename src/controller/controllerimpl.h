@@ -35,6 +35,7 @@ struct _p_Controller {
   PetscErrorCode (*monitor_destroy[MAX_MONITORS])(void **);
   /* what they are shown, see ControllerFrame */
   BodyMeasures     *measures;
+  PetscReal        *energies;     /* per body: what contact alone is to change [J] */
   PetscBool        *has_obstacle; /* per body: it may touch an obstacle, whose force is one from outside */
   PetscReal        *contact_positions, *contact_velocities;
   ContactPairState *pair_states;
@@ -63,4 +64,4 @@ PETSC_INTERN PetscErrorCode ControllerWarnOfStep(Controller);
 PETSC_INTERN PetscErrorCode ControllerReadStepControl(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpStepControl(Controller);
 PETSC_INTERN PetscErrorCode ControllerMakeStep(Controller);
-PETSC_INTERN void           ControllerNoteEnergies(Controller, PetscInt);
+PETSC_INTERN PetscErrorCode ControllerNoteEnergies(Controller, PetscInt);

@@ -49,7 +49,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
     if (controller->has_obstacle[b]) controller->measures[b].loaded = PETSC_TRUE;
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
   }
-  ControllerNoteEnergies(controller, step);
+  PetscCall(ControllerNoteEnergies(controller, step));
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
   frame.sweeps    = step ? controller->step_sweeps : 0;
   frame.step_cuts = step ? controller->step_cuts : 0;

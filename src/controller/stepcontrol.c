@@ -128,21 +128,25 @@ PetscErrorCode ControllerSetUpStepControl(Controller controller)
 }
 
 /* Notes the energies of the bodies as their measures have them, those of step 0 as the start */
-void ControllerNoteEnergies(Controller controller, PetscInt step)
+PetscErrorCode ControllerNoteEnergies(Controller controller, PetscInt step)
 {
   PetscReal size = 0, energy = 0;
 
+  PetscFunctionBegin;
   for (PetscInt b = 0; b < controller->n_bodies; b++) {
     const BodyMeasures *body = &controller->measures[b];
 
+    controller->energies[b] = body->kinetic + body->potential - body->external_work;
     size += body->kinetic + body->potential + PetscAbsReal(body->external_work);
-    energy += body->kinetic + body->potential - body->external_work;
+    energy += controller->energies[b];
   }
+  PetscCall(ContactSetStartEnergies(controller->contact, controller->energies));
   if (!step) {
     controller->initial_energy = energy;
     controller->largest_energy = 0;
   }
   controller->largest_energy = PetscMax(controller->largest_energy, size);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Energy that contact may take or bring in a step, part of what the errors of the summary are compared with [J] */

@@ -47,8 +47,13 @@ typedef struct {
 typedef struct {
   PetscInt    row, dof, owner_index;
   PetscMPIInt owner_rank;
-  PetscReal   value;
+  PetscReal   value; /* its weight */
+  PetscReal   goal;  /* what the weight is to become as a row that follows the surfaces slips on; of other rows the weight itself */
 } Share;
+
+/* Partners of a row that follows the surfaces, at most: on a surface with this many faces to one of the other side it hardly slips by a
+ * bound */
+#define FOLLOW_MAX 256
 
 /* What lies opposite to a Dirichlet node: nothing; nothing, but the partner ends on a face beside the node; a face of the partner */
 enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
@@ -57,12 +62,23 @@ enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
 typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
+  PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
   PetscInt   n_columns;            /* number of distinct Neumann nodes that the shares name */
   PetscInt  *columns;              /* per share: which of these nodes it names */
   PetscSF    vectors;              /* from their owners to these nodes, three numbers for each */
 } RowSet;
+
+/* What rows that follow the surfaces know of the step before */
+typedef struct {
+  PetscBool  has_last;
+  PetscReal  step;                  /* [s] */
+  PetscReal *x[2];                  /* positions of the owned nodes of both sides at the last update [m] */
+  PetscReal *moved, *partner_moved; /* since the update before [m] */
+  PetscReal *slip;                  /* per row: what the partner is expected to slip in a step, 3 numbers each [m] */
+  PetscBool *known;                 /* per row: it has followed in the last step too */
+} Follow;
 
 struct _p_Transfer {
   PETSCHEADER(int);
@@ -71,6 +87,7 @@ struct _p_Transfer {
   Obstacle       obstacle;
   PetscInt       dim, n;
   PetscReal      slip_bound, angle_bound;
+  PetscBool      curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
   PetscBool      guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
   RowSet         rows;
   PetscBool      built;
@@ -80,7 +97,11 @@ struct _p_Transfer {
   PetscReal     *built_slip;    /* per row: the part of sum_j P_ij x_j - x_i across the normal at the last build, 3 numbers each [m] */
   PetscReal     *slip;     /* per row: how far the partner had slipped since the row was built, as of the last update [parts of the face] */
   PetscBool     *keep;     /* per row: in the next build it stays as it is, being near contact and within the bounds */
-  PetscReal     *column_x; /* work space: present positions of the columns */
+  PetscBool     *followed; /* per row: it has followed the surfaces since the last update, see TransferFollow() */
+  PetscBool     *goes_on;  /* per row: in the next build its weights go on from where they are */
+  Follow         follow;
+  PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
+  PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
   TransferCounts counts;
 };
 
@@ -130,7 +151,12 @@ PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, Pe
 
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
+PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
+PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
+PETSC_INTERN void           RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal      RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
+                                     const PetscReal[]);
 PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

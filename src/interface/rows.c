@@ -14,6 +14,10 @@
 #define LEAST_DEPTH 0.5
 /* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
 #define OBLIQUE 2
+/* Cosines of the angles up to which normals of both sides belong to a bend, 10 degrees, and from which on to an edge, 18 degrees. Discs of
+   16 edges, whose faces are 22 degrees from each other, roll on their edges. */
+#define BENT 0.985
+#define EDGE 0.95
 
 PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSet *set)
 {
@@ -21,6 +25,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
   PetscCall(PetscMemzero(set, sizeof(*set)));
   PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
                          &set->offsets));
+  PetscCall(PetscCalloc1(n, &set->rest));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,6 +34,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
+  PetscCall(PetscFree(set->rest));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -61,10 +67,14 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
     while (share < n_shares && shares[share].row == row) {
       Share sum = shares[share];
 
-      sum.value = 0;
-      while (share < n_shares && shares[share].row == row && shares[share].dof == sum.dof) sum.value += shares[share++].value;
+      sum.value = sum.goal = 0;
+      for (; share < n_shares && shares[share].row == row && shares[share].dof == sum.dof; share++) {
+        sum.value += shares[share].value;
+        sum.goal += shares[share].goal;
+      }
       sum.value /= lumped[row];
-      if (covered && PetscAbsReal(sum.value) > PRUNE) set->shares[count++] = sum;
+      sum.goal /= lumped[row];
+      if (covered && (PetscAbsReal(sum.value) > PRUNE || PetscAbsReal(sum.goal) > PRUNE)) set->shares[count++] = sum;
     }
     set->opposite[row] = (PetscBool)(count > set->offsets[row]);
   }
@@ -152,26 +162,101 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
   }
 }
 
-/* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
-   the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
-   touches when the end of the partner does, not before or after. */
-static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end,
-                                PetscReal ahead, PetscReal behind, RowSet *set)
+/* How far a bend counts, from 1 to 0, by the cosine of the angle of the normals */
+static PetscReal BendCounts(PetscReal cosine)
+{
+  return PetscMin(1, PetscMax(0, (cosine - EDGE) / (BENT - EDGE)));
+}
+
+/* The normal of a row is half way between that of its node and those of the partner, where they are opposed but for a bend: so it does not
+   depend on which of the surfaces has the nodes of the rows */
+void RowNormal(PetscInt dim, PetscInt n, const PetscReal node[], const PetscReal *normals[], const PetscReal weights[], PetscReal normal[])
+{
+  PetscReal partner[3] = {0}, sum[3] = {0}, square = 0, cosine = 0;
+
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt d = 0; d < dim; d++) partner[d] -= weights[j] * normals[j][d];
+  if (Normalize(partner) > 0) cosine = Dot(partner, node);
+  for (PetscInt d = 0; d < 3; d++) {
+    sum[d] = d < dim ? node[d] + BendCounts(cosine) * partner[d] : 0;
+    square += PetscSqr(sum[d]);
+  }
+  for (PetscInt d = 0; d < dim; d++) normal[d] = square > 0 ? sum[d] / PetscSqrtReal(square) : node[d];
+}
+
+/* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its
+   nodes and the planes through them across their normals a surface of second order is met:
+
+     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)) */
+PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
+                   const PetscReal *normals[], const PetscReal weights[])
+{
+  PetscReal bulge = 0, counts = 1;
+
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal along = 0, plane = 0, cosine = 0;
+
+    for (PetscInt d = 0; d < dim; d++) {
+      along += normal[d] * (partners[j][d] - x[d]);
+      plane += normals[j][d] * (partners[j][d] - x[d]);
+      cosine += normals[j][d] * normal[d];
+    }
+    counts = PetscMin(counts, BendCounts(-cosine));
+    if (counts == 0) return 0;
+    bulge += 0.5 * weights[j] * (along - plane / cosine);
+  }
+  return counts * bulge;
+}
+
+/* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known.
+ */
+static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal *gap,
+                           PetscReal *present, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   *normal = data->normals + 3 * row, **partners;
-  PetscReal         *weights, gap, present;
+  const PetscReal   *normal = set->normals + dim * row;
+
+  PetscFunctionBegin;
+  *gap = 0;
+  for (PetscInt d = 0; d < dim; d++) {
+    PetscReal now = 0, there = 0;
+
+    for (PetscInt j = 0; j < n; j++) {
+      now += set->shares[first + j].value * x[3 * set->columns[first + j] + d];
+      there += set->shares[first + j].value * reference[3 * set->columns[first + j] + d];
+    }
+    *gap += normal[d] * (there - data->reference[3 * row + d] - (now - data->positions[3 * row + d]));
+  }
+  if (set->beyond[row]) *present = end;
+  *gap += *present;
+  set->rest[row] = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
+   the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
+   touches when the end of the partner does, not before or after. */
+static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
+                                const PetscReal column_normals[], PetscReal end, PetscReal ahead, PetscReal behind, RowSet *set)
+{
+  const SurfaceData *data  = &transfer->dirichlet->data;
+  const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
+  const PetscReal  **normals, **partners;
+  PetscReal *weights, gap, present, bulge, normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   set->gap[row] = PETSC_MAX_REAL;
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(n, &weights, n, &partners));
+  PetscCall(PetscMalloc3(n, &weights, n, &partners, n, &normals));
   for (PetscInt j = 0; j < n; j++) {
-    weights[j]  = set->shares[first + j].value;
+    weights[j]  = set->shares[first + j].goal;
     partners[j] = x + 3 * set->columns[first + j];
+    normals[j]  = column_normals + 3 * set->columns[first + j];
   }
+  if (transfer->curved) RowNormal(dim, n, data->normals + 3 * row, normals, weights, normal);
+  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   for (PetscInt pass = 0; pass < 2; pass++)
     RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
   gap = present = 0;
@@ -185,9 +270,18 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += normal[d] * (there - data->reference[3 * row + d]);
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
-  for (PetscInt j = 0; j < n; j++) set->shares[first + j].value = weights[j];
-  PetscCall(PetscFree2(weights, partners));
-  if (set->beyond[row]) {
+  bulge = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights) : 0;
+  if (!set->beyond[row]) {
+    gap -= bulge;
+    present -= bulge;
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    set->shares[first + j].goal = weights[j];
+    if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
+  }
+  PetscCall(PetscFree3(weights, partners, normals));
+  if (transfer->goes_on[row]) PetscCall(GoOn(transfer, row, x, reference, end, &gap, &present, set));
+  else if (set->beyond[row]) {
     gap += end - present;
     present = end;
   }
@@ -196,7 +290,8 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the shares of rows that are to stay as they are in place of their new ones */
+/* Puts the shares of rows that are to stay as they are in place of their new ones. Those of rows that go on from where they are come to
+   their new ones, which are their goals. */
 static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt *n_shares, Share *shares[])
 {
   const RowSet *old  = &transfer->rows;
@@ -205,17 +300,23 @@ static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt
 
   PetscFunctionBegin;
   for (PetscInt row = 0; row < transfer->n; row++)
-    if (transfer->keep[row]) kept += old->offsets[row + 1] - old->offsets[row];
+    if (transfer->keep[row] || transfer->goes_on[row]) kept += old->offsets[row + 1] - old->offsets[row];
+  for (PetscInt i = 0; i < *n_shares; i++) {
+    (*shares)[i].goal = (*shares)[i].value;
+    if (transfer->goes_on[(*shares)[i].row]) (*shares)[i].value = 0;
+  }
   if (!kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(*n_shares + kept, &all));
   for (PetscInt i = 0; i < *n_shares; i++)
     if (!transfer->keep[(*shares)[i].row]) all[count++] = (*shares)[i];
   for (PetscInt row = 0; row < transfer->n; row++) {
-    if (!transfer->keep[row]) continue;
-    lumped[row] = old->area[row];
+    if (!transfer->keep[row] && !transfer->goes_on[row]) continue;
+    if (transfer->keep[row]) lumped[row] = old->area[row];
     for (PetscInt i = old->offsets[row]; i < old->offsets[row + 1]; i++) {
       all[count] = old->shares[i];
-      all[count++].value *= lumped[row];
+      all[count].value *= lumped[row];
+      all[count].goal = transfer->keep[row] ? all[count].goal * lumped[row] : 0;
+      count++;
     }
   }
   PetscCall(PetscFree(*shares));
@@ -229,6 +330,7 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
 {
   set->opposite[row] = PETSC_TRUE;
   set->gap[row]      = transfer->rows.gap[row];
+  set->rest[row]     = transfer->rows.rest[row];
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
 }
 
@@ -253,10 +355,11 @@ static PetscBool SameRow(PetscInt dim, PetscReal size, const RowSet *a, const Ro
 }
 
 /* Marks the rows that have changed. Those that have not keep their numbers to the last bit. */
-static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], PetscBool first, const RowSet *old, RowSet *set)
+static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], PetscBool first, const PetscBool goes_on[], const RowSet *old,
+                        RowSet *set)
 {
   for (PetscInt row = 0; row < n; row++) {
-    set->changed[row] = (PetscBool)(first || !SameRow(dim, sizes[row], old, set, row));
+    set->changed[row] = (PetscBool)(first || goes_on[row] || !SameRow(dim, sizes[row], old, set, row));
     if (set->changed[row]) continue;
     set->gap[row]  = old->gap[row];
     set->area[row] = old->area[row];
@@ -281,7 +384,7 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
-  PetscReal         *lumped, *ends, *x, *reference, behind;
+  PetscReal         *lumped, *ends, *x, *reference, *normals, behind;
   PetscInt           n_shares, *marks;
   Share             *shares;
   RowSet             set;
@@ -295,7 +398,9 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
   PetscCall(PetscFree(shares));
   PetscCall(ConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
-  PetscCall(PetscMalloc2(3 * set.n_columns, &x, 3 * set.n_columns, &reference));
+  PetscCall(PetscMalloc3(3 * set.n_columns, &x, 3 * set.n_columns, &reference, 3 * set.n_columns, &normals));
+  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
@@ -303,15 +408,17 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   for (PetscInt row = 0; row < transfer->n; row++) {
     set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
-    else PetscCall(FinishRow(transfer, row, x, reference, ends[row], near, behind, &set));
+    else PetscCall(FinishRow(transfer, row, x, reference, normals, ends[row], near, behind, &set));
     set.area[row] = set.opposite[row] ? lumped[row] : 0;
   }
-  CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, &transfer->rows, &set);
+  CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
-  PetscCall(PetscFree(transfer->column_x));
-  PetscCall(PetscMalloc1(3 * set.n_columns, &transfer->column_x));
-  PetscCall(PetscFree2(x, reference));
+  PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
+  PetscCall(PetscMalloc4(3 * set.n_columns, &transfer->column_x, 3 * set.n_columns, &transfer->column_normals, 3 * set.n_columns,
+                         &transfer->column_moved, 3 * set.n_columns, &transfer->column_reference));
+  PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
+  PetscCall(PetscFree3(x, reference, normals));
   PetscCall(PetscFree3(marks, lumped, ends));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -343,7 +450,7 @@ PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
       if (set.opposite[row]) set.gap[row] -= gradient[d] * (x[d] - reference[d]);
     }
   }
-  CompareRows(dim, transfer->n, data->sizes, (PetscBool)!transfer->built, &transfer->rows, &set);
+  CompareRows(dim, transfer->n, data->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -57,6 +57,10 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", t->dim, neumann->data.dim);
   PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n,
                          &t->slip, t->n, &t->keep));
+  PetscCall(PetscCalloc2(t->n, &t->followed, t->n, &t->goes_on));
+  if (neumann)
+    PetscCall(PetscCalloc6(3 * t->n, &t->follow.x[0], 3 * neumann->data.n_owned, &t->follow.x[1], 3 * t->n, &t->follow.moved,
+                           3 * neumann->data.n_owned, &t->follow.partner_moved, 3 * t->n, &t->follow.slip, t->n, &t->follow.known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,7 +87,10 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
-  PetscCall(PetscFree((*transfer)->column_x));
+  PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
+  PetscCall(PetscFree6((*transfer)->follow.x[0], (*transfer)->follow.x[1], (*transfer)->follow.moved, (*transfer)->follow.partner_moved,
+                       (*transfer)->follow.slip, (*transfer)->follow.known));
+  PetscCall(PetscFree4((*transfer)->column_x, (*transfer)->column_normals, (*transfer)->column_moved, (*transfer)->column_reference));
   PetscCall(PetscHeaderDestroy(transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -146,6 +153,35 @@ PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
 }
 
 /*@
+  TransferSetCurved - whether rows take the bend of both surfaces into account
+
+  Logically Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, before the first `TransferUpdate()`
+- curved   - false by default
+
+  Level: developer
+
+  Notes:
+  If so, the normal of a row is half way between that of its node and those of the partner opposite, and its gap is counted to a surface of
+  second order that has the normals of the partner's nodes. Then what comes of it hardly depends on which surface has the nodes of the rows,
+  nor on where the corners of the faces are. Where normals differ by more than 26 degrees, which is an edge, the row is as it is otherwise:
+  with the normal of its node, and the gap to the faces.
+
+.seealso: `Transfer`, `TransferUpdate()`
+@*/
+PetscErrorCode TransferSetCurved(Transfer transfer, PetscBool curved)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(transfer, curved, 2);
+  PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
+  transfer->curved = curved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferGetRows - the rows of the nodes that this rank owns
 
   Not Collective
@@ -176,6 +212,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->normals  = set->normals;
   rows->size     = transfer->dirichlet->data.sizes;
   rows->changed  = set->changed;
+  rows->followed = transfer->followed;
   rows->slip     = transfer->slip;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -68,13 +68,32 @@ static void SplitOffset(PetscInt dim, const PetscReal normal[], PetscReal offset
   for (PetscInt d = 0; d < dim; d++) offset[d] -= *gap * normal[d];
 }
 
-/* Brings the present positions of the partner's nodes to the ranks whose rows name them */
-static PetscErrorCode GetColumnPositions(Transfer transfer)
+/* Brings vectors of the partner's nodes to the ranks whose rows name them */
+PetscErrorCode TransferGetColumns(Transfer transfer, const PetscReal vectors[], PetscReal columns[])
 {
   PetscFunctionBegin;
-  PetscCall(PetscSFBcastBegin(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(transfer->rows.vectors, MPIU_REAL, transfer->neumann->data.positions, transfer->column_x, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(transfer->rows.vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(transfer->rows.vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The normal that a row would have now */
+void TransferPresentNormal(Transfer transfer, PetscInt row, PetscReal normal[])
+{
+  const RowSet    *set   = &transfer->rows;
+  const PetscInt   first = set->offsets[row], n = set->offsets[row + 1] - first;
+  const PetscReal *normals[FOLLOW_MAX];
+  PetscReal        weights[FOLLOW_MAX];
+
+  if (!transfer->curved) {
+    for (PetscInt d = 0; d < transfer->dim; d++) normal[d] = transfer->dirichlet->data.normals[3 * row + d];
+    return;
+  }
+  for (PetscInt j = 0; j < PetscMin(n, FOLLOW_MAX); j++) {
+    normals[j] = transfer->column_normals + 3 * set->columns[first + j];
+    weights[j] = set->shares[first + j].value;
+  }
+  RowNormal(transfer->dim, PetscMin(n, FOLLOW_MAX), transfer->dirichlet->data.normals + 3 * row, normals, weights, normal);
 }
 
 /* Whether a row of this rank near contact has slipped or turned beyond the bounds. Marks those that have not, and notes all slips. */
@@ -86,10 +105,13 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
-  if (transfer->neumann) PetscCall(GetColumnPositions(transfer));
+  if (transfer->neumann) {
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+  }
   for (PetscInt row = 0; row < transfer->n; row++) {
-    const PetscReal *normal = transfer->rows.normals + dim * row, *present = data->normals + 3 * row, size = data->sizes[row];
-    PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3];
+    const PetscReal *normal = transfer->rows.normals + dim * row, size = data->sizes[row];
+    PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3], present[3];
     PetscBool        within;
 
     transfer->keep[row] = PETSC_FALSE;
@@ -98,6 +120,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     if (transfer->neumann) {
       GetOffset(transfer, row, offset);
       SplitOffset(dim, normal, offset, &gap);
+      TransferPresentNormal(transfer, row, present);
       for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(offset[d] - transfer->built_slip[3 * row + d]);
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(present[d] - normal[d]);
       transfer->slip[row] = PetscSqrtReal(slip) / size;
@@ -145,7 +168,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   }
   PetscCallMPI(MPIU_Allreduce(&size, &transfer->smallest_size, 1, MPIU_REAL, MPIU_MIN, transfer->comm));
   if (transfer->neumann) {
-    PetscCall(GetColumnPositions(transfer));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
     for (PetscInt row = 0; row < transfer->n; row++) {
       PetscReal gap;
 
@@ -229,7 +252,12 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   *rebuilt = (PetscBool)(!transfer->built || near > transfer->built_near);
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
+  if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (!*rebuilt) PetscCall(HasMoved(transfer, rebuilt));
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->follow.known && transfer->follow.known[row] && !transfer->keep[row]);
+    transfer->followed[row] = PETSC_FALSE;
+  }
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetReach(transfer, near, &reach));
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));

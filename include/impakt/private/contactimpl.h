@@ -111,6 +111,7 @@ typedef struct {
   PetscBool *tied;        /* it stays in contact whatever its force */
   PetscBool *by_force;    /* its force is an unknown of the method, on both sides; NULL: of no row */
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
+  PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
 } ContactRows;
 
@@ -177,7 +178,8 @@ typedef struct {
   PetscBool      begun;                   /* it is known */
   PetscBool      at_rest;                 /* there is none at the start */
   PetscBool      known;                   /* the work of the present step has been computed */
-  PetscBool      rebuilt;                 /* rows have been built again at the start of the present step */
+  PetscBool      rebuilt;                 /* rows have got new entries at the start of the present step */
+  PetscBool      start_known;             /* the energies at its start have been told, see ContactSetStartEnergies() */
   PetscBool      changed;                 /* the step has begun with other forces than those that the last one ended with */
   PetscBool      again;                   /* the step is made again, with other contact forces at its start */
   PetscReal      work;                    /* of all accepted steps [J] */
@@ -215,6 +217,10 @@ typedef struct {
 typedef struct {
   PetscReal     *speeds;     /* per body */
   PetscReal     *last_gap;   /* per row */
+  PetscBool     *moved;      /* per row */
+  PetscReal     *last_force; /* per row */
+  PetscReal     *handover;   /* two numbers per row */
+  PetscInt      *intervals;  /* per row */
   BodyCondition *conditions; /* per row */
   PetscBool     *stabilized; /* per row */
 } ContactWork;

@@ -4,7 +4,7 @@
 /* Whether there are any: from loads or, where it is counted, of contact */
 PetscBool BodyHasOutsideForce(Body body, PetscBool contact)
 {
-  return (PetscBool)(body->loads || (contact && body->rows.n_forced));
+  return (PetscBool)(body->loads || (contact && (body->rows.n_forced || BodyHandsOver(body))));
 }
 
 /* The force from outside at a time and, where it is counted, that of contact at a position (0 to 1) in the controller step [N]; u: the

@@ -38,6 +38,7 @@ PetscErrorCode BodySave(Body body)
   /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
+  PetscCall(BodyHandoverEnd(body));
   body->iterate.known = PETSC_FALSE;
   body->repeats       = PETSC_FALSE;
   if (stepped) body->time.accepted_level = body->time.level;

@@ -308,6 +308,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->rows.matrix));
   PetscCall(MatDestroy(&b->rows.free_matrix));
   PetscCall(BodyGramDestroy(&b->rows.gram));
+  PetscCall(BodyHandoverDestroy(&b->rows.handover));
   PetscCall(TSDestroy(&b->time.ts));
   PetscCall(BodyLayerSolverDestroy(&b->layer.solver));
   PetscCall(BodyLayerElementsDestroy(&b->layer.elements));

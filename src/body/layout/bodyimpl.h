@@ -89,6 +89,14 @@ typedef struct {
   PetscInt  step; /* substeps since the start */
 } BodyState;
 
+/* Contact forces that go over from the rows of the last accepted step to those of this one, see handover.c */
+typedef struct {
+  Mat        matrix;       /* the rows of the last accepted step; NULL before the first */
+  PetscReal *before, *now; /* per local row: force at the start of the step, along the row as it was and as it is [N] */
+  PetscInt  *intervals;    /* per local row: of the waveform of its force */
+  PetscReal  until;        /* position in the controller step from which on there is nothing of the old rows; 0: they are the same */
+} BodyHandover;
+
 /* The rows of the interface: of this rank, and how to have all of them on every rank */
 typedef struct {
   Mat              matrix;      /* B: rows of all ranks x displacements */
@@ -108,6 +116,7 @@ typedef struct {
   PetscReal     *robin;                           /* per local row: stiffness of its Robin spring [N/m] */
   PetscInt       n_prescribed, n_forced, n_robin; /* over all ranks; Robin rows are forced ones */
   PetscScalar   *kept_traces;                     /* output traces put aside by BodyKeep() */
+  BodyHandover   handover;
 } BodyRows;
 
 /* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */
@@ -227,6 +236,10 @@ PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[], Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyHandoverEnd(Body);
+PETSC_INTERN PetscErrorCode BodyHandoverDestroy(BodyHandover *);
+PETSC_INTERN PetscBool      BodyHandsOver(Body);
+PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);

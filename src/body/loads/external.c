@@ -117,6 +117,8 @@ PetscErrorCode BodyComputeEnergy(Body body, PetscReal *energy)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(energy, 2);
+  /* where a step has been undone, the internal force is still that of its end */
+  if (body->state.step == body->saved.step) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(BodyGetMeasures(body, &measures));
   if (body->loads && body->time.substeps == 1 && body->state.step != body->saved.step)
     PetscCall(ComputeWork(body, body->substep_start.u, body->work.nodes[2], &pending));

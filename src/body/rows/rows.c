@@ -229,13 +229,14 @@ PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec
 }
 
 /* f += scale B^T lambda on forced and Robin rows, with the force trace at that position of the controller step and the springs of
-   Robin rows at displacement u */
+   Robin rows at displacement u; and what goes over from the rows as they were */
 PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar scale, Vec u, Vec f)
 {
   const PetscScalar *at = NULL;
   PetscScalar       *row;
 
   PetscFunctionBegin;
+  PetscCall(BodyAddHandover(body, position, scale, f));
   if (!body->rows.n_forced) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   PetscCall(TraceInterpolate(body->traces.force_in, position, 0, body->rows.local, row));

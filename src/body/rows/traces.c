@@ -29,7 +29,7 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
   if (body->rows.n_prescribed) {
     Vec force = body->state.internal_force;
 
-    if (body->rows.traction == BODY_TRACTION_REACTION || body->loads || body->rows.n_forced) {
+    if (body->rows.traction == BODY_TRACTION_REACTION || body->loads || body->rows.n_forced || BodyHandsOver(body)) {
       force = body->work.nodes[0];
       if (body->rows.traction == BODY_TRACTION_REACTION) {
         PetscCall(BodyMultiplyMass(body, body->state.a, force));

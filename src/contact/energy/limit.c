@@ -247,6 +247,7 @@ static PetscErrorCode MeasureGroupWork(Contact contact)
 PetscErrorCode ContactLimitEnergy(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
+  PetscBool      touch  = PETSC_FALSE;
 
   PetscFunctionBegin;
   energy->known     = (PetscBool)!energy->unlimited;
@@ -259,7 +260,8 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group[b] = b;
   ContactFindGroups(contact);
   for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->pair_sums[2 * p];
-  if (energy->rebuilt) PetscCall(MeasureGroupWork(contact));
+  for (PetscInt p = 0; p < contact->n_pairs && !touch; p++) touch = (PetscBool)(energy->pair_sums[2 * p + 1] != 0);
+  if (energy->rebuilt && touch) PetscCall(MeasureGroupWork(contact));
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   if (contact->attempt.may_cut) { /* what is cut in halves all the same need not be limited */
     PetscReal loss;

@@ -84,14 +84,42 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After rows have been built again, at the start of the step: what is done along the old rows and along the new ones is not the same, so
+/* After rows have got new entries, at the start of the step: what is done along the old rows and along the new ones is not the same, so
    that energies tell what the rows do not. Collective. */
 PetscErrorCode ContactNoteRebuild(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  energy->rebuilt = PETSC_TRUE;
+  /* in halves of a step the staggered energy of explicit bodies is another */
+  if (energy->start_known && contact->attempt.level == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  energy->start_known = PETSC_FALSE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeEnergy(contact->bodies[b], &energy->start_energy[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetStartEnergies - tells the energies of the bodies at the start of the next step, where they are known
+
+  Not Collective
+
+  Input Parameters:
++ contact  - the `Contact`, set up, after `ContactAccept()`
+- energies - of each body: kinetic and potential energy less the work of its loads, as `BodyComputeEnergy()` has it [J]
+
+  Level: developer
+
+  Note:
+  Saves computing them again where the energy that contact gains follows from them.
+
+.seealso: `Contact`, `ContactSetEnergyCap()`
+@*/
+PetscErrorCode ContactSetStartEnergies(Contact contact, const PetscReal energies[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(energies, 2);
+  PetscCall(PetscArraycpy(contact->energy.start_energy, energies, contact->n_bodies));
+  contact->energy.start_known = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -159,8 +159,6 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 @*/
 PetscErrorCode ContactStep(Contact contact)
 {
-  PetscInt rebuilds;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
@@ -168,11 +166,8 @@ PetscErrorCode ContactStep(Contact contact)
   contact->counts.sweeps = 0;
   PetscCall(ContactBeginEnergy(contact));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
-  rebuilds = contact->counts.rebuilds;
   if (!contact->attempt.again) PetscCall(ContactUpdateRows(contact));
-  /* in halves of a step too: the staggered energy of explicit bodies depends on the step */
-  if ((contact->counts.rebuilds > rebuilds || contact->energy.rebuilt) && !contact->energy.unlimited)
-    PetscCall(ContactNoteRebuild(contact));
+  if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) {
     PetscUseTypeMethod(contact, step);
@@ -216,6 +211,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
   contact->attempt.accepted_level = contact->attempt.level;
   contact->attempt.again          = PETSC_FALSE;
+  contact->energy.start_known     = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

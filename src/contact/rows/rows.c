@@ -130,6 +130,8 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->ranks.offsets));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
+  PetscCall(PetscCalloc5(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
+                         &contact->rows.followed, n, &contact->work.moved));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
@@ -194,6 +196,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
                                                          : CONTACT_NO_GAP;
       contact->rows.area[i]        = rows.area[node];
       contact->rows.changed[i]     = rows.changed[node];
+      contact->rows.followed[i]    = rows.followed[node];
       if (contact->options.law == CONTACT_LAW_TIED) {
         contact->rows.tied[i] = (PetscBool)(rows.opposite[node] &&
                                             PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * (dim == 1 ? point_size : rows.size[node]));
@@ -310,15 +313,19 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscReal *extent)
 {
   PetscBool rebuilt;
+  PetscBool inertia = PETSC_TRUE;
   PetscInt  dims[2] = {contact->dim, contact->dim};
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal lower[3], upper[3];
+    PetscBool is_static;
     DM        dm;
 
     PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
     PetscCall(DMGetCoordinateDim(dm, &dims[side]));
+    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+    inertia = (PetscBool)(inertia && !is_static);
     PetscCall(SurfaceCreate(dm, pair->surface[side], &pair->surfaces[side]));
     PetscCall(DMGetBoundingBox(dm, lower, upper));
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
@@ -333,6 +340,7 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
+  PetscCall(TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia)));
   PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
@@ -409,6 +417,8 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->ranks.offsets));
   PetscCall(PetscFree6(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
                        contact->held.merged_gap));
+  PetscCall(
+      PetscFree5(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed, contact->work.moved));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -148,7 +148,7 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->rows.changed[i]) {
+    if (contact->rows.changed[i] || contact->rows.followed[i]) {
       schwarz->known[i] = PETSC_FALSE;
       for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++)
         if (schwarz->memory[k].known) schwarz->memory[k].known[i] = PETSC_FALSE;

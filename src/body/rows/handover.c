@@ -1,0 +1,107 @@
+/*
+   Contact forces that begin along other rows than they end.
+
+   The acceleration at the start of a controller step has in it what forces f_0 did along the rows as they were, B_0^T f_0, at the end of
+   the step before. Rows that are built again act along other directions and on other nodes. In the first interval of the force's waveform,
+   which ends at the position 1 / n of the controller step, the force on the nodes is to go linearly from the old to the new one: at the
+   position s it is
+
+     (1 - n s) B_0^T f_0 + n s B^T f_1.
+
+   The input trace brings (1 - n s) B^T f_0 + n s B^T f_1 along the rows as they are, so that what is missing is (1 - n s) (B_0 - B)^T f_0.
+   Bodies whose forces are counted at the ends of the intervals alone do not see it. Without it, bodies that make other substeps would get
+   another impulse, and momentum would be lost.
+*/
+#include <body/layout/bodyimpl.h>
+
+PetscErrorCode BodyHandoverDestroy(BodyHandover *handover)
+{
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&handover->matrix));
+  PetscCall(PetscFree3(handover->before, handover->now, handover->intervals));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows are those of an accepted step: the next one starts with forces along them */
+PetscErrorCode BodyHandoverEnd(Body body)
+{
+  BodyHandover *handover = &body->rows.handover;
+
+  PetscFunctionBegin;
+  handover->until = 0;
+  if (handover->matrix == body->rows.matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectReference((PetscObject)body->rows.matrix));
+  PetscCall(MatDestroy(&handover->matrix));
+  handover->matrix = body->rows.matrix;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyHandOver - lets the contact forces go over from the rows of the last accepted step to those of `BodyUpdateInterface()`
+
+  Collective
+
+  Input Parameters:
++ body      - the `Body`, after `BodyUpdateInterface()`
+. before    - for each row of this rank the force on the body at the end of the last accepted step, along the row as it was then [N]
+. now       - the force at the start of this step that the input trace has, along the row as it is now; 0 for a row that has been let go [N]
+. intervals - for each row of this rank the intervals of the controller step between which its force is linear; at least 1
+- fewest    - the least of `intervals` of all ranks
+
+  Level: developer
+
+  Note:
+  It lasts until `BodySave()`.
+
+.seealso: `Body`, `BodyUpdateInterface()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyHandOver(Body body, const PetscReal before[], const PetscReal now[], const PetscInt intervals[], PetscInt fewest)
+{
+  BodyRows     *rows     = &body->rows;
+  BodyHandover *handover = &rows->handover;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(handover->matrix, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySave()");
+  PetscCheck(fewest > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "A controller step has %" PetscInt_FMT " intervals, but must have 1 at least", fewest);
+  if (!handover->before)
+    PetscCall(PetscMalloc3(rows->local, &handover->before, rows->local, &handover->now, rows->local, &handover->intervals));
+  PetscCall(PetscArraycpy(handover->before, before, rows->local));
+  PetscCall(PetscArraycpy(handover->now, now, rows->local));
+  PetscCall(PetscArraycpy(handover->intervals, intervals, rows->local));
+  handover->until = 1.0 / fewest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether forces go over anywhere in this controller step. Not while the compliance is probed, which begins without forces. */
+PetscBool BodyHandsOver(Body body)
+{
+  return (PetscBool)(body->rows.handover.until > 0 && !body->unloaded);
+}
+
+/* row = (1 - n s) force with the position s of the controller step, or zero behind the first interval */
+static void WeightForces(const BodyHandover *handover, PetscInt n, PetscReal position, PetscScalar scale, const PetscReal force[],
+                         PetscScalar row[])
+{
+  for (PetscInt i = 0; i < n; i++) row[i] = scale * PetscMax(1 - handover->intervals[i] * position, 0) * force[i];
+}
+
+/* f += scale (1 - n s) (B_0^T f_0 - B^T f_0) */
+PetscErrorCode BodyAddHandover(Body body, PetscReal position, PetscScalar scale, Vec f)
+{
+  const BodyHandover *handover = &body->rows.handover;
+  PetscScalar        *row;
+
+  PetscFunctionBegin;
+  if (!BodyHandsOver(body) || position >= handover->until) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  WeightForces(handover, body->rows.local, position, scale, handover->before, row);
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTransposeAdd(handover->matrix, body->work.rows[0], f, f));
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  WeightForces(handover, body->rows.local, position, -scale, handover->now, row);
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTransposeAdd(body->rows.matrix, body->work.rows[0], f, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,252 @@
+/*
+   Rows that follow the surfaces between two builds.
+
+   A force along a row has the same moment on both sides if sum_j P_ij x_j - x_i is along the normal n_i where the force acts: at the end of
+   the controller step. So the weights follow the slip, see RowCorrect(), ahead by what the partner is expected to slip in the step. What is
+   left of the moment is of second order in the step. The slip that is expected is a mean of those of the last steps, since the massless
+   nodes move with the forces, so that weights which answered to every motion of them would make them swing. The normal is that of the
+   surface at the start of the step.
+
+   The gap goes on from where it was. With rows B_0 of the last step and B of this one, and the way dx that is expected, the gap that the
+   step begins with is
+
+     gap - 1/2 (B - B_0) dx,
+
+   so that in the step it changes by 1/2 (B_0 + B) dx, the trapezoidal rule for the path of the gap. Then what forces do along rows that
+   change, 1/2 (f_0 B_0 + f B) dx in a closed gap, adds up to nothing but for terms of second order in the step.
+
+   When a row is built again, other nodes of the partner come in, and its weights would jump, which loses energy. Its new weights are the
+   goal, to which those that it has go as it slips on, by the slip after which rows are built.
+*/
+#include "interfaceimpl.h"
+
+/* Part of the last step's slip in the mean. With all of it, bars that meet at a fifth of their wave speed chatter. */
+#define LATEST 0.5
+
+/* What a row makes of vectors of the nodes: n . (sum_j P_j x_j - x), and the part across the normal */
+static PetscReal SplitRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[], PetscReal across[])
+{
+  const RowSet    *set    = &transfer->rows;
+  const PetscReal *normal = set->normals + transfer->dim * row;
+  PetscReal        along  = 0;
+
+  for (PetscInt d = 0; d < transfer->dim; d++) {
+    across[d] = -x[3 * row + d];
+    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
+      across[d] += set->shares[j].value * columns[3 * set->columns[j] + d];
+    along += normal[d] * across[d];
+  }
+  for (PetscInt d = 0; d < transfer->dim; d++) across[d] -= along * normal[d];
+  return along;
+}
+
+static PetscReal AlongRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[])
+{
+  PetscReal across[3];
+
+  return SplitRow(transfer, row, x, columns, across);
+}
+
+/* Takes the slip of the last step into the mean. `across`: that slip [m] */
+static void ExpectSlip(Transfer transfer, PetscInt row, const PetscReal across[], PetscReal ratio)
+{
+  PetscReal *slip = transfer->follow.slip + 3 * row;
+
+  for (PetscInt d = 0; d < transfer->dim; d++) {
+    slip[d] *= ratio;
+    slip[d] += (transfer->follow.known[row] ? LATEST : 1) * (ratio * across[d] - slip[d]);
+  }
+}
+
+/* Weights that have sum_j P_j x_j - x across the normal where it is wanted, from those given. `ahead`: where the partner is expected, from
+   where it is now [m] */
+static PetscErrorCode Correct(Transfer transfer, PetscInt row, const PetscReal ahead[], PetscReal weights[])
+{
+  const SurfaceData *data  = &transfer->dirichlet->data;
+  const RowSet      *set   = &transfer->rows;
+  const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
+  const PetscReal   *partners[FOLLOW_MAX];
+  PetscReal          x[3] = {0}, normal[3] = {0};
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < n; j++) partners[j] = transfer->column_x + 3 * set->columns[first + j];
+  for (PetscInt d = 0; d < dim; d++) {
+    x[d]      = data->positions[3 * row + d] - ahead[d];
+    normal[d] = set->normals[dim * row + d];
+  }
+  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, x, normal, partners, data->sizes[row], weights); /* twice for round-off */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The weights go to their goals by the part of the way that the slip of this step is of the bound */
+static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal ahead[])
+{
+  RowSet         *set   = &transfer->rows;
+  const PetscInt  first = set->offsets[row], n = set->offsets[row + 1] - first;
+  const PetscReal slip = PetscSqrtReal(Dot(ahead, ahead)) / (transfer->slip_bound * transfer->dirichlet->data.sizes[row]);
+  const PetscReal rest = PetscMax(set->rest[row] - slip, 0), part = set->rest[row] > 0 ? 1 - rest / set->rest[row] : 0;
+  PetscReal       weights[FOLLOW_MAX];
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < n; j++) weights[j] = set->shares[first + j].goal;
+  if (set->rest[row] > 0) PetscCall(Correct(transfer, row, ahead, weights));
+  for (PetscInt j = 0; j < n; j++) {
+    set->shares[first + j].goal = weights[j];
+    weights[j]                  = set->shares[first + j].value + part * (weights[j] - set->shares[first + j].value);
+  }
+  PetscCall(Correct(transfer, row, ahead, weights));
+  for (PetscInt j = 0; j < n; j++) set->shares[first + j].value = weights[j];
+  set->rest[row] = rest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether neither the slip that is expected nor the turn of the normal since the row was changed is worth a change */
+static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, const PetscReal across[],
+                         const PetscReal ahead[])
+{
+  const SurfaceData *data = &transfer->dirichlet->data;
+  PetscReal          slip = 0, turn = 0, normal[3];
+
+  TransferPresentNormal(transfer, row, normal);
+
+  for (PetscInt d = 0; d < transfer->dim; d++) {
+    slip += PetscSqr(across[d] + ahead[d]);
+    turn += PetscSqr(normal[d] - transfer->rows.normals[transfer->dim * row + d]);
+  }
+  return (PetscBool)(slip < PetscSqr(still * data->sizes[row]) && (!turns || turn < PetscSqr(still)));
+}
+
+/* New normal and weights of a row, and the gap without displacements that has its gap go on. `ratio`: of this step to the last one */
+static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, PetscReal ratio)
+{
+  const SurfaceData *data   = &transfer->dirichlet->data;
+  Follow            *follow = &transfer->follow;
+  RowSet            *set    = &transfer->rows;
+  const PetscInt     dim    = transfer->dim;
+  PetscReal          gap, way, across[3] = {0}, before[3] = {0}, after[3] = {0}, ahead[3] = {0};
+
+  PetscFunctionBegin;
+  gap = set->gap[row] - AlongRow(transfer, row, data->reference, transfer->column_reference) +
+        SplitRow(transfer, row, data->positions, transfer->column_x, before);
+  way = SplitRow(transfer, row, follow->moved, transfer->column_moved, across);
+  ExpectSlip(transfer, row, across, ratio);
+  if (follow->known[row]) PetscCall(PetscArraycpy(ahead, follow->slip + 3 * row, dim));
+  follow->known[row] = PETSC_TRUE;
+  if (IsStill(transfer, row, still, turns, before, ahead)) {
+    transfer->followed[row] = PETSC_FALSE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (turns) TransferPresentNormal(transfer, row, set->normals + dim * row);
+  PetscCall(Approach(transfer, row, ahead));
+  way           = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
+  set->gap[row] = gap - 0.5 * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
+                  SplitRow(transfer, row, data->positions, transfer->column_x, after);
+  /* slips are counted from the last build on */
+  for (PetscInt d = 0; d < dim; d++) transfer->built_slip[3 * row + d] += after[d] - before[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The gap of a row where the surfaces are now [m] */
+static PetscReal PresentGap(Transfer transfer, PetscInt row)
+{
+  const SurfaceData *data = &transfer->dirichlet->data;
+
+  return transfer->rows.gap[row] + AlongRow(transfer, row, data->positions, transfer->column_x) -
+         AlongRow(transfer, row, data->reference, transfer->column_reference);
+}
+
+/* Marks rows that are to follow: those of nodes that touch, or may within the reach. Nodes beyond the end of the partner have their gap
+   from where it ends, which only a build tells. */
+static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscBool *any)
+{
+  const RowSet *set   = &transfer->rows;
+  int           found = 0;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    const PetscInt n = set->offsets[row + 1] - set->offsets[row];
+
+    transfer->followed[row] = (PetscBool)(set->opposite[row] && !set->beyond[row] && n <= FOLLOW_MAX &&
+                                          (touches[row] || PresentGap(transfer, row) <= reach));
+    if (transfer->followed[row]) found = 1;
+    else transfer->follow.known[row] = PETSC_FALSE;
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));
+  *any = (PetscBool)found;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes where the nodes of both sides are, and how they have moved since the step before */
+static PetscErrorCode NoteMotion(Transfer transfer)
+{
+  const SurfaceData *data[2]  = {&transfer->dirichlet->data, &transfer->neumann->data};
+  Follow            *follow   = &transfer->follow;
+  PetscReal         *moved[2] = {follow->moved, follow->partner_moved};
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < 2; side++)
+    for (PetscInt i = 0; i < 3 * data[side]->n_owned; i++) {
+      moved[side][i]     = follow->has_last ? data[side]->positions[i] - follow->x[side][i] : 0;
+      follow->x[side][i] = data[side]->positions[i];
+    }
+  follow->has_last = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferFollow - lets rows near contact follow the surfaces, without building them again
+
+  Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, between two surfaces, after `TransferUpdate()`
+. touches  - for each row of this rank, whether it is in contact
+. reach    - other rows follow if their gap is not larger than that [m]
+. still    - rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit
+. turns    - whether normals become those of the surface, which they else do where rows are built
+- step     - until the next update [s]
+
+  Output Parameter:
+. any - whether any row on any rank has followed; which, `TransferRows` tells
+
+  Level: developer
+
+  Notes:
+  The weights of the partner's nodes are changed as little as possible so that a force along the
+  normal has no moment where the surfaces are expected to be after the step. The gap goes on from where it was.
+
+.seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
+@*/
+PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns,
+                              PetscReal step, PetscBool *any)
+{
+  Follow *follow = &transfer->follow;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(transfer, reach, 3);
+  PetscValidLogicalCollectiveReal(transfer, still, 4);
+  PetscValidLogicalCollectiveBool(transfer, turns, 5);
+  PetscValidLogicalCollectiveReal(transfer, step, 6);
+  PetscAssertPointer(any, 7);
+  PetscCheck(transfer->built && transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
+  PetscCheck(step > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The step %g s must be positive", (double)step);
+  PetscCall(NoteMotion(transfer));
+  PetscCall(MarkFollowers(transfer, touches, reach, any));
+  if (*any) {
+    int found = 0;
+
+    PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
+    for (PetscInt row = 0; row < transfer->n; row++) {
+      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, still, turns, follow->step > 0 ? step / follow->step : 1));
+      if (transfer->followed[row]) found = 1;
+    }
+    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));
+    *any = (PetscBool)found;
+  }
+  follow->step = step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
