@@ -36,8 +36,8 @@ typedef const char *ContactType;
 
    Values:
 + `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
-- `CONTACT_LAW_TIED`         - nodes that lie within half a face, in 1-D half an element, of the partner at the start stay beside it:
-                               all components of the displacement are equal
+- `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start, see `ContactSetTieDistance()`, stay there: all components of the
+                               displacement since then are equal
 
    Level: beginner
 
@@ -263,6 +263,8 @@ PETSC_EXTERN PetscErrorCode ContactGetFacing(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetBounds(Contact, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetBounds(Contact, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetTieDistance(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGetTieDistance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);

@@ -68,10 +68,11 @@ typedef struct {
   ContactLaw           law;
   ContactConstraint    constraint;
   ContactStabilization stabilization;
-  PetscBool            facing;      /* pairs of whole bodies keep only the faces that see each other at the start */
-  PetscReal            slip_bound;  /* slip after which rows are built again [parts of a face] */
-  PetscReal            angle_bound; /* turn of a normal after which they are [rad] */
-  PetscReal            tolerance;   /* depth that does not yet count as penetration [m] */
+  PetscBool            facing;       /* pairs of whole bodies keep only the faces that see each other at the start */
+  PetscReal            slip_bound;   /* slip after which rows are built again [parts of a face] */
+  PetscReal            angle_bound;  /* turn of a normal after which they are [rad] */
+  PetscReal            tolerance;    /* depth that does not yet count as penetration [m] */
+  PetscReal            tie_distance; /* gap or overlap up to which nodes are tied [parts of a face] */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -103,6 +104,12 @@ typedef struct {
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
 } ContactRows;
+
+/* Which rows tie surfaces that lay on each other at the start, see src/contact/rows/ties.c */
+typedef struct {
+  PetscBool *holds;    /* per row: its node was within the tie distance, whether the user holds it or not */
+  PetscReal *distance; /* per row: the gap of its node along the normal then [m] */
+} ContactTies;
 
 /* Rows whose node is held, and their heirs, see src/contact/rows/heldrows.c */
 typedef struct {
@@ -177,6 +184,7 @@ struct _p_Contact {
   Mat              *interfaces; /* per body: its part of all rows */
   ContactNodes      nodes;
   ContactRows       rows;
+  ContactTies       ties;
   ContactHeldRows   held;
   SharedNodes       shared;
   ContactState      end;
@@ -221,6 +229,8 @@ PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
 PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
 PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
+PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);

@@ -7,6 +7,9 @@
    0.05. */
 #define SLIP_BOUND  0.2
 #define ANGLE_BOUND 0.1
+/* Gap or overlap up to which nodes are tied by default [parts of a face]: above what meshes of one curved surface differ by where a face
+   spans 1/10 rad, 1/800 of a face, and far below what a user takes for bodies that lie apart */
+#define TIE_DISTANCE 0.01
 
 /*@
   ContactCreate - creates a contact problem without bodies
@@ -31,10 +34,11 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCall(
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
-  (*contact)->options.facing      = PETSC_TRUE;
-  (*contact)->options.slip_bound  = SLIP_BOUND;
-  (*contact)->options.angle_bound = ANGLE_BOUND;
-  (*contact)->options.tolerance   = PETSC_DEFAULT;
+  (*contact)->options.facing       = PETSC_TRUE;
+  (*contact)->options.slip_bound   = SLIP_BOUND;
+  (*contact)->options.angle_bound  = ANGLE_BOUND;
+  (*contact)->options.tolerance    = PETSC_DEFAULT;
+  (*contact)->options.tie_distance = TIE_DISTANCE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,6 +15,8 @@ static PetscErrorCode ReadSettings(Contact contact)
                              (PetscEnum)contact->options.stabilization, (PetscEnum *)&contact->options.stabilization, NULL));
   PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "ContactSetLaw", ContactLaws,
                              (PetscEnum)contact->options.law, (PetscEnum *)&contact->options.law, NULL));
+  PetscCall(PetscOptionsReal("-contact_tie_distance", "Gap or overlap up to which nodes are tied, parts of a face", "ContactSetTieDistance",
+                             contact->options.tie_distance, &contact->options.tie_distance, NULL));
   PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start",
                              "ContactSetFacing", contact->options.facing, &contact->options.facing, NULL));
   PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "ContactSetBounds",
@@ -25,6 +27,8 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
              (double)contact->options.slip_bound, (double)contact->options.angle_bound);
+  PetscCheck(contact->options.tie_distance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_tie_distance %g must be positive: it is a part of a face", (double)contact->options.tie_distance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,6 +91,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
 . -contact_law (frictionless|tied)                              - what the surfaces do to each other
+. -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do
 . -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
@@ -99,7 +104,7 @@ static PetscErrorCode ReadPairs(Contact contact)
   the two bodies are a pair by themselves only where none has been.
 
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
-          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`
+          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`, `ContactSetTieDistance()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

@@ -270,6 +270,62 @@ PetscErrorCode ContactGetTolerance(Contact contact, PetscReal *tolerance)
 }
 
 /*@
+  ContactSetTieDistance - sets how far from each other tied surfaces may lie at the start
+
+  Logically Collective
+
+  Input Parameters:
++ contact  - the `Contact`, not yet set up
+- distance - gap or overlap up to which a node is tied to the partner [parts of its face; in 1-D of an element], 0.01 by default
+
+  Options Database Key:
+. -contact_tie_distance d - the distance [parts of a face]
+
+  Level: intermediate
+
+  Note:
+  Under `CONTACT_LAW_TIED`. A node within this distance keeps the gap that it has at the start. A larger overlap, a larger gap of up to
+  half a face, and a pair in which nothing is tied are errors of the set-up. Nodes that are farther apart are left alone.
+
+.seealso: `Contact`, `ContactSetLaw()`, `ContactGetTieDistance()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetTieDistance(Contact contact, PetscReal distance)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(contact, distance, 2);
+  CheckNotSetUp(contact);
+  PetscCheck(distance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "A tie distance of %g of a face must be positive", (double)distance);
+  contact->options.tie_distance = distance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetTieDistance - how far from each other tied surfaces may lie at the start
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. distance - see `ContactSetTieDistance()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetTieDistance()`
+@*/
+PetscErrorCode ContactGetTieDistance(Contact contact, PetscReal *distance)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(distance, 2);
+  *distance = contact->options.tie_distance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSetBounds - sets how far contact surfaces may move along each other before the rows between them are built again
 
   Logically Collective

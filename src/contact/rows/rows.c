@@ -1,9 +1,6 @@
 /* The rows of all pairs: from surfaces and transfers to matrices. */
 #include <impakt/private/contactimpl.h>
 
-/* Nodes at most this far from the partner are tied to it [edges of the face; in one dimension, where a face is a point, of an element]: a
-   node that is further away lies nearer to the node behind it than to the partner */
-#define TIE_DISTANCE 0.5
 /* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
 #define NO_COMPONENT 1e-9
 /* -contact_tolerance by default, in parts of the largest coordinate of any mesh, whose round-off is 10^4 times smaller: what a converged
@@ -71,6 +68,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc5(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
                          &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
                          &contact->ranks.offsets));
+  PetscCall(PetscCalloc2(n, &contact->ties.holds, n, &contact->ties.distance));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscMPIIntCast(n, &mine));
@@ -102,28 +100,17 @@ static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Edge of the elements at the contact point of a body in one dimension [m]; of others the transfer knows the faces */
-static PetscErrorCode GetPointSize(Contact contact, const ContactPair *pair, PetscReal *size)
-{
-  PetscFunctionBegin;
-  *size = 0;
-  if (contact->dim == 1) PetscCall(BodyGetElementSize(contact->bodies[pair->body[0]], size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Describes the rows of a pair as its transfer has them now. The gap of a tied row is zero at the start, wherever the bodies are. A held
-   row neither opens nor closes. */
+/* Describes the rows of a pair as its transfer has them now; which nodes are tied ContactMeasureTies() has found. A held row neither opens
+   nor closes. */
 PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 {
   const PetscInt dim = contact->dim;
   TransferRows   rows;
   Vec            positions;
   PetscInt       first;
-  PetscReal      point_size;
 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  PetscCall(GetPointSize(contact, pair, &point_size));
   PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
   PetscCall(VecGetOwnershipRange(positions, &first, NULL));
   for (PetscInt node = 0; node < rows.n; node++)
@@ -138,8 +125,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       contact->rows.area[i]        = rows.area[node];
       contact->rows.changed[i]     = rows.changed[node];
       if (contact->options.law == CONTACT_LAW_TIED) {
-        contact->rows.tied[i] = (PetscBool)(rows.opposite[node] &&
-                                            PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * (dim == 1 ? point_size : rows.size[node]));
+        contact->rows.tied[i]           = contact->ties.holds[i];
         contact->rows.initial_gap[i]    = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
         contact->rows.normal[3 * i + k] = 1;
       } else
@@ -301,6 +287,9 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscCall(CountRows(contact));
   PetscCall(AllocateRows(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscBool changed;
+
+    PetscCall(ContactMeasureTies(contact, &contact->pairs[p], PETSC_FALSE, &changed));
     PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
     PetscCall(CheckHeld(contact, &contact->pairs[p]));
   }
@@ -359,6 +348,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree6(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
                        contact->held.merged_gap));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
+  PetscCall(PetscFree2(contact->ties.holds, contact->ties.distance));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
