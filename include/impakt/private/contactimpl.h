@@ -28,6 +28,7 @@ typedef struct {
   PetscInt  components;  /* rows of each node: 1, along its normal, or one along each axis */
   PetscInt  begin, end;  /* rows of this rank: begin to end - 1 */
   PetscReal normal[3];   /* mean outward normal of the first body */
+  PetscBool keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
 } ContactPair;
 
@@ -231,6 +232,8 @@ PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
+PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
+PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);
@@ -247,6 +250,7 @@ PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
+PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 

@@ -28,7 +28,7 @@ static PetscErrorCode CreateMesh(Body body)
 static PetscErrorCode ReadMass(Body body)
 {
   BodyMassType type;
-  PetscBool    redistribute = body->mass.redistribute;
+  PetscBool    redistribute = body->mass.redistribute, set;
 
   PetscFunctionBegin;
   PetscCall(BodySetUpMassType(body));
@@ -36,10 +36,10 @@ static PetscErrorCode ReadMass(Body body)
   PetscObjectOptionsBegin((PetscObject)body);
   PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetMassType", BodyMassTypes, (PetscEnum)type, (PetscEnum *)&type, NULL));
   PetscCall(PetscOptionsBool("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetMassRedistribute",
-                             redistribute, &redistribute, NULL));
+                             redistribute, &redistribute, &set));
   PetscOptionsEnd();
   PetscCall(BodySetMassType(body, type));
-  PetscCall(BodySetMassRedistribute(body, redistribute));
+  if (set) PetscCall(BodySetMassRedistribute(body, redistribute));
   PetscCall(BodySetUpMassType(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

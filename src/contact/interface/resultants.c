@@ -43,6 +43,14 @@ static void SumForces(Contact contact, const ContactPair *pair, PetscReal force[
     for (PetscInt d = 0; d < 3; d++) force[d] += contact->end.force[i] * contact->rows.normal[3 * i + d];
 }
 
+/* The forces at the start are those that the first controller step begins with */
+PetscErrorCode ContactStartImpulses(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) SumForces(contact, &contact->pairs[p], contact->resultants.impulse + 6 * p + 3);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the controller step that has been accepted to the impulses */
 PetscErrorCode ContactAddImpulses(Contact contact)
 {

@@ -7,8 +7,8 @@
    outer iteration leaves of the gap must not count as penetration in the next free trial */
 #define PENETRATION_TOLERANCE 3e-12
 
-/* Tells both bodies of a pair which of their nodes may touch: all nodes of both surfaces, since any of them may come to lie opposite to the
-   partner as bodies slide */
+/* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any of them may
+   come to lie opposite to the partner as bodies slide; none of a pair whose nodes are tied and keep their mass */
 static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
@@ -19,7 +19,7 @@ static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
     Vec                positions;
 
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
-    PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
+    if (!pair->keeps_mass) PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
     if (contact->nodes.n_all[body]) continue;
     /* the contact position and velocity of a body in the history are those of its first pair */
     PetscCall(SurfaceGetData(pair->surfaces[side], &data));
@@ -280,6 +280,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscReal extent = 0;
 
   PetscFunctionBegin;
+  PetscCall(ContactChooseTiedMass(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CreateTransfer(contact, &contact->pairs[p], &extent));
     PetscCall(MarkContactNodes(contact, &contact->pairs[p]));

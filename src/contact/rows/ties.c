@@ -293,5 +293,6 @@ PetscErrorCode ContactTie(Contact contact)
     contact->rows.initial_gap[i] -= contact->start.gap[i];
     contact->start.gap[i] = contact->end.gap[i] = 0;
   }
+  PetscCall(ContactStartTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

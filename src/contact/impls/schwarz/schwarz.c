@@ -138,6 +138,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
                                : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscCall(SchwarzSetUpJacobian(contact));
   if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
+  PetscCall(SchwarzSetUpTied(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,6 +151,7 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
   for (PetscInt i = 0; i < contact->rows.n; i++)
     if (contact->rows.changed[i]) schwarz->known[i] = PETSC_FALSE;
   schwarz->stale = PETSC_TRUE;
+  if (schwarz->tied.any) PetscCall(SchwarzSetUpTied(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,6 +182,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(SchwarzDestroyJacobian(contact));
   PetscCall(SchwarzDestroySecants(contact));
+  PetscCall(SchwarzDestroyTied(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree4(schwarz->exchange, schwarz->offset, schwarz->all_offset, schwarz->solved_active));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
@@ -251,6 +254,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->setup          = ContactSetUp_Schwarz;
   contact->ops->step           = ContactStep_Schwarz;
   contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
+  contact->ops->accept         = SchwarzAcceptTied;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);

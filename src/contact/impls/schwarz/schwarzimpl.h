@@ -1,6 +1,7 @@
 #pragma once
 #include <contact/activeset/rounds.h>
 #include <contact/compliance/interfaceoperator.h>
+#include <contact/compliance/inversemass.h>
 #include <contact/compliance/outersolver.h>
 #include <solver/densefactor.h>
 
@@ -83,6 +84,13 @@ typedef struct {
   Secants    secants;
   PetscBool  stale; /* the Jacobian belongs to another active set */
   PetscBool *known; /* per row: the bodies' compliance knows it */
+  /* ties that keep their mass */
+  struct {
+    PetscBool    any;     /* there are ties that keep their mass, of whatever bodies */
+    PetscBool    forward; /* all ties are those of explicit bodies, see tiedexplicit.c */
+    InverseMass  inverse;
+    PetscScalar *drift; /* per row */
+  } tied;
   /* Aitken */
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
@@ -139,6 +147,10 @@ static inline ContactConditions SchwarzConditions(const Schwarz *schwarz)
 }
 
 PETSC_INTERN PetscErrorCode ContactStep_Schwarz(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetUpTied(Contact);
+PETSC_INTERN PetscErrorCode SchwarzStepTied(Contact);
+PETSC_INTERN PetscErrorCode SchwarzAcceptTied(Contact);
+PETSC_INTERN PetscErrorCode SchwarzDestroyTied(Contact);
 PETSC_INTERN PetscErrorCode SchwarzTakeActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzUpdateActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzBreakCycle(Contact, PetscBool *);
