@@ -276,7 +276,6 @@ static PetscErrorCode RebuildTies(Contact contact)
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->rows.changed));
-  PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -293,6 +292,8 @@ PetscErrorCode ContactTie(Contact contact)
     contact->rows.initial_gap[i] -= contact->start.gap[i];
     contact->start.gap[i] = contact->end.gap[i] = 0;
   }
+  PetscCall(ContactDropDependentTies(contact));
+  PetscTryTypeMethod(contact, rowschanged);
   PetscCall(ContactStartTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
