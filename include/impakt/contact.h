@@ -36,14 +36,16 @@ typedef const char *ContactType;
 
    Values:
 + `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
-- `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start, see `ContactSetTieDistance()`, stay there: all components of the
+. `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start, see `ContactSetTieDistance()`, stay there: all components of the
                                displacement since then are equal
+- `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
+                               from the next controller step on
 
    Level: beginner
 
 .seealso: `ContactSetLaw()`
 E*/
-typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED } ContactLaw;
+typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
 
 /*E

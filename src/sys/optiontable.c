@@ -87,7 +87,8 @@ static const KnownOption options[] = {
      "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; "
      "auto: all with all"},
     {"contact", OPTION_OF_RUN, "contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method, default schwarz"},
-    {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied", "what surfaces do to each other, default frictionless"},
+    {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded",
+     "what surfaces do to each other, default frictionless; bonded: they stick once they have met"},
     {"contact", OPTION_OF_RUN, "contact_tie_distance", "d",
      "gap or overlap at the start up to which nodes are tied, in parts of a face, default 0.01; more is an error"},
     {"contact", OPTION_OF_RUN, "contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},

@@ -25,9 +25,10 @@ typedef struct {
   PetscBool chosen;      /* the program has chosen the sides, not the user */
   Surface   surfaces[2]; /* those of the bodies */
   Transfer  transfer;    /* between the surfaces */
-  PetscInt  components;  /* rows of each node: 1, along its normal, or one along each axis */
+  PetscInt  components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
   PetscInt  begin, end;  /* rows of this rank: begin to end - 1 */
   PetscReal normal[3];   /* mean outward normal of the first body */
+  PetscBool bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
   PetscBool keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
 } ContactPair;
@@ -232,6 +233,9 @@ PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
+PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
+PETSC_INTERN PetscErrorCode ContactTurnMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);

@@ -163,6 +163,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
   contact->counts.sweeps = 0;
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
+  PetscCall(ContactBond(contact));
   PetscCall(ContactUpdateRows(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) PetscUseTypeMethod(contact, step);

@@ -90,7 +90,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_law (frictionless|tied)                              - what the surfaces do to each other
+. -contact_law (frictionless|tied|bonded)                       - what the surfaces do to each other
 . -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do

@@ -1,7 +1,7 @@
 /* What programs set of contact beside its options, whatever the method. */
 #include <impakt/private/contactimpl.h>
 
-const char *const ContactLaws[]        = {"frictionless", "tied", "ContactLaw", "CONTACT_LAW_", NULL};
+const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
 
 #define CheckNotSetUp(contact)                                                                                                             \
@@ -18,7 +18,7 @@ const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactCon
 - law - a `ContactLaw`, `CONTACT_LAW_FRICTIONLESS` by default
 
   Options Database Key:
-. -contact_law (frictionless|tied) - the law
+. -contact_law (frictionless|tied|bonded) - the law
 
   Level: beginner
 
@@ -30,7 +30,7 @@ PetscErrorCode ContactSetLaw(Contact contact, ContactLaw law)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(contact, law, 2);
   CheckNotSetUp(contact);
-  PetscCheck((int)law >= 0 && law <= CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+  PetscCheck((int)law >= 0 && law <= CONTACT_LAW_BONDED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no contact law %d", (int)law);
   contact->options.law = law;
   PetscFunctionReturn(PETSC_SUCCESS);

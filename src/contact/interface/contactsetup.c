@@ -33,6 +33,9 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
+  PetscCheck(contact->options.law != CONTACT_LAW_BONDED || contact->prescribes, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_law bonded works with -contact_type schwarz alone, not with %s; choose that, or -contact_law frictionless or tied",
+             ((PetscObject)contact)->type_name);
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactOrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));

@@ -110,7 +110,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   maxima[MAX_TENSION]     = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
-    const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+    const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0;
 
     sums[SUM_FORCE] += along * contact->end.force[i];
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);

@@ -60,7 +60,8 @@ static PetscErrorCode FindSuspects(Contact contact, Mat gram, PetscInt *n, Petsc
     PetscCall(MatRestoreRow(gram, row, &n_columns, &columns, &values));
   }
   if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, marks, (PetscMPIInt)contact->rows.n_all, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, marks, (PetscMPIInt)contact->rows.n_all, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
   for (PetscInt row = 0; row < contact->rows.n_all; row++) count += marks[row];
   *n = count;
   PetscCall(PetscMalloc1(count, rows));

@@ -43,7 +43,7 @@ static PetscErrorCode CountRows(Contact contact)
     TransferRows rows;
 
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    pair->components = contact->options.law == CONTACT_LAW_TIED ? contact->dim : 1;
+    pair->components = contact->options.law == CONTACT_LAW_FRICTIONLESS ? 1 : contact->dim;
     pair->begin      = contact->rows.n;
     contact->rows.n += rows.n * pair->components;
     pair->end = contact->rows.n;
@@ -128,12 +128,15 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
         contact->rows.tied[i]           = contact->ties.holds[i];
         contact->rows.initial_gap[i]    = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
         contact->rows.normal[3 * i + k] = 1;
-      } else
-        for (PetscInt d = 0; d < dim; d++) contact->rows.normal[3 * i + d] = rows.normals[dim * node + d];
+      } else ContactGetFrame(dim, rows.normals + dim * node, k, contact->rows.normal + 3 * i);
+      if (contact->options.law == CONTACT_LAW_BONDED && k > 0) { /* until the node sticks */
+        contact->rows.opposite[i]    = PETSC_FALSE;
+        contact->rows.initial_gap[i] = CONTACT_NO_GAP;
+      }
       PetscCall(IsHeld(contact, pair, i, &held));
       contact->held.dropped[i]    = (PetscBool)(held &&
                                                 (contact->options.law == CONTACT_LAW_TIED ? contact->rows.tied[i] : rows.opposite[node]) &&
-                                                !pair->obstacle && dim > 1);
+                                                !pair->obstacle && dim > 1 && contact->options.law != CONTACT_LAW_BONDED);
       contact->held.merged_gap[i] = 0;
       if (!held) continue;
       contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;
@@ -188,6 +191,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
+    PetscCall(ContactTurnMatrix(contact, &contact->interfaces[b]));
     PetscCall(ContactMergeMatrix(contact, &contact->interfaces[b]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
