@@ -279,6 +279,7 @@ PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
 
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTransmission(Contact, SchwarzTransmission);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetRobinParameter(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTraction(Contact, BodyTractionType);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTractionWaveform(Contact, SchwarzWaveform);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetPredictor(Contact, SchwarzPredictor);

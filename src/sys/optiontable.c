@@ -122,7 +122,10 @@ static const KnownOption options[] = {
     {"schwarz", OPTION_OF_RUN, "schwarz_transmission", "dirichlet_neumann|robin|impedance",
      "what is prescribed on the two sides, default dirichlet_neumann"},
     {"schwarz", OPTION_OF_RUN, "schwarz_robin_parameter", "alpha",
-     "stiffness of Robin conditions [N/m^3; N/m in 1-D], default E/h of the Neumann side (E A/h in 1-D)"},
+     "stiffness of Robin conditions [N/m^3; 2-D N/m^2; 1-D N/m], default E/h of the Neumann side; of ties that of the nodes of the first "
+     "side"},
+    {"schwarz", OPTION_OF_RUN, "schwarz_impedance_parameter", "z",
+     "impedance of impedance conditions [N s/m^3; 2-D N s/m^2; 1-D N s/m], default that of plane waves in the Neumann side"},
     {"schwarz", OPTION_OF_RUN, "schwarz_predictor", "last|trial|extrapolate|inelastic",
      "where the first sweep of a controller step starts from, default inelastic"},
     {"schwarz", OPTION_OF_RUN, "schwarz_convergence", "auto|position|contact_position|mismatch",

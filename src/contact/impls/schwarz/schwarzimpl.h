@@ -54,6 +54,7 @@ typedef struct {
   SchwarzWaveform     waveform;
   SchwarzCondense     condense;
   PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
+  PetscReal           impedance;       /* N s/m for each unit of area; 0: that of plane waves in the Neumann side */
   PetscInt            dense_limit;     /* unknowns of the interface up to which its matrices are dense */
   PetscBool           recheck;         /* tensile reactions leave the active set within the step */
   PetscBool           swap;            /* sides change with every controller step */
