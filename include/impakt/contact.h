@@ -37,14 +37,16 @@ typedef const char *ContactType;
 
    Values:
 + `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
-- `CONTACT_LAW_TIED`         - nodes that lie within half a face, in 1-D half an element, of the partner at the start stay beside it:
-                               all components of the displacement are equal
+. `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start, see `ContactSetTieDistance()`, stay there: all components of the
+                               displacement since then are equal
+- `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
+                               from the next controller step on
 
    Level: beginner
 
 .seealso: `ContactSetLaw()`
 E*/
-typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED } ContactLaw;
+typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
 
 /*E
@@ -277,6 +279,8 @@ PETSC_EXTERN PetscErrorCode ContactSetStartEnergies(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetEnergyCap(Contact, PetscBool, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyCap(Contact, PetscBool *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetTieDistance(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGetTieDistance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
@@ -298,6 +302,7 @@ PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
 
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTransmission(Contact, SchwarzTransmission);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetRobinParameter(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTraction(Contact, BodyTractionType);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTractionWaveform(Contact, SchwarzWaveform);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetPredictor(Contact, SchwarzPredictor);

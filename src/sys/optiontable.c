@@ -99,7 +99,10 @@ static const KnownOption options[] = {
      "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; "
      "auto: all with all"},
     {"contact", OPTION_OF_RUN, "contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method, default schwarz"},
-    {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied", "what surfaces do to each other, default frictionless"},
+    {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded",
+     "what surfaces do to each other, default frictionless; bonded: they stick once they have met"},
+    {"contact", OPTION_OF_RUN, "contact_tie_distance", "d",
+     "gap or overlap at the start up to which nodes are tied, in parts of a face, default 0.01; more is an error"},
     {"contact", OPTION_OF_RUN, "contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},
     {"contact", OPTION_OF_RUN, "contact_stabilization", "none|naive|contact_stabilized",
      "treatment of chatter where contact nodes have mass, default none"},
@@ -141,7 +144,10 @@ static const KnownOption options[] = {
     {"schwarz", OPTION_OF_RUN, "schwarz_transmission", "dirichlet_neumann|robin|impedance",
      "what is prescribed on the two sides, default dirichlet_neumann"},
     {"schwarz", OPTION_OF_RUN, "schwarz_robin_parameter", "alpha",
-     "stiffness of Robin conditions [N/m^3; N/m in 1-D], default E/h of the Neumann side (E A/h in 1-D)"},
+     "stiffness of Robin conditions [N/m^3; 2-D N/m^2; 1-D N/m], default E/h of the Neumann side; of ties that of the nodes of the first "
+     "side"},
+    {"schwarz", OPTION_OF_RUN, "schwarz_impedance_parameter", "z",
+     "impedance of impedance conditions [N s/m^3; 2-D N s/m^2; 1-D N s/m], default that of plane waves in the Neumann side"},
     {"schwarz", OPTION_OF_RUN, "schwarz_predictor", "last|trial|extrapolate|inelastic",
      "where the first sweep of a controller step starts from, default inelastic"},
     {"schwarz", OPTION_OF_RUN, "schwarz_convergence", "auto|position|contact_position|mismatch",

@@ -71,7 +71,7 @@ ALTERNATION = f"-schwarz_snes_type nrichardson -schwarz_predictor last {LUMPED}"
 CASES |= {f"{geometry}-alternation-II": f"{bodies} {ALTERNATION}" for geometry, bodies in {"bars": BARS, "blocks": BLOCKS}.items()}
 CASES["blocks-forward-EE"] = f"{BLOCKS} -contact_type lagrange {LUMPED} {PAIRINGS['EE']}"
 CASES["discs-schwarz-II"] = DISCS
-CASES["bars-tied-II"] = f"{BARS} -contact_law tied"  # over a gap of a fifteenth of an element
+CASES["bars-tied-II"] = f"{BARS} -contact_law tied -contact_tie_distance 0.1"  # over a gap of a fifteenth of an element
 
 
 def factor(system, unit):

@@ -35,7 +35,7 @@ static void solids(void **state)
              "-top_dm_plex_dim 2 -top_dm_plex_box_faces 4,3 -top_dm_plex_box_lower 0,1 -top_dm_plex_box_upper 1,2 -top_density 2 "
              "-top_youngs_modulus 10 -top_thickness 0.5 -top_plane_stress "
              "-base_dm_plex_dim 2 -base_dm_plex_box_faces 6,3 -base_density 3 -base_youngs_modulus 20 -base_poissons_ratio 0.25 "
-             "-floor_obstacle_type plane -floor_point 0,-1 -floor_normal 0,1");
+             "-floor_obstacle_type plane -floor_point 0,0 -floor_normal 0,1");
   AddOptions("-top_body_view ascii:body.txt -top_material_view ascii:material.txt -base_element_view ascii:element.txt "
              "-top_element_view ascii:plate.txt -floor_obstacle_view ascii:obstacle.txt -contact_view ascii:contact.txt "
              "-contact_surface_view ascii:surface.txt -contact_transfer_view ascii:transfer.txt -controller_view ascii:controller.txt");
@@ -44,7 +44,7 @@ static void solids(void **state)
   expect_file("material.txt", "top_|linear_elastic|density 2. kg/m^3, plane stress|Young's modulus 10.");
   expect_file("element.txt", "base_|quad|thickness 1. m, plane strain");
   expect_file("plate.txt", "top_|thickness 0.5 m, plane stress");
-  expect_file("obstacle.txt", "obstacle floor: plane at (0., -1., 0.) m, normal (0., 1., 0.)");
+  expect_file("obstacle.txt", "obstacle floor: plane at (0., 0., 0.) m, normal (0., 1., 0.)");
   expect_file("contact.txt", "contact schwarz: top:base base:floor|law tied");
   /* the last one of those that went to the file: the lower side of the base, 6 faces and 7 nodes of 1 m in all */
   expect_file("surface.txt", "surface base.all: 6 faces, 7 nodes, area 1. m^1");

@@ -32,9 +32,11 @@ typedef struct {
   PetscBool chosen;      /* the program has chosen the sides, not the user */
   Surface   surfaces[2]; /* those of the bodies */
   Transfer  transfer;    /* between the surfaces */
-  PetscInt  components;  /* rows of each node: 1, along its normal, or one along each axis */
+  PetscInt  components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
   PetscInt  begin, end;  /* rows of this rank: begin to end - 1 */
   PetscReal normal[3];   /* mean outward normal of the first body */
+  PetscBool bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
+  PetscBool keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
 } ContactPair;
 
@@ -82,6 +84,7 @@ typedef struct {
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
   PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
+  PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -114,6 +117,12 @@ typedef struct {
   PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
 } ContactRows;
+
+/* Which rows tie surfaces that lay on each other at the start, see src/contact/rows/ties.c */
+typedef struct {
+  PetscBool *holds;    /* per row: its node was within the tie distance, whether the user holds it or not */
+  PetscReal *distance; /* per row: the gap of its node along the normal then [m] */
+} ContactTies;
 
 /* Rows whose node is held, and their heirs, see src/contact/rows/heldrows.c */
 typedef struct {
@@ -247,6 +256,7 @@ struct _p_Contact {
   Mat              *interfaces; /* per body: its part of all rows */
   ContactNodes      nodes;
   ContactRows       rows;
+  ContactTies       ties;
   ContactHeldRows   held;
   SharedNodes       shared;
   ContactState      end;
@@ -305,6 +315,14 @@ PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
 PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
 PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
+PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactTie(Contact);
+PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
+PETSC_INTERN PetscErrorCode ContactTurnMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactBond(Contact);
+PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
+PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
+PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);
@@ -328,6 +346,7 @@ PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
+PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 

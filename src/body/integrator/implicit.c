@@ -151,12 +151,13 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newmark's formulas; massless nodes, which have no dynamics, have (u1 - u0) / dt and zero instead */
+/* Newmark's formulas; massless nodes, which have no dynamics, have (u1 - u0) / dt and zero instead. Nobody asks where some rows have mass
+   and others none. */
 static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const PetscReal     dt = body->time.step, beta = implicit->beta, gamma = implicit->gamma;
-  const PetscBool     massless = body->mass.redistribute;
+  const PetscBool     massless = (PetscBool)(body->mass.redistribute && !body->rows.tied_mass);
 
   PetscFunctionBegin;
   acceleration[0] = massless ? 0 : 1 / (beta * dt * dt);

@@ -155,7 +155,8 @@ static PetscErrorCode SetUpRows(Body body)
   PetscCall(PetscCalloc4(rows->local, &body->rows.conditions, rows->local, &body->rows.constrained, rows->local, &body->rows.flexibility,
                          rows->local, &body->rows.robin));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->rows.matrix, NULL, &body->work.rows[k]));
-  body->rows.have_mass = (PetscBool)(rows->global > 0 && !body->mass.redistribute && body->integrator->has_inertia);
+  body->rows.have_mass = (PetscBool)(rows->global > 0 && !body->mass.redistribute && !body->rows.tied_mass &&
+                                     body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

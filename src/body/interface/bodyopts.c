@@ -67,8 +67,10 @@ static PetscErrorCode ReadMass(Body body)
   PetscOptionsEnd();
   PetscCall(BodySetMassMoments(body, moments));
   PetscCall(BodySetMassType(body, type));
-  PetscCall(BodySetMassRedistribute(body, redistribute));
-  PetscCall(BodySetMassRedistributeNear(body, near));
+  if (given) {
+    PetscCall(BodySetMassRedistribute(body, redistribute));
+    PetscCall(BodySetMassRedistributeNear(body, near));
+  }
   PetscCall(BodySetUpMassType(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -234,7 +234,8 @@ PetscErrorCode BodyGetMassType(Body body, BodyMassType *type)
 
   Input Parameters:
 + body         - the `Body`, not yet set up
-- redistribute - `PETSC_TRUE` (default): contact nodes are massless; a static body has no mass to move
+- redistribute - `PETSC_TRUE` (default): contact nodes are massless; a static body has no mass to move. Nodes that are tied to a body with
+                 the same integrator and step keep their mass unless this function says otherwise.
 
   Options Database Key:
 . -<body>_mass_redistribute (true|false) - massless contact nodes
@@ -253,6 +254,7 @@ PetscErrorCode BodySetMassRedistribute(Body body, PetscBool redistribute)
   PetscValidLogicalCollectiveBool(body, redistribute, 2);
   CheckNotSetUp(body);
   body->mass.redistribute = redistribute;
+  body->mass.chosen       = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -40,6 +40,7 @@ typedef struct {
   BodyMassType      type;
   PetscBool         redistribute; /* contact nodes become massless */
   PetscBool         near;         /* but those that face no partner at the start, which keep their mass */
+  PetscBool         chosen;       /* program or options have said whether they do */
   Vec               row_sum;      /* M 1: the lumped mass */
   Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
   Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
@@ -108,7 +109,8 @@ typedef struct {
   PetscBool        any_oblique;      /* on any rank there are rows of one node that are not orthonormal */
   const PetscReal *weights;          /* of rows that depend on each other; borrowed, NULL: they are equal */
   BodyTractionType traction;
-  PetscBool        have_mass; /* prescribed nodes carry mass */
+  PetscBool        have_mass; /* prescribed nodes carry mass, and take velocity and acceleration from their partner */
+  PetscBool        tied_mass; /* rows on nodes with mass are ties: constraints in the equations of motion */
   /* conditions */
   BodyCondition *conditions;                      /* per local row */
   PetscBool     *constrained;                     /* per local row: prescribed, or a Robin row */

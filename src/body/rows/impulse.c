@@ -106,6 +106,76 @@ PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The inverse of the lumped mass, zero on massless nodes */
+static PetscErrorCode CreateInverseRowSum(Body body, Vec *inverse)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(body->mass.row_sum, inverse));
+  PetscCall(VecCopy(body->mass.row_sum, *inverse));
+  PetscCall(VecReciprocal(*inverse)); /* leaves zeros */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeInverseLumpedMass - velocity of the rows after unit impulses on them, if the mass were lumped
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. matrix - B M_L^{-1} B^T [1/kg], all rows by all rows, sparse; zero for massless nodes and for static bodies; destroy it with
+           `MatDestroy()`
+
+  Level: developer
+
+.seealso: `Body`, `BodyComputeInverseMass()`, `BodyAddLumpedVelocity()`
+@*/
+PetscErrorCode BodyComputeInverseLumpedMass(Body body, Mat *matrix)
+{
+  Vec inverse;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(matrix, 2);
+  PetscCall(CreateInverseRowSum(body, &inverse));
+  if (!body->integrator->has_inertia) PetscCall(VecZeroEntries(inverse));
+  PetscCall(MultiplyRows(body, inverse, matrix));
+  PetscCall(VecDestroy(&inverse));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyMultiplyInverseMass - velocity of the rows after impulses on them
+
+  Collective
+
+  Input Parameters:
++ body    - the `Body`, set up
+- impulse - one for each row of this rank [N s]
+
+  Output Parameter:
+. velocity - B M^{-1} B^T impulse, one for each row of this rank [m/s]
+
+  Level: developer
+
+.seealso: `Body`, `BodyComputeInverseMass()`
+@*/
+PetscErrorCode BodyMultiplyInverseMass(Body body, const PetscScalar impulse[], PetscScalar velocity[])
+{
+  const PetscScalar *rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodySolveMassOfRows(body, impulse, body->work.nodes[2]));
+  PetscCall(MatMult(body->rows.matrix, body->work.nodes[2], body->work.rows[0]));
+  PetscCall(VecGetArrayRead(body->work.rows[0], &rows));
+  PetscCall(PetscArraycpy(velocity, rows, body->rows.local));
+  PetscCall(VecRestoreArrayRead(body->work.rows[0], &rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyComputeForwardCompliance - displacement of the rows after one substep for unit forces at its start
 

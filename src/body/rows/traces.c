@@ -27,11 +27,12 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
   PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.v, body->traces.velocity, level));
   PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, level));
   if (body->rows.n_prescribed) {
-    Vec force = body->state.internal_force;
+    Vec             force   = body->state.internal_force;
+    const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);
 
-    if (body->rows.traction == BODY_TRACTION_REACTION || body->loads || body->rows.n_forced || BodyHandsOver(body)) {
+    if (inertia || body->loads || body->rows.n_forced || BodyHandsOver(body)) {
       force = body->work.nodes[0];
-      if (body->rows.traction == BODY_TRACTION_REACTION) {
+      if (inertia) {
         PetscCall(BodyMultiplyMass(body, body->state.a, force));
         PetscCall(VecAXPY(force, 1, body->state.internal_force));
       } else PetscCall(VecCopy(body->state.internal_force, force));

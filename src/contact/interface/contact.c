@@ -9,6 +9,9 @@
 #define ENERGY_EXCESS 1e-3
 #define SLIP_BOUND    0.2
 #define ANGLE_BOUND   0.1
+/* Gap or overlap up to which nodes are tied by default [parts of a face]: above what meshes of one curved surface differ by where a face
+   spans 1/10 rad, 1/800 of a face, and far below what a user takes for bodies that lie apart */
+#define TIE_DISTANCE 0.01
 
 /*@
   ContactCreate - creates a contact problem without bodies
@@ -40,6 +43,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   (*contact)->energy.excess        = ENERGY_EXCESS;
   (*contact)->options.angle_bound  = ANGLE_BOUND;
   (*contact)->options.tolerance    = PETSC_DEFAULT;
+  (*contact)->options.tie_distance = TIE_DISTANCE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,6 +170,7 @@ PetscErrorCode ContactStep(Contact contact)
   contact->counts.sweeps = 0;
   PetscCall(ContactBeginEnergy(contact));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
+  PetscCall(ContactBond(contact));
   if (!contact->attempt.again) PetscCall(ContactUpdateRows(contact));
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));

@@ -103,7 +103,7 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
-      const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+      const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0;
 
       values[i] = sign ? sign * RowValue(contact, i, along, kind) : 0;
     }

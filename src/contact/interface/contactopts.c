@@ -20,6 +20,8 @@ static PetscErrorCode ReadSettings(Contact contact)
                              (PetscEnum)contact->options.stabilization, (PetscEnum *)&contact->options.stabilization, NULL));
   PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "ContactSetLaw", ContactLaws,
                              (PetscEnum)contact->options.law, (PetscEnum *)&contact->options.law, NULL));
+  PetscCall(PetscOptionsReal("-contact_tie_distance", "Gap or overlap up to which nodes are tied, parts of a face", "ContactSetTieDistance",
+                             contact->options.tie_distance, &contact->options.tie_distance, NULL));
   PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start",
                              "ContactSetFacing", contact->options.facing, &contact->options.facing, NULL));
   PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "ContactSetBounds",
@@ -43,6 +45,8 @@ static PetscErrorCode ReadSettings(Contact contact)
              (double)contact->options.slip_bound, (double)contact->options.angle_bound);
   PetscCheck(contact->energy.excess >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_energy_excess %g must not be negative", (double)contact->energy.excess);
+  PetscCheck(contact->options.tie_distance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_tie_distance %g must be positive: it is a part of a face", (double)contact->options.tie_distance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,7 +108,8 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_law (frictionless|tied)                              - what the surfaces do to each other
+. -contact_law (frictionless|tied|bonded)                       - what the surfaces do to each other
+. -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do
 . -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
@@ -124,7 +129,8 @@ static PetscErrorCode ReadPairs(Contact contact)
 
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
           `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
-          `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`
+          `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`,
+          `ContactSetTieDistance()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

@@ -1,7 +1,7 @@
 /* What programs set of contact beside its options, whatever the method. */
 #include <impakt/private/contactimpl.h>
 
-const char *const ContactLaws[]        = {"frictionless", "tied", "ContactLaw", "CONTACT_LAW_", NULL};
+const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
 
 #define CheckNotSetUp(contact)                                                                                                             \
@@ -18,7 +18,7 @@ const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactCon
 - law - a `ContactLaw`, `CONTACT_LAW_FRICTIONLESS` by default
 
   Options Database Key:
-. -contact_law (frictionless|tied) - the law
+. -contact_law (frictionless|tied|bonded) - the law
 
   Level: beginner
 
@@ -30,7 +30,7 @@ PetscErrorCode ContactSetLaw(Contact contact, ContactLaw law)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(contact, law, 2);
   CheckNotSetUp(contact);
-  PetscCheck((int)law >= 0 && law <= CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+  PetscCheck((int)law >= 0 && law <= CONTACT_LAW_BONDED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no contact law %d", (int)law);
   contact->options.law = law;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,6 +266,62 @@ PetscErrorCode ContactGetTolerance(Contact contact, PetscReal *tolerance)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(tolerance, 2);
   *tolerance = contact->options.tolerance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetTieDistance - sets how far from each other tied surfaces may lie at the start
+
+  Logically Collective
+
+  Input Parameters:
++ contact  - the `Contact`, not yet set up
+- distance - gap or overlap up to which a node is tied to the partner [parts of its face; in 1-D of an element], 0.01 by default
+
+  Options Database Key:
+. -contact_tie_distance d - the distance [parts of a face]
+
+  Level: intermediate
+
+  Note:
+  Under `CONTACT_LAW_TIED`. A node within this distance keeps the gap that it has at the start. A larger overlap, a larger gap of up to
+  half a face, and a pair in which nothing is tied are errors of the set-up. Nodes that are farther apart are left alone.
+
+.seealso: `Contact`, `ContactSetLaw()`, `ContactGetTieDistance()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetTieDistance(Contact contact, PetscReal distance)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(contact, distance, 2);
+  CheckNotSetUp(contact);
+  PetscCheck(distance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "A tie distance of %g of a face must be positive", (double)distance);
+  contact->options.tie_distance = distance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetTieDistance - how far from each other tied surfaces may lie at the start
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. distance - see `ContactSetTieDistance()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetTieDistance()`
+@*/
+PetscErrorCode ContactGetTieDistance(Contact contact, PetscReal *distance)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(distance, 2);
+  *distance = contact->options.tie_distance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

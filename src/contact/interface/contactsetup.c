@@ -112,6 +112,9 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSetUpSurfaces(contact));
+  PetscCheck(contact->options.law != CONTACT_LAW_BONDED || contact->prescribes, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_law bonded works with -contact_type schwarz alone, not with %s; choose that, or -contact_law frictionless or tied",
+             ((PetscObject)contact)->type_name);
   PetscCall(ContactSetUpScales(contact));
   PetscCall(ShareControllerStep(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -136,7 +139,7 @@ PetscErrorCode ContactSetUp(Contact contact)
 }
 
 /*@
-  ContactCheckInitialGap - takes the present states as the start, and refuses bodies that overlap
+  ContactCheckInitialGap - takes the present states as the start: ties what lies on each other, and refuses bodies that overlap
 
   Collective
 
@@ -146,15 +149,17 @@ PetscErrorCode ContactSetUp(Contact contact)
   Level: developer
 
   Note:
-  To be called again when the initial states have been changed after `ContactSetUp()`.
+  To be called again when the initial states have been changed after `ContactSetUp()`. Under `CONTACT_LAW_TIED` nodes within the tie
+  distance of their partner are tied as they lie there; a pair that ties nothing, a gap above that distance or an overlap is an error.
 
-.seealso: `Contact`, `BodySetInitialState()`
+.seealso: `Contact`, `BodySetInitialState()`, `ContactSetTieDistance()`
 @*/
 PetscErrorCode ContactCheckInitialGap(Contact contact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactTie(contact));
   PetscCall(ContactDropShared(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];

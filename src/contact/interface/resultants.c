@@ -44,6 +44,15 @@ static void SumForces(Contact contact, const ContactPair *pair, const PetscReal 
     for (PetscInt d = 0; d < 3; d++) force[d] += rows[i] * contact->rows.normal[3 * i + d];
 }
 
+/* The forces at the start are those that the first controller step begins with */
+PetscErrorCode ContactStartImpulses(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    SumForces(contact, &contact->pairs[p], contact->end.force, contact->resultants.impulse + 6 * p + 3);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the controller step that has been accepted to the impulses */
 PetscErrorCode ContactAddImpulses(Contact contact)
 {
@@ -104,7 +113,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   maxima[MAX_TENSION]     = 0;
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
-    const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1;
+    const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0;
 
     sums[SUM_FORCE] += along * contact->end.force[i];
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);

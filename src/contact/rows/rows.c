@@ -1,9 +1,6 @@
 /* The rows of all pairs: from surfaces and transfers to matrices. */
 #include <impakt/private/contactimpl.h>
 
-/* Nodes at most this far from the partner are tied to it [edges of the face; in one dimension, where a face is a point, of an element]: a
-   node that is further away lies nearer to the node behind it than to the partner */
-#define TIE_DISTANCE 0.5
 /* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
 #define NO_COMPONENT 1e-9
 /* -contact_tolerance by default, in parts of the largest coordinate of any mesh, whose round-off is 10^4 times smaller: what a converged
@@ -64,8 +61,8 @@ PetscErrorCode ContactCheckNear(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells both bodies of a pair which of their nodes may touch: all nodes of both surfaces, since any of them may come to lie opposite to the
-   partner as bodies slide */
+/* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any of them may
+   come to lie opposite to the partner as bodies slide; none of a pair whose nodes are tied and keep their mass */
 static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
@@ -78,8 +75,10 @@ static PetscErrorCode MarkContactNodes(Contact contact, const ContactPair *pair)
 
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
     PetscCall(BodyGetMassRedistributeNear(contact->bodies[body], &near));
-    if (near) PetscCall(MarkNearNodes(contact, pair, side));
-    else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
+    if (!pair->keeps_mass) {
+      if (near) PetscCall(MarkNearNodes(contact, pair, side));
+      else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
+    }
     if (contact->nodes.n_all[body]) continue;
     /* the contact position and velocity of a body in the history are those of its first pair */
     PetscCall(SurfaceGetData(pair->surfaces[side], &data));
@@ -103,7 +102,7 @@ static PetscErrorCode CountRows(Contact contact)
     TransferRows rows;
 
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    pair->components = contact->options.law == CONTACT_LAW_TIED ? contact->dim : 1;
+    pair->components = contact->options.law == CONTACT_LAW_FRICTIONLESS ? 1 : contact->dim;
     pair->begin      = contact->rows.n;
     contact->rows.n += rows.n * pair->components;
     pair->end = contact->rows.n;
@@ -128,6 +127,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc5(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
                          &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
                          &contact->ranks.offsets));
+  PetscCall(PetscCalloc2(n, &contact->ties.holds, n, &contact->ties.distance));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscCalloc5(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
@@ -161,28 +161,17 @@ static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Edge of the elements at the contact point of a body in one dimension [m]; of others the transfer knows the faces */
-static PetscErrorCode GetPointSize(Contact contact, const ContactPair *pair, PetscReal *size)
-{
-  PetscFunctionBegin;
-  *size = 0;
-  if (contact->dim == 1) PetscCall(BodyGetElementSize(contact->bodies[pair->body[0]], size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Describes the rows of a pair as its transfer has them now. The gap of a tied row is zero at the start, wherever the bodies are. A held
-   row neither opens nor closes. */
+/* Describes the rows of a pair as its transfer has them now; which nodes are tied ContactMeasureTies() has found. A held row neither opens
+   nor closes. */
 PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 {
   const PetscInt dim = contact->dim;
   TransferRows   rows;
   Vec            positions;
   PetscInt       first;
-  PetscReal      point_size;
 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  PetscCall(GetPointSize(contact, pair, &point_size));
   PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
   PetscCall(VecGetOwnershipRange(positions, &first, NULL));
   for (PetscInt node = 0; node < rows.n; node++)
@@ -198,16 +187,18 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       contact->rows.changed[i]     = rows.changed[node];
       contact->rows.followed[i]    = rows.followed[node];
       if (contact->options.law == CONTACT_LAW_TIED) {
-        contact->rows.tied[i] = (PetscBool)(rows.opposite[node] &&
-                                            PetscAbsReal(rows.gap[node]) <= TIE_DISTANCE * (dim == 1 ? point_size : rows.size[node]));
+        contact->rows.tied[i]           = contact->ties.holds[i];
         contact->rows.initial_gap[i]    = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
         contact->rows.normal[3 * i + k] = 1;
-      } else
-        for (PetscInt d = 0; d < dim; d++) contact->rows.normal[3 * i + d] = rows.normals[dim * node + d];
+      } else ContactGetFrame(dim, rows.normals + dim * node, k, contact->rows.normal + 3 * i);
+      if (contact->options.law == CONTACT_LAW_BONDED && k > 0) { /* until the node sticks */
+        contact->rows.opposite[i]    = PETSC_FALSE;
+        contact->rows.initial_gap[i] = CONTACT_NO_GAP;
+      }
       PetscCall(IsHeld(contact, pair, i, &held));
       contact->held.dropped[i]    = (PetscBool)(held &&
                                                 (contact->options.law == CONTACT_LAW_TIED ? contact->rows.tied[i] : rows.opposite[node]) &&
-                                                !pair->obstacle && dim > 1);
+                                                !pair->obstacle && dim > 1 && contact->options.law != CONTACT_LAW_BONDED);
       contact->held.merged_gap[i] = 0;
       if (!held) continue;
       contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;
@@ -262,6 +253,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
+    PetscCall(ContactTurnMatrix(contact, &contact->interfaces[b]));
     PetscCall(ContactMergeMatrix(contact, &contact->interfaces[b]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -353,6 +345,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscReal extent = 0;
 
   PetscFunctionBegin;
+  PetscCall(ContactChooseTiedMass(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CreateTransfer(contact, &contact->pairs[p], &extent));
     PetscCall(MarkContactNodes(contact, &contact->pairs[p]));
@@ -360,6 +353,9 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscCall(CountRows(contact));
   PetscCall(AllocateRows(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscBool changed;
+
+    PetscCall(ContactMeasureTies(contact, &contact->pairs[p], PETSC_FALSE, &changed));
     PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
     PetscCall(CheckHeld(contact, &contact->pairs[p]));
   }
@@ -420,6 +416,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(
       PetscFree5(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed, contact->work.moved));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
+  PetscCall(PetscFree2(contact->ties.holds, contact->ties.distance));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -68,7 +68,7 @@ static PetscErrorCode GetLargest(Vec vec, PetscReal *largest)
    does. If it guards an end in both pairs, the row of the first of them counts. */
 static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const TransferRows *rows, PetscBool *shared)
 {
-  const PetscInt i = contact->pairs[p].begin + node;
+  const PetscInt i = contact->pairs[p].begin + node * contact->pairs[p].components;
 
   PetscFunctionBegin;
   *shared = PETSC_FALSE;
@@ -81,7 +81,7 @@ static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const
     PetscCall(TransferGetRows(other->transfer, &others));
     PetscCall(PetscFindInt(rows->dofs[node], others.n, others.dofs, &place));
     if (place < 0) continue;
-    j = other->begin + place;
+    j = other->begin + place * other->components;
     if (!contact->rows.opposite[j] || contact->end.gap[j] > rows->size[node] || (others.beyond[place] && q > p)) continue;
     *shared = (PetscBool)(PetscAbsReal(RowCosine(contact, i, j)) > PARALLEL);
   }
@@ -99,7 +99,7 @@ PetscErrorCode ContactDropShared(Contact contact)
 
     PetscCall(TransferGetRows(contact->pairs[p].transfer, &rows));
     for (PetscInt node = 0; node < rows.n; node++) {
-      const PetscInt i = contact->pairs[p].begin + node;
+      const PetscInt i = contact->pairs[p].begin + node * contact->pairs[p].components;
       PetscBool      shared;
 
       if (!rows.beyond[node] || !contact->rows.opposite[i]) continue;
@@ -285,6 +285,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     Vec          u[2] = {NULL, NULL};
     PetscBool    rebuilt, followed;
 
+    if (pair->bonded) continue;
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
       PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
     PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, &rebuilt));

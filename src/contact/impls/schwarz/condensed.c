@@ -23,16 +23,13 @@ PetscErrorCode SchwarzReadCondensation(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a side of a pair has mass on its contact nodes */
+/* Whether a side of a pair has mass on its contact nodes, ties that keep theirs apart */
 static PetscErrorCode SideHasMass(Contact contact, const ContactPair *pair, PetscInt side, PetscBool *has)
 {
-  PetscBool massless;
-
   PetscFunctionBegin;
   *has = PETSC_FALSE;
   if (pair->obstacle && side == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
-  *has = (PetscBool)!massless;
+  PetscCall(BodyPrescribesMass(contact->bodies[pair->body[side]], has));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

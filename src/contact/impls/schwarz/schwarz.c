@@ -17,7 +17,7 @@ static const char *const Unconvergeds[]  = {"error", "accept", "SchwarzUnconverg
 static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool set     = PETSC_FALSE;
+  PetscBool set = PETSC_FALSE, set_impedance = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
@@ -34,6 +34,9 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
   if (schwarz->transmission == SCHWARZ_TRANSMISSION_ROBIN)
     PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]",
                                "ContactSchwarzSetRobinParameter", schwarz->robin_parameter, &schwarz->robin_parameter, &set));
+  if (schwarz->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
+    PetscCall(PetscOptionsReal("-schwarz_impedance_parameter", "Impedance of impedance conditions [N s/m for each unit of area]",
+                               "ContactSchwarzSetImpedanceParameter", schwarz->impedance, &schwarz->impedance, &set_impedance));
   PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "ContactSchwarzSetPredictor", Predictors,
                              (PetscEnum)schwarz->predictor, (PetscEnum *)&schwarz->predictor, NULL));
   PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "ContactSchwarzSetSwapSides", schwarz->swap,
@@ -50,6 +53,8 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
   PetscCall(SchwarzReadCondensation(contact));
   PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
+  PetscCheck(!set_impedance || schwarz->impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_impedance_parameter %g must be positive", (double)schwarz->impedance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -138,6 +143,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
                                : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscCall(SchwarzSetUpJacobian(contact));
   if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
+  PetscCall(SchwarzSetUpTied(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -155,6 +161,7 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
     }
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) schwarz->memory[k].stale = PETSC_TRUE;
   schwarz->stale = PETSC_TRUE;
+  if (schwarz->tied.any) PetscCall(SchwarzSetUpTied(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,6 +190,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
+  PetscCall(SchwarzDestroyTied(contact));
   PetscCall(SchwarzDestroyMemory(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree3(schwarz->exchange, schwarz->offset, schwarz->all_offset));
@@ -206,8 +214,11 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 .  -schwarz_relaxation (fixed|aitken)                            - relaxation of nrichardson
 .  -schwarz_traction (internal|reaction)                         - nodal force handed over: without or with inertia
 .  -schwarz_transmission (dirichlet_neumann|robin|impedance)     - what is prescribed on both sides
-.  -schwarz_robin_parameter alpha                                - stiffness of Robin conditions [N/m for each unit of area], E/h of the
-                                                                   Neumann side's contact elements
+.  -schwarz_robin_parameter alpha                                - stiffness of Robin conditions [3-D N/m^3; 2-D N/m^2; 1-D N/m], E/h of
+                                                                   the Neumann side's contact elements; of ties that of the first side's
+                                                                   nodes, with their inertia
+.  -schwarz_impedance_parameter z                                - impedance of impedance conditions [3-D N s/m^3; 2-D N s/m^2; 1-D N s/m],
+                                                                   that of plane waves in the Neumann side
 .  -schwarz_predictor (last|trial|extrapolate|inelastic)         - where the first sweep starts from, inelastic
 .  -schwarz_traction_waveform (linear|constant)                  - traction of a partner with longer substeps in the course of them
 .  -contact_constraint (gap|gap_rate)                            - close the gap in the first step in contact, or keep it as it is at its
@@ -257,6 +268,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
   contact->ops->stepback       = SchwarzStepBack;
   contact->ops->steplevel      = SchwarzSetStepLevel;
+  contact->ops->accept         = SchwarzAcceptTied;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);

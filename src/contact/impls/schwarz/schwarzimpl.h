@@ -1,6 +1,7 @@
 #pragma once
 #include <contact/activeset/rounds.h>
 #include <contact/compliance/interfaceoperator.h>
+#include <contact/compliance/inversemass.h>
 #include <contact/compliance/outersolver.h>
 #include <solver/densefactor.h>
 
@@ -63,6 +64,7 @@ typedef struct {
   SchwarzWaveform     waveform;
   SchwarzCondense     condense;
   PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
+  PetscReal           impedance;       /* N s/m for each unit of area; 0: that of plane waves in the Neumann side */
   PetscInt            dense_limit;     /* unknowns of the interface up to which its matrices are dense */
   PetscBool           recheck;         /* tensile reactions leave the active set within the step */
   PetscBool           swap;            /* sides change with every controller step */
@@ -95,6 +97,13 @@ typedef struct {
   PetscBool    *known;                     /* per row: the bodies' compliance knows it */
   SchwarzMemory memory[STEP_MAX_CUTS + 1]; /* of other levels */
   PetscInt      level;                     /* the present one */
+  /* ties that keep their mass */
+  struct {
+    PetscBool    any;     /* there are ties that keep their mass, of whatever bodies */
+    PetscBool    forward; /* all ties are those of explicit bodies, see tiedexplicit.c */
+    InverseMass  inverse;
+    PetscScalar *drift; /* per row */
+  } tied;
   /* Aitken */
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
@@ -151,6 +160,10 @@ static inline ContactConditions SchwarzConditions(const Schwarz *schwarz)
 }
 
 PETSC_INTERN PetscErrorCode ContactStep_Schwarz(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetUpTied(Contact);
+PETSC_INTERN PetscErrorCode SchwarzStepTied(Contact);
+PETSC_INTERN PetscErrorCode SchwarzAcceptTied(Contact);
+PETSC_INTERN PetscErrorCode SchwarzDestroyTied(Contact);
 PETSC_INTERN PetscErrorCode SchwarzTakeActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzUpdateActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzBreakCycle(Contact, PetscBool *);

@@ -48,7 +48,9 @@ PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmissio
 
   Input Parameters:
 + contact   - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
-- stiffness - [N/m for each unit of area]; by default E/h of the Neumann side's contact elements
+- stiffness - for each unit of area: [N/m^3] in three dimensions; in two for each metre of the contact line, at the thickness of the bodies
+              [N/m^2]; in one that of the contact point [N/m]; by default E/h of the Neumann side's contact elements, for ties the stiffness
+              of the first side's contact nodes, with 4 m / dt^2 of those that keep their mass
 
   Options Database Key:
 . -schwarz_robin_parameter alpha - the stiffness of Robin conditions
@@ -67,6 +69,36 @@ PetscErrorCode ContactSchwarzSetRobinParameter(Contact contact, PetscReal stiffn
   PetscCheck(stiffness > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A Robin parameter of %g must be positive",
              (double)stiffness);
   schwarz->robin_parameter = stiffness;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSchwarzSetImpedanceParameter - sets the impedance of impedance conditions
+
+  Logically Collective
+
+  Input Parameters:
++ contact   - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
+- impedance - for each unit of area: [N s/m^3] in three dimensions; in two for each metre of the contact line, at the thickness of the
+bodies [N s/m^2]; in one that of the contact point [N s/m]; by default that of plane waves in the Neumann side, see `BodyGetImpedance()`
+
+  Options Database Key:
+. -schwarz_impedance_parameter z - the impedance
+
+  Level: advanced
+
+.seealso: `Contact`, `CONTACT_SCHWARZ`, `ContactSchwarzSetTransmission()`, `ContactSchwarzSetRobinParameter()`
+@*/
+PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact contact, PetscReal impedance)
+{
+  Schwarz *schwarz = NULL;
+
+  PetscFunctionBegin;
+  PetscValidLogicalCollectiveReal(contact, impedance, 2);
+  PetscCall(GetSchwarz(contact, &schwarz));
+  PetscCheck(impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "An impedance of %g must be positive",
+             (double)impedance);
+  schwarz->impedance = impedance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -71,14 +71,14 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
   Schwarz           *schwarz   = (Schwarz *)contact->data;
   const ContactPair *pair      = &contact->pairs[p];
   const Body         dirichlet = contact->bodies[pair->body[side]], neumann = pair->obstacle ? NULL : contact->bodies[pair->body[1 - side]];
-  PetscBool          massless, is_explicit;
+  PetscBool          mass, is_explicit;
   PetscInt           substeps;
 
   PetscFunctionBegin;
   if (pair->obstacle || schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyIsRedistributed(dirichlet, &massless));
-  if (massless) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyPrescribesMass(dirichlet, &mass));
+  if (!mass) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIsExplicit(neumann, &is_explicit));
   PetscCall(BodyGetSubsteps(neumann, &substeps));
   PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,

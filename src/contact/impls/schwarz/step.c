@@ -128,6 +128,10 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscBool in_contact, changed, flips, taken_back = PETSC_FALSE;
 
   PetscFunctionBegin;
+  if (schwarz->tied.forward) {
+    PetscCall(SchwarzStepTied(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(RoundsBegin(&schwarz->rounds));
   PetscCall(ContactBeginRelease(contact));
   schwarz->have_base = PETSC_FALSE;

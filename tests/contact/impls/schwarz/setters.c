@@ -133,6 +133,7 @@ static void refusals(void **state)
   create(simulation);
   contact = simulation->contact;
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetRobinParameter(contact, 0));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetImpedanceParameter(contact, -1));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must not be negative", ContactSchwarzSetDenseLimit(contact, -1));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetType(contact, CONTACT_PENALTY)", ContactPenaltySetParameter(contact, 1));
   ok(ContactSetType(contact, CONTACT_PENALTY));

@@ -222,6 +222,8 @@ static void wrong_options_are_refused(void **state)
     PetscErrorCode code;
   } cases[] = {
       {"-schwarz_transmission robin -schwarz_robin_parameter 0", "-schwarz_robin_parameter 0|must be positive", PETSC_ERR_USER_INPUT},
+      {"-schwarz_transmission impedance -schwarz_impedance_parameter 0", "-schwarz_impedance_parameter 0|must be positive",
+       PETSC_ERR_USER_INPUT},
       {"-schwarz_transmission robin -schwarz_robin_parameter -2", "-schwarz_robin_parameter -2|must be positive", PETSC_ERR_USER_INPUT},
       {"-schwarz_transmission robin -right_ts_type centraldifference -right_mass_redistribute 0",
        "'right' have mass|-right_mass_redistribute true|dirichlet_neumann", PETSC_ERR_USER_INPUT},

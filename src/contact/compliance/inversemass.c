@@ -1,0 +1,202 @@
+/* Forces or impulses on ties that give both sides one acceleration or one velocity. */
+#include "inversemass.h"
+
+/* Of the rates, relative: near round-off, since what is left drifts */
+#define TOLERANCE 1e-15
+/* Rows that depend on each other, as where four blocks meet at one node, leave round-off: what may be left then, and iterations to get
+   there at most */
+#define WORST          1e-10
+#define MAX_ITERATIONS 2000
+
+/* Direction in which the force of a row acts on body b: Neumann sides are pushed along the rows, Dirichlet sides against them */
+static PetscInt Sign(const ContactPair *pair, PetscInt b)
+{
+  return (pair->body[1] == b) - (pair->body[0] == b);
+}
+
+/* The forces on the rows of a body, as it takes them */
+void InverseMassGetBodyForces(Contact contact, PetscInt b, const PetscScalar force[], PetscScalar on_body[])
+{
+  for (PetscInt i = 0; i < contact->rows.n; i++) on_body[i] = Sign(&contact->pairs[contact->rows.pair[i]], b) * force[i];
+}
+
+typedef struct {
+  Contact      contact;
+  InverseMass *owner;
+} ShellContext;
+
+/* y = C x by the bodies, one solution with the mass of each */
+static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
+{
+  ShellContext      *ctx;
+  const PetscScalar *force;
+  PetscScalar       *sum;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(shell, &ctx));
+  PetscCall(VecGetArrayRead(x, &force));
+  PetscCall(VecGetArray(y, &sum));
+  for (PetscInt i = 0; i < ctx->contact->rows.n; i++) sum[i] = ctx->owner->takes_part[i] ? 0 : force[i];
+  for (PetscInt b = 0; b < ctx->contact->n_bodies; b++) {
+    PetscScalar *const on_body = ctx->owner->work[0], *const moved = ctx->owner->work[1];
+
+    InverseMassGetBodyForces(ctx->contact, b, force, on_body);
+    for (PetscInt i = 0; i < ctx->contact->rows.n; i++)
+      if (!ctx->owner->takes_part[i]) on_body[i] = 0;
+    PetscCall(BodyMultiplyInverseMass(ctx->contact->bodies[b], on_body, moved));
+    for (PetscInt i = 0; i < ctx->contact->rows.n; i++)
+      if (ctx->owner->takes_part[i]) sum[i] += Sign(&ctx->contact->pairs[ctx->contact->rows.pair[i]], b) * moved[i];
+  }
+  PetscCall(VecRestoreArray(y, &sum));
+  PetscCall(VecRestoreArrayRead(x, &force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroyContext(Mat shell)
+{
+  ShellContext *ctx;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(shell, &ctx));
+  PetscCall(PetscFree(ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateShell(Contact contact, InverseMass *inverse, Mat *shell)
+{
+  ShellContext *ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&ctx));
+  ctx->contact = contact;
+  ctx->owner   = inverse;
+  PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), contact->rows.n, contact->rows.n, contact->rows.n_all,
+                           contact->rows.n_all, ctx, shell));
+  PetscCall(MatShellSetOperation(*shell, MATOP_MULT, (void (*)(void))MultiplyByBodies));
+  PetscCall(MatShellSetOperation(*shell, MATOP_DESTROY, (void (*)(void))DestroyContext));
+  PetscCall(MatSetOption(*shell, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* C entry by entry */
+static PetscErrorCode Assemble(Contact contact, PetscErrorCode (*compute)(Body, Mat *), InverseMass *inverse, Mat *C)
+{
+  PetscFunctionBegin;
+  *C = NULL;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscScalar *signs;
+    Mat          part;
+
+    PetscCall((*compute)(contact->bodies[b], &part));
+    PetscCall(VecGetArrayWrite(inverse->rhs, &signs));
+    for (PetscInt i = 0; i < contact->rows.n; i++) signs[i] = Sign(&contact->pairs[contact->rows.pair[i]], b);
+    PetscCall(VecRestoreArrayWrite(inverse->rhs, &signs));
+    PetscCall(MatDiagonalScale(part, inverse->rhs, inverse->rhs));
+    if (*C) {
+      PetscCall(MatAXPY(*C, 1, part, DIFFERENT_NONZERO_PATTERN));
+      PetscCall(MatDestroy(&part));
+    } else *C = part;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ones on the diagonal of the rows that take no part, in place of all that they have */
+static PetscErrorCode LeaveOutOthers(Contact contact, const InverseMass *inverse, Mat C)
+{
+  PetscInt *others, n = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->rows.n, &others));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (!inverse->takes_part[i]) others[n++] = contact->rows.begin + i;
+  PetscCall(MatSetOption(C, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  PetscCall(MatZeroRowsColumns(C, n, others, 1, NULL, NULL));
+  PetscCall(PetscFree(others));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tied rows of pairs that keep their mass take part, but those whose nodes are massless on both sides, since they have other rows too */
+static PetscErrorCode FindRows(Contact contact, Mat lumped, InverseMass *inverse)
+{
+  const PetscScalar *diagonal;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetDiagonal(lumped, inverse->rhs));
+  PetscCall(VecGetArrayRead(inverse->rhs, &diagonal));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    inverse->takes_part[i] = (PetscBool)(contact->rows.tied[i] && contact->pairs[contact->rows.pair[i]].keeps_mass &&
+                                         PetscRealPart(diagonal[i]) > 0);
+  PetscCall(VecRestoreArrayRead(inverse->rhs, &diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For the ties as they are now */
+PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseMass *inverse)
+{
+  const PetscInt n = contact->rows.n;
+  Mat            C, lumped;
+  PC             pc;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
+  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &inverse->rhs));
+  PetscCall(VecDuplicate(inverse->rhs, &inverse->solution));
+  PetscCall(Assemble(contact, BodyComputeInverseLumpedMass, inverse, &lumped));
+  PetscCall(FindRows(contact, lumped, inverse));
+  PetscCall(LeaveOutOthers(contact, inverse, lumped));
+  if (type == INVERSE_MASS_ONCE) PetscCall(CreateShell(contact, inverse, &C));
+  else if (type == INVERSE_MASS_ASSEMBLED) {
+    PetscCall(Assemble(contact, BodyComputeInverseMass, inverse, &C));
+    PetscCall(LeaveOutOthers(contact, inverse, C));
+  } else {
+    C = lumped;
+    PetscCall(PetscObjectReference((PetscObject)C));
+  }
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)contact), &inverse->ksp));
+  PetscCall(KSPSetOperators(inverse->ksp, C, lumped));
+  PetscCall(KSPSetType(inverse->ksp, KSPCG));
+  PetscCall(KSPSetNormType(inverse->ksp, KSP_NORM_UNPRECONDITIONED));
+  PetscCall(KSPSetTolerances(inverse->ksp, TOLERANCE, 0, PETSC_CURRENT, MAX_ITERATIONS));
+  PetscCall(KSPGetPC(inverse->ksp, &pc));
+  PetscCall(PCSetType(pc, PCJACOBI));
+  PetscCall(KSPSetUp(inverse->ksp));
+  PetscCall(MatDestroy(&C));
+  PetscCall(MatDestroy(&lumped));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forces after which rates of the gaps are zero that are `rates` without them: C force = -rates; zero on rows that take no part */
+PetscErrorCode InverseMassSolve(Contact contact, InverseMass *inverse, const PetscScalar rates[], PetscScalar force[])
+{
+  KSPConvergedReason reason;
+  const PetscScalar *solution;
+  PetscScalar       *rhs;
+  PetscReal          left, size;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(inverse->rhs, &rhs));
+  for (PetscInt i = 0; i < contact->rows.n; i++) rhs[i] = inverse->takes_part[i] ? -rates[i] : 0;
+  PetscCall(VecRestoreArrayWrite(inverse->rhs, &rhs));
+  PetscCall(KSPSolve(inverse->ksp, inverse->rhs, inverse->solution));
+  PetscCall(KSPGetConvergedReason(inverse->ksp, &reason));
+  PetscCall(KSPGetResidualNorm(inverse->ksp, &left));
+  PetscCall(VecNorm(inverse->rhs, NORM_2, &size));
+  PetscCheck(reason >= 0 || left <= WORST * size, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+             "The forces of the ties were not found: %s, with %g of the rates left; are nodes tied to each other in a circle? Set "
+             "-<body>_mass_redistribute true, so that tied nodes have no mass",
+             KSPConvergedReasons[reason], (double)(left / size));
+  PetscCall(VecGetArrayRead(inverse->solution, &solution));
+  for (PetscInt i = 0; i < contact->rows.n; i++) force[i] = inverse->takes_part[i] ? solution[i] : 0;
+  PetscCall(VecRestoreArrayRead(inverse->solution, &solution));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode InverseMassDestroy(InverseMass *inverse)
+{
+  PetscFunctionBegin;
+  PetscCall(KSPDestroy(&inverse->ksp));
+  PetscCall(VecDestroy(&inverse->rhs));
+  PetscCall(VecDestroy(&inverse->solution));
+  PetscCall(PetscFree3(inverse->takes_part, inverse->work[0], inverse->work[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,23 @@
+#pragma once
+#include <impakt/private/contactimpl.h>
+
+/* The mass matrix that is inverted */
+typedef enum {
+  INVERSE_MASS_ONCE,      /* that of the bodies, for a few solutions: each multiplication solves with it */
+  INVERSE_MASS_ASSEMBLED, /* that of the bodies, for many solutions */
+  INVERSE_MASS_LUMPED     /* its row sums */
+} InverseMassType;
+
+/* What forces on ties do to the accelerations of their rows: C = sum_bodies B M^{-1} B^T [1/kg], on the rows of pairs whose nodes keep
+   their mass */
+typedef struct {
+  KSP          ksp; /* with C, on all rows: the identity on others */
+  Vec          rhs, solution;
+  PetscBool   *takes_part; /* per row of this rank */
+  PetscScalar *work[2];    /* per row of this rank */
+} InverseMass;
+
+PETSC_INTERN PetscErrorCode InverseMassCreate(Contact, InverseMassType, InverseMass *);
+PETSC_INTERN PetscErrorCode InverseMassSolve(Contact, InverseMass *, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode InverseMassDestroy(InverseMass *);
+PETSC_INTERN void           InverseMassGetBodyForces(Contact, PetscInt, const PetscScalar[], PetscScalar[]);

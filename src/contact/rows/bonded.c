@@ -1,0 +1,97 @@
+/*
+   Bodies that stick to each other once they have met. Each node has a row along its normal, which opens and closes like that of
+   frictionless contact, and rows across it, which mean nothing at first. At the start of the controller step after the one in which the
+   normal row closed with a compressive force, all rows of the node become ties, with the positions that they have there: nothing jumps, so
+   that no energy is lost by it. A pair with such a node does not slide any more, and its rows are not built again.
+*/
+#include <impakt/private/contactimpl.h>
+
+/* The direction of row k of a node: its normal, then unit vectors across it */
+void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscReal direction[3])
+{
+  PetscReal first[3] = {0}, length = 0;
+  PetscInt  least = 0;
+
+  for (PetscInt d = 0; d < 3; d++) direction[d] = d < dim && k == 0 ? normal[d] : 0;
+  if (k == 0) return;
+  if (dim == 2) {
+    direction[0] = -normal[1];
+    direction[1] = normal[0];
+    return;
+  }
+  /* the axis that is farthest from the normal, less its part along the normal */
+  for (PetscInt d = 1; d < 3; d++)
+    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[least])) least = d;
+  for (PetscInt d = 0; d < 3; d++) {
+    first[d] = (d == least ? 1 : 0) - normal[least] * normal[d];
+    length += PetscSqr(first[d]);
+  }
+  for (PetscInt d = 0; d < 3; d++) first[d] /= PetscSqrtReal(length);
+  for (PetscInt d = 0; d < 3; d++) {
+    const PetscInt e = (d + 1) % 3, f = (d + 2) % 3;
+
+    direction[d] = k == 1 ? first[d] : normal[e] * first[f] - normal[f] * first[e];
+  }
+}
+
+/* Replaces the rows of a matrix, which are along the axes, by those along the directions of the rows */
+PetscErrorCode ContactTurnMatrix(Contact contact, Mat *rows)
+{
+  Mat turn, turned;
+
+  PetscFunctionBegin;
+  if (contact->options.law != CONTACT_LAW_BONDED || contact->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)contact), contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all,
+                         contact->dim, NULL, 0, NULL, &turn));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+    const PetscInt     node = pair->begin + (i - pair->begin) / pair->components * pair->components;
+
+    for (PetscInt d = 0; d < contact->dim; d++)
+      PetscCall(MatSetValue(turn, contact->rows.begin + i, contact->rows.begin + node + d, contact->rows.normal[3 * i + d], INSERT_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(turn, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(turn, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatMatMult(turn, *rows, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &turned));
+  PetscCall(MatDestroy(&turn));
+  PetscCall(MatDestroy(rows));
+  *rows = turned;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All rows of a node become ties as they are at the start of the controller step */
+static PetscErrorCode BondNode(Contact contact, const ContactPair *pair, PetscInt first)
+{
+  PetscScalar *start[2];
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].displacement, 0, &start[side]));
+  for (PetscInt i = first; i < first + pair->components; i++) {
+    contact->rows.tied[i] = contact->rows.opposite[i] = PETSC_TRUE;
+    contact->rows.initial_gap[i]                      = PetscRealPart(start[0][i] - start[1][i]);
+    contact->start.gap[i] = contact->end.gap[i] = 0;
+    contact->start.active[i]                    = PETSC_TRUE;
+    if (i > first) contact->start.force[i] = 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a controller step: nodes that were pushed together at the end of the last one stick from now on */
+PetscErrorCode ContactBond(Contact contact)
+{
+  PetscFunctionBegin;
+  if (contact->options.law != CONTACT_LAW_BONDED) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+    int          any  = pair->bonded;
+
+    for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
+      if (contact->rows.tied[i] || !contact->start.active[i] || contact->start.force[i] <= 0) continue;
+      PetscCall(BondNode(contact, pair, i));
+      any = 1;
+    }
+    PetscCall(ContactOr(contact, &any));
+    pair->bonded = (PetscBool)(any > 0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

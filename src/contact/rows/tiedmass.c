@@ -1,0 +1,152 @@
+/*
+   Ties between bodies that move by the same rule keep the mass of their nodes: with lambda as the force of a tie, the equations
+
+     M a + internal force = forces + B^T lambda,   B_N u_N - B_D u_D = what it was at the start
+
+   are those of the uncut body, and one rule in time takes both sides through the same displacements. So velocities and accelerations agree
+   in all steps if they do in the first state: what bodies start with is projected there, by impulses and forces of the ties. Between bodies
+   with other integrators or steps tied nodes are massless.
+*/
+#include <contact/compliance/inversemass.h>
+
+/* Whether both bodies of a pair would have one rule for all their tied nodes, and nobody has asked for massless ones */
+static PetscErrorCode CanKeepMass(Contact contact, const ContactPair *pair, PetscBool *can)
+{
+  PetscFunctionBegin;
+  *can = PETSC_FALSE;
+  if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIntegratesLike(contact->bodies[pair->body[0]], contact->bodies[pair->body[1]], can));
+  for (PetscInt side = 0; side < 2; side++) {
+    PetscBool chosen, massless;
+
+    PetscCall(BodyMassIsChosen(contact->bodies[pair->body[side]], &chosen, &massless));
+    if (chosen && massless) *can = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether all pairs of a body keep their mass, and whether any does */
+static void GetPairsOfBody(Contact contact, PetscInt b, PetscBool *all, PetscBool *any)
+{
+  *all = PETSC_TRUE;
+  *any = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    if (contact->pairs[p].body[0] != b && contact->pairs[p].body[1] != b) continue;
+    *all = (PetscBool)(*all && contact->pairs[p].keeps_mass);
+    *any = (PetscBool)(*any || contact->pairs[p].keeps_mass);
+  }
+}
+
+/* A body whose contact nodes have mass by choice takes velocities and accelerations from partners with another rule, in all its rows: then
+   none of its pairs keeps its mass in the sense of this file */
+static PetscErrorCode LeaveOutMixed(Contact contact)
+{
+  PetscBool changed = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  while (changed) {
+    changed = PETSC_FALSE;
+    for (PetscInt b = 0; b < contact->n_bodies; b++) {
+      PetscBool all, any, chosen, massless;
+
+      GetPairsOfBody(contact, b, &all, &any);
+      PetscCall(BodyMassIsChosen(contact->bodies[b], &chosen, &massless));
+      if (!any || all || massless) continue;
+      for (PetscInt p = 0; p < contact->n_pairs; p++)
+        if (contact->pairs[p].body[0] == b || contact->pairs[p].body[1] == b) contact->pairs[p].keeps_mass = PETSC_FALSE;
+      changed = PETSC_TRUE;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces of explicit bodies act in the step that follows: their ties are solved all at once (schwarz/tiedexplicit.c), or have massless
+   nodes */
+static PetscErrorCode LeaveOutExplicit(Contact contact)
+{
+  PetscBool suits = PETSC_TRUE, is_explicit;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs && suits; p++) {
+    const Body body = contact->bodies[contact->pairs[p].body[0]];
+    PetscBool  single;
+
+    PetscCall(BodyIsExplicit(body, &is_explicit));
+    PetscCall(BodyRequestsControllerStep(body, &single));
+    suits = (PetscBool)(contact->pairs[p].keeps_mass && is_explicit && single);
+  }
+  for (PetscInt p = 0; p < contact->n_pairs && !suits; p++) {
+    PetscCall(BodyIsExplicit(contact->bodies[contact->pairs[p].body[0]], &is_explicit));
+    if (is_explicit) contact->pairs[p].keeps_mass = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds out which pairs keep the mass of their nodes. Before the nodes of the others are made massless, and before bodies are set up. */
+PetscErrorCode ContactChooseTiedMass(Contact contact)
+{
+  PetscFunctionBegin;
+  if (contact->options.law != CONTACT_LAW_TIED || !contact->prescribes) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CanKeepMass(contact, &contact->pairs[p], &contact->pairs[p].keeps_mass));
+  PetscCall(LeaveOutExplicit(contact));
+  PetscCall(LeaveOutMixed(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool all, any;
+
+    GetPairsOfBody(contact, b, &all, &any);
+    PetscCall(BodySetTiedMass(contact->bodies[b], any));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gap rates of the first or second order in time at the start, from the bodies' traces */
+static PetscErrorCode GetStartRates(Contact contact, PetscInt order, PetscScalar rates[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *start[2];
+
+    for (PetscInt side = 0; side < 2; side++) {
+      const BodyTraces *traces = &contact->traces[pair->body[side]];
+
+      PetscCall(TraceGetLevel(order == 1 ? traces->velocity : traces->acceleration, 0, &start[side]));
+    }
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = start[1][i] - start[0][i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One velocity and one acceleration of both sides of the ties that keep their mass, in the state at the start, and the forces that this
+   takes */
+PetscErrorCode ContactStartTies(Contact contact)
+{
+  PetscScalar *rates, *impulse, *force, *on_body[2];
+  InverseMass  inverse;
+  PetscBool    any = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->pairs[p].keeps_mass);
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc5(contact->rows.n, &rates, contact->rows.n, &impulse, contact->rows.n, &force, contact->rows.n, &on_body[0],
+                         contact->rows.n, &on_body[1]));
+  PetscCall(InverseMassCreate(contact, INVERSE_MASS_ONCE, &inverse));
+  PetscCall(GetStartRates(contact, 1, rates));
+  PetscCall(InverseMassSolve(contact, &inverse, rates, impulse));
+  PetscCall(GetStartRates(contact, 2, rates));
+  PetscCall(InverseMassSolve(contact, &inverse, rates, force));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    InverseMassGetBodyForces(contact, b, impulse, on_body[0]);
+    InverseMassGetBodyForces(contact, b, force, on_body[1]);
+    PetscCall(BodyChangeStart(contact->bodies[b], on_body[0], on_body[1]));
+  }
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (!inverse.takes_part[i]) continue;
+    contact->start.force[i] = contact->end.force[i] = PetscRealPart(force[i]);
+    contact->start.active[i] = contact->end.active[i] = PETSC_TRUE;
+  }
+  PetscCall(ContactStartImpulses(contact));
+  PetscCall(InverseMassDestroy(&inverse));
+  PetscCall(PetscFree5(rates, impulse, force, on_body[0], on_body[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

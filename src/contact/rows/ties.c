@@ -1,0 +1,299 @@
+/*
+   What is tied follows from where the bodies are at the start: mesh, placement and initial displacement. A node at most
+   -contact_tie_distance from the partner is tied to it as it lies there, with the gap that it has. One that is farther away, but nearer
+   than it would be to the next node, is neither clearly tied nor clearly apart: it is an error, as are surfaces that overlap and pairs
+   that tie nothing.
+*/
+#include <impakt/private/contactimpl.h>
+
+/* Nodes farther from the partner than this belong to another part of the surface and are left alone [edges of the face]. A node that is
+   nearer and yet not within the tie distance is an error. */
+#define APART 0.5
+
+/* What keeps a node that lies opposite to the partner from being tied */
+typedef enum { TIE_HOLDS, TIE_OVERLAPS, TIE_TOO_FAR, TIE_APART } TieState;
+
+/* Of one pair, on all ranks */
+typedef struct {
+  PetscInt  n[4];        /* nodes in each state */
+  PetscReal gap[4];      /* the largest distance without sign in that state, of nodes apart the smallest [m] */
+  PetscReal position[9]; /* reference positions of the nodes that overlap most, lie farthest, or are apart by least [m] */
+  PetscReal size[3];     /* edges of the faces there [m] */
+} TieSummary;
+
+/* Edge of the elements at the contact point of a body in one dimension [m]; of others the transfer knows the faces */
+static PetscErrorCode GetFaceSize(Contact contact, const ContactPair *pair, const TransferRows *rows, PetscInt node, PetscReal *size)
+{
+  PetscFunctionBegin;
+  if (contact->dim == 1) PetscCall(BodyGetElementSize(contact->bodies[pair->body[0]], size));
+  else *size = rows->size[node];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static TieState JudgeDistance(Contact contact, PetscReal gap, PetscReal size)
+{
+  if (PetscAbsReal(gap) <= contact->options.tie_distance * size) return TIE_HOLDS;
+  if (gap < 0) return TIE_OVERLAPS;
+  return gap <= APART * size ? TIE_TOO_FAR : TIE_APART;
+}
+
+/* What the displacements of the bodies add to the gaps of a pair [m], one number for each node */
+static PetscErrorCode AddDisplacements(Contact contact, const ContactPair *pair, PetscReal gaps[])
+{
+  MPI_Comm     comm = PetscObjectComm((PetscObject)contact);
+  TransferRows rows;
+  Mat          B[2] = {NULL, NULL};
+  PetscInt     begin;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    Vec      u;
+    PetscInt n;
+
+    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u, NULL, NULL));
+    PetscCall(VecGetLocalSize(u, &n));
+    PetscCall(MatCreate(comm, &B[side]));
+    PetscCall(MatSetSizes(B[side], rows.n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+    PetscCall(MatSetType(B[side], MATAIJ));
+    PetscCall(MatSetUp(B[side]));
+  }
+  PetscCall(MatGetOwnershipRange(B[0], &begin, NULL));
+  PetscCall(TransferSetValues(pair->transfer, begin, 1, B[0], B[1]));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    const PetscScalar *values;
+    Vec                u, moved;
+
+    PetscCall(MatAssemblyBegin(B[side], MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(B[side], MAT_FINAL_ASSEMBLY));
+    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u, NULL, NULL));
+    PetscCall(MatCreateVecs(B[side], NULL, &moved));
+    PetscCall(MatMult(B[side], u, moved));
+    PetscCall(VecGetArrayRead(moved, &values));
+    for (PetscInt i = 0; i < rows.n; i++) gaps[i] += (side ? 1 : -1) * PetscRealPart(values[i]);
+    PetscCall(VecRestoreArrayRead(moved, &values));
+    PetscCall(VecDestroy(&moved));
+    PetscCall(MatDestroy(&B[side]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which nodes of a pair are tied, as its transfer has them now: with the displacements of the bodies, once these are known. `changed`
+   becomes true if any is that was not, or is no more. */
+PetscErrorCode ContactMeasureTies(Contact contact, const ContactPair *pair, PetscBool displaced, PetscBool *changed)
+{
+  TransferRows rows;
+  PetscReal   *gaps;
+
+  PetscFunctionBegin;
+  if (contact->options.law != CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  PetscCall(PetscMalloc1(rows.n, &gaps));
+  for (PetscInt node = 0; node < rows.n; node++) gaps[node] = rows.opposite[node] ? rows.gap[node] : 0;
+  if (displaced) PetscCall(AddDisplacements(contact, pair, gaps));
+  for (PetscInt node = 0; node < rows.n; node++) {
+    PetscReal size;
+    PetscBool tied;
+
+    PetscCall(GetFaceSize(contact, pair, &rows, node, &size));
+    tied = (PetscBool)(rows.opposite[node] && JudgeDistance(contact, gaps[node], size) == TIE_HOLDS);
+    for (PetscInt k = 0; k < pair->components; k++) {
+      const PetscInt i = pair->begin + node * pair->components + k;
+
+      if (contact->ties.holds[i] != tied) *changed = PETSC_TRUE;
+      contact->ties.holds[i]    = tied;
+      contact->ties.distance[i] = gaps[node];
+    }
+  }
+  PetscCall(PetscFree(gaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The worst node of a state on all ranks: its gap, position and face */
+static PetscErrorCode FindWorst(Contact contact, PetscReal gap, const PetscReal mine[4], TieState state, TieSummary *summary)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  struct {
+    double value;
+    int    rank;
+  } worst;
+  PetscMPIInt rank;
+  PetscReal   all[4];
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  worst.value = (double)(state == TIE_APART ? -gap : gap);
+  worst.rank  = rank;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCall(PetscArraycpy(all, mine, 4));
+  PetscCallMPI(MPI_Bcast(all, 4, MPIU_REAL, worst.rank, comm));
+  summary->gap[state] = PetscAbsReal((PetscReal)worst.value);
+  PetscCall(PetscArraycpy(summary->position + 3 * (state - 1), all, 3));
+  summary->size[state - 1] = all[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the nodes of a pair in each state, and finds the worst ones */
+static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSummary *summary)
+{
+  PetscReal          worst[4] = {0, -1, -1, PETSC_MAX_REAL}, places[4][4] = {{0}};
+  const PetscScalar *x;
+  TransferRows       rows;
+  Vec                positions;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(summary, sizeof(*summary)));
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
+  PetscCall(VecGetArrayRead(positions, &x));
+  for (PetscInt node = 0; node < rows.n; node++) {
+    const PetscInt  i   = pair->begin + node * pair->components;
+    const PetscReal gap = contact->ties.distance[i], distance = PetscAbsReal(gap);
+    PetscReal       size;
+    TieState        state;
+
+    if (!rows.opposite[node]) continue;
+    PetscCall(GetFaceSize(contact, pair, &rows, node, &size));
+    state = JudgeDistance(contact, gap, size);
+    summary->n[state]++;
+    if (state == TIE_APART ? distance >= worst[state] : distance <= worst[state]) continue;
+    worst[state] = distance;
+    for (PetscInt d = 0; d < contact->dim; d++) places[state][d] = PetscRealPart(x[contact->rows.dof[i] + d]);
+    places[state][3] = size;
+  }
+  PetscCall(VecRestoreArrayRead(positions, &x));
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, summary->n, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  for (TieState state = TIE_OVERLAPS; state <= TIE_APART; state = (TieState)(state + 1))
+    PetscCall(FindWorst(contact, worst[state], places[state], state, summary));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What overlaps, or is neither tied nor apart, is an error that says where */
+static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, const TieSummary *summary)
+{
+  MPI_Comm    comm  = PetscObjectComm((PetscObject)contact);
+  const char *first = ((PetscObject)contact->bodies[pair->body[0]])->name;
+
+  PetscFunctionBegin;
+  for (TieState state = TIE_OVERLAPS; state <= TIE_TOO_FAR; state = (TieState)(state + 1)) {
+    const PetscReal *x = summary->position + 3 * (state - 1), gap = summary->gap[state], size = summary->size[state - 1];
+
+    if (!summary->n[state]) continue;
+    SETERRQ(
+        comm, PETSC_ERR_USER_INPUT,
+        "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
+        "-contact_law tied ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g m, which "
+        "is %.3g of its face. Move one of the bodies (its mesh, or -%s_initial_displacement), name smaller surfaces in -contact_pairs, "
+        "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
+        pair->name, summary->n[state], summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART],
+        first, state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", (double)x[0], (double)x[1], (double)x[2],
+        state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, (double)(gap / size), first, (double)contact->options.tie_distance);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs that tie nothing: one that the user has named is an error, as is one of all possible pairs with a body that no pair ties. The pair
+   with the smallest gap is told. */
+static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], const TieSummary summaries[])
+{
+  PetscInt nearest = -1;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair     = &contact->pairs[p];
+    const PetscBool    expected = (PetscBool)(!pair->chosen || !tied[pair->body[0]] || (!pair->obstacle && !tied[pair->body[1]]));
+
+    if (summaries[p].n[TIE_HOLDS] || !expected) continue;
+    if (nearest < 0 || summaries[p].gap[TIE_APART] < summaries[nearest].gap[TIE_APART]) nearest = p;
+  }
+  if (nearest >= 0) {
+    const ContactPair *pair    = &contact->pairs[nearest];
+    const TieSummary  *summary = &summaries[nearest];
+    const PetscReal   *x       = summary->position + 3 * (TIE_APART - 1);
+
+    PetscCheck(summary->n[TIE_APART], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_pairs %s: -contact_law tied ties nothing, since at the start no node of body '%s' lies opposite to the partner; "
+               "place the bodies so that their surfaces lie on each other, or leave the pair out of -contact_pairs",
+               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+    SETERRQ(
+        PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "-contact_pairs %s: -contact_law tied ties nothing: at the start the node of body '%s' that is nearest to the partner, at "
+        "(%g, %g, %g) before any displacement, has a gap of %g m, which is %.3g of its face, and nodes are tied within "
+        "-contact_tie_distance, now %g of a face; move one of the bodies (its mesh, or -%s_initial_displacement), or leave the pair out "
+        "of -contact_pairs",
+        pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1], (double)x[2],
+        (double)summary->gap[TIE_APART], (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]),
+        (double)contact->options.tie_distance, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckTies(Contact contact)
+{
+  TieSummary *summaries;
+  PetscInt   *tied; /* per body, and for obstacles: its nodes that are tied, and those of others that are tied to it */
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_pairs, &summaries));
+  PetscCall(PetscCalloc1(contact->n_bodies + 1, &tied));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(Summarize(contact, pair, &summaries[p]));
+    for (PetscInt side = 0; side < 2; side++) tied[pair->body[side]] += summaries[p].n[TIE_HOLDS];
+    PetscCall(CheckDistances(contact, pair, &summaries[p]));
+  }
+  PetscCall(CheckNothingTied(contact, tied, summaries));
+  PetscCall(PetscFree(tied));
+  PetscCall(PetscFree(summaries));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Builds the rows again where the displacements at the start have other nodes tied, or tied to other ones, than the meshes alone */
+static PetscErrorCode RebuildTies(Contact contact)
+{
+  int any = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    Vec                u[2] = {NULL, NULL};
+    PetscBool          rebuilt, changed = PETSC_FALSE;
+
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+      PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
+    PetscCall(ContactMeasureTies(contact, pair, PETSC_TRUE, &changed));
+    any |= rebuilt || changed;
+  }
+  PetscCall(ContactOr(contact, &any));
+  PetscCall(CheckTies(contact));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE;
+  PetscCall(ContactMergeDroppedRows(contact));
+  PetscCall(ContactLeaveOutObstacles(contact));
+  PetscCall(ContactFillMatrices(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->rows.changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ties what lies on each other in the present states, as it lies there, and ends with an error where that is not clear or nothing is tied.
+   Call with the bodies set up. */
+PetscErrorCode ContactTie(Contact contact)
+{
+  PetscFunctionBegin;
+  if (contact->options.law != CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RebuildTies(contact));
+  PetscCall(ContactComputeStartGaps(contact));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (!contact->rows.tied[i]) continue;
+    contact->rows.initial_gap[i] -= contact->start.gap[i];
+    contact->start.gap[i] = contact->end.gap[i] = 0;
+  }
+  PetscCall(ContactDropDependentTies(contact));
+  PetscTryTypeMethod(contact, rowschanged);
+  PetscCall(ContactStartTies(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,87 @@
+"""-contact_law bonded: bodies that have met stick to each other."""
+
+import h5py
+import numpy as np
+import pytest
+from cases import SAME, worst_energy_error
+
+INTEGRATORS = {"II": "", "IE": "-b_ts_type centraldifference", "EE": "-a_ts_type centraldifference -b_ts_type centraldifference"}
+
+
+def box(name, dim, low, faces, velocity, more=""):
+    lower, upper = [low] + [0] * (dim - 1), [low + 1] + [1] * (dim - 1)
+    return (f"-{name}_dm_plex_dim {dim} -{name}_dm_plex_simplex 0 -{name}_dm_plex_box_faces {','.join([str(faces)] * dim)} "
+            f"-{name}_dm_plex_box_lower {','.join(map(str, lower))} -{name}_dm_plex_box_upper {','.join(map(str, upper))} -{name}_density 1000 "
+            f"-{name}_youngs_modulus 1e9 -{name}_poissons_ratio 0.3 -{name}_initial_velocity {','.join(map(str, velocity[:dim]))} {more}")  # fmt: skip
+
+
+def thrown(dim, faces, pairing, law="bonded"):
+    return (f"-bodies a,b -contact_pairs a:b -contact_law {law} -time_step 1e-5 -time_end 6e-3 {INTEGRATORS[pairing]} "
+            f"{box('a', dim, 0, 4, (10, 3, 1))} {box('b', dim, 1.002, faces, (-10, -3, 2))}")  # fmt: skip
+
+
+@pytest.mark.parametrize("pairing", INTEGRATORS)
+@pytest.mark.parametrize("faces", [4, 3])
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_they_stick(dim, faces, pairing, shared_run):
+    """They slide past each other until they meet after 1e-4 s, and pull at each other when they would bounce off. Nothing is lost. Measured: 2e-13."""
+    run = shared_run(thrown(dim, faces, pairing))
+    pair = run.history["contact/a:b"]
+    active, force = pair["active"][()], pair["force"][()]
+    first = np.flatnonzero(active)[0]
+    assert run.history["time"][first] == pytest.approx(1e-4, abs=1.1e-5)
+    assert (active[first:] == 5 ** (dim - 1)).all()
+    assert force.max() > 1e6 and force.min() < -1e6  # N: rho c v of 1e7 Pa on 1 m^2, at first as pressure
+    assert run.summary["contact"]["onsets"] == 1
+    assert worst_energy_error(run.summary) <= 1e-9
+    assert run.summary["system"]["momentum_error_max"] <= 1e-11
+    assert abs(pair["gap"][first:]).max() <= 4e-12  # m: where the outer iteration stops
+    if dim > 1:
+        across = np.abs(pair["force_vector"][:, 1])
+        assert across[first] <= 1e-9 * force.max() and across.max() > 1e5
+
+
+@pytest.mark.parametrize("more", ["-schwarz_condense 0", "-schwarz_dense_limit 0"])
+def test_ways(more, shared_run):
+    one, other = (shared_run(f"{thrown(2, 3, 'II')} {words}").history["contact/a:b/force_vector"][()] for words in ("", more))
+    np.testing.assert_allclose(one, other, rtol=0, atol=1e-7 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("pairing", ["II", "EE"])
+def test_ranks(pairing, shared_run):
+    one, two = (shared_run(thrown(2, 3, pairing), ranks).history["contact/a:b/force_vector"][()] for ranks in (1, 2))
+    np.testing.assert_allclose(one, two, rtol=0, atol=SAME * np.abs(one).max())
+
+
+def test_relative_positions_stay(shared_run):
+    """The nodes of matching faces have slid by what they had until they met, the controller step before the one in which they stick included."""
+    run = shared_run(f"{thrown(2, 4, 'II')} -output_fields fields.h5 -output_fields_interval 1 -output_fields_precision double")
+    with h5py.File(run.folder / "fields.h5") as fields:
+        place = fields["mesh/positions"][()]
+        sides = [np.flatnonzero(abs(place[:, 0] - x) < 1e-9) for x in (1, 1.002)]
+        sides = [nodes[np.argsort(place[nodes, 1])] for nodes in sides]
+        frames = [frame[()] for frame in fields["displacement"].values()]
+    slip = np.array([frame[sides[1], :2] - frame[sides[0], :2] for frame in frames])
+    assert slip[12:, :, 0] == pytest.approx(-0.002, abs=1e-12)
+    assert np.abs(slip[-1] - slip[12:]).max() <= 1e-12
+    assert slip[-1, :, 1] == pytest.approx(-6 * 1e-4, abs=1.1e-4)  # 6 m/s for 1e-4 s, a step more or less
+
+
+@pytest.mark.parametrize("integrator", ["", "-b_ts_type centraldifference"])
+def test_on_an_obstacle(integrator, shared_run):
+    """A block thrown at a wall sticks to it: its face stays where it hit, while the rest goes on and comes back."""
+    floor = "-obstacles wall -wall_obstacle_type plane -wall_point 1,0 -wall_normal -1,0 -contact_pairs b:wall"
+    run = shared_run(f"-bodies b -contact_law bonded {floor} -time_step 1e-5 -time_end 6e-3 {box('b', 2, -0.001, 4, (10, 3))} {integrator}")
+    pair = run.history["contact/b:wall"]
+    first = np.flatnonzero(pair["active"])[0]
+    assert (pair["active"][first:] == 5).all() and pair["force"][()].min() < -1e6
+    position = run.history["body/b/contact_position"][first + 1 :, :2]
+    assert np.abs(position - position[0]).max() <= 1e-12
+    assert worst_energy_error(run.summary) <= 1e-9
+
+
+@pytest.mark.parametrize("method", ["penalty", "lagrange", "augmented_lagrangian"])
+def test_other_methods_are_refused(method, impakt):
+    run = impakt(f"{thrown(2, 4, 'II')} -contact_type {method}", expect_failure=True)
+    for word in ("-contact_law bonded", "-contact_type schwarz", method):
+        assert word in run.stderr
