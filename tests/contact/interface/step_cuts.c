@@ -72,7 +72,7 @@ static void Fail(Simulation *simulation, PetscInt level)
   StepConvergedReason reason;
 
   ok(ContactSetStepLevel(simulation->contact, level));
-  ok(ContactTryStep(simulation->contact, PETSC_TRUE, &reason));
+  ok(ContactTryStep(simulation->contact, PETSC_TRUE, PETSC_MAX_REAL, &reason));
   ok(ContactStepBack(simulation->contact));
 }
 
@@ -81,7 +81,7 @@ static void Make(Simulation *simulation, PetscInt level)
   StepConvergedReason reason;
 
   ok(ContactSetStepLevel(simulation->contact, level));
-  ok(ContactTryStep(simulation->contact, PETSC_TRUE, &reason));
+  ok(ContactTryStep(simulation->contact, PETSC_TRUE, PETSC_MAX_REAL, &reason));
   assert_int_equal(reason, STEP_CONVERGED);
   ok(ContactAccept(simulation->contact));
 }
