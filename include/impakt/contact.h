@@ -208,7 +208,8 @@ typedef struct {
   /* on the second body; on the first act their opposites; zeros beyond the space dimension */
   PetscReal force_vector[3]; /* resultant [N] */
   PetscReal moment[3];       /* of the forces about the origin, where the nodes of the first body are now [N m] */
-  PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, trapezoidal [N s] */
+  PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, whole or cut, trapezoidal [N s] */
+  PetscReal normal_impulse;  /* the same of `force` [N s] */
 } ContactPairState;
 
 /*S

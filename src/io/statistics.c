@@ -18,7 +18,8 @@
 /* What is remembered of the last step, for each pair and for all pairs together */
 typedef struct {
   PetscBool touches;
-  PetscReal force; /* at its end [N] */
+  PetscReal force;   /* at its end [N] */
+  PetscReal impulse; /* until then [N s] */
 } ContactMemory;
 
 struct _n_Statistics {
@@ -247,7 +248,7 @@ static PetscErrorCode AddRotations(Statistics s, Controller controller, const Co
 
 /* Adds a step of one pair, or of all pairs together */
 static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
-                       PetscReal time_step)
+                       PetscReal time_step, PetscBool cut)
 {
   const PetscBool touches = state->active > 0 ? PETSC_TRUE : PETSC_FALSE;
 
@@ -256,7 +257,9 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
     if (!memory->touches) contact->onsets++;
     contact->release_time = time;
   }
-  contact->impulse += 0.5 * (memory->force + state->force) * time_step;
+  /* the forces at the ends of whole steps do not tell what those in a step that was cut have done */
+  contact->impulse += cut ? state->normal_impulse - memory->impulse : 0.5 * (memory->force + state->force) * time_step;
+  memory->impulse          = state->normal_impulse;
   contact->force_peak      = PetscMax(contact->force_peak, state->force);
   contact->tension_max     = PetscMax(contact->tension_max, state->tension);
   contact->max_penetration = PetscMax(contact->max_penetration, -state->gap);
@@ -310,15 +313,18 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   PetscCall(ContactTimesAdd(s->times, frame));
   PetscCall(AddRotations(s, controller, frame));
   if (frame->step > 0) {
+    const PetscBool cut = (PetscBool)(frame->step_cuts > 0);
+
     for (PetscInt i = 0; i < frame->n_pairs; i++) {
-      AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time);
+      AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time, cut);
+      any.normal_impulse += frame->pairs[i].normal_impulse;
       any.force += frame->pairs[i].force;
       any.gap = PetscMin(any.gap, frame->pairs[i].gap);
       any.active += frame->pairs[i].active;
       any.area += frame->pairs[i].area;
       any.tension = PetscMax(any.tension, frame->pairs[i].tension);
     }
-    AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time);
+    AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time, cut);
     r->steps++;
     r->max_sweeps = PetscMax(r->max_sweeps, frame->sweeps);
     s->total_sweeps += frame->sweeps;

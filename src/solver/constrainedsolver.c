@@ -12,17 +12,19 @@
 */
 #include "constrainedsolver.h"
 #include "densefactor.h"
+#include <math.h>
 #include <sys/petsccompat.h>
 
 struct _n_ConstrainedSolver {
-  KSP         ksp;
-  PC          direct; /* the preconditioner where it is the whole solver, else NULL */
-  Mat         B;
-  PetscInt    local, global, begin; /* rows of B */
-  PetscMPIInt size, *counts, *offsets;
-  Compliance  compliance; /* W at its first level */
-  PetscBool   shares;     /* that is another's, who destroys it */
-  PetscReal  *mine,
+  KSP                ksp;
+  PC                 direct; /* the preconditioner where it is the whole solver, else NULL */
+  Mat                B;
+  PetscInt           local, global, begin; /* rows of B */
+  PetscMPIInt        size, *counts, *offsets;
+  Compliance         compliance; /* W at its first level */
+  PetscBool          shares;     /* that is another's, who destroys it; then A is constant */
+  KSPConvergedReason failed;     /* why a solution with a matrix that is not constant did not converge; 0: none failed */
+  PetscReal         *mine,
       *constrained;   /* flexibility of a row, 0 where it is prescribed, less than 0 where it is free: this rank's rows, all rows */
   PetscInt   n;       /* how many rows are constrained */
   PetscInt  *rows;    /* which */
@@ -151,7 +153,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(KSPSetOperators(s->ksp, A, A));
   PetscCallMPI(MPI_Comm_size(comm, &s->size));
   s->dense_limit = MAX_DENSE_CONSTRAINTS;
-  PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_TRUE));
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, (PetscBool)(compliance != NULL)));
   PetscCall(ChooseSolver(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(KSPSetUp(s->ksp));
@@ -230,13 +232,39 @@ PetscErrorCode ConstrainedSolverSetDenseLimit(ConstrainedSolver s, PetscInt limi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A solution that did not converge is not a number: the matrix of a nonlinear body may be indefinite where Newton's method has gone astray,
+   and its step fails then. With a constant matrix PETSc has ended with an error. */
+static PetscErrorCode CheckSolution(ConstrainedSolver s, KSP ksp, Vec x)
+{
+  KSPConvergedReason reason;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->failed) s->failed = reason;
+  PetscCall(VecSet(x, NAN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* x = A^{-1} b, without constraints */
 PetscErrorCode ConstrainedSolverSolveFree(ConstrainedSolver s, Vec b, Vec x)
 {
   PetscFunctionBegin;
   if (s->direct) PetscCall(PCApply(s->direct, b, x));
-  else PetscCall(KSPSolve(s->ksp, b, x));
+  else {
+    PetscCall(KSPSolve(s->ksp, b, x));
+    PetscCall(CheckSolution(s, s->ksp, x));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Why the first solution since the last call did not converge; 0 if all did. The same on every rank. */
+KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver s)
+{
+  const KSPConvergedReason failed = s->failed;
+
+  s->failed = KSP_CONVERGED_ITERATING;
+  return failed;
 }
 
 /* The rows have new entries, as many as before; `changed`: for each row of all ranks, whether it is one of them. A compliance of the
@@ -327,7 +355,7 @@ static PetscErrorCode CreateIterative(ConstrainedSolver s)
   PetscCall(KSPGetPC(s->iterative, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetTolerances(s->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 500));
-  PetscCall(KSPSetErrorIfNotConverged(s->iterative, PETSC_TRUE));
+  PetscCall(KSPSetErrorIfNotConverged(s->iterative, s->shares));
   PetscCall(VecDuplicate(s->row, &s->force_vec));
   PetscCall(VecDuplicate(s->row, &s->gap_vec));
   PetscCall(MatDestroy(&shell));
@@ -406,6 +434,10 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
     for (PetscInt l = 0; l < s->n; l++)
       s->factor.values[k * s->n + l] = W[place[s->rows[k]] * leading + place[s->rows[l]]] + (k == l ? s->constrained[s->rows[k]] : 0);
   PetscCall(DenseFactorCompute(&s->factor, &singular));
+  if (s->failed) { /* columns are not numbers: the step has failed, and is not constrained any more */
+    s->n = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCheck(!singular, PetscObjectComm((PetscObject)s->ksp), PETSC_ERR_MAT_LU_ZRPVT,
              "The prescribed contact rows of a body are not independent: their compliance is singular; is a node in two contact pairs?");
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -448,6 +480,7 @@ static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScala
   }
   PetscCall(VecRestoreArray(s->gap_vec, &gap));
   PetscCall(KSPSolve(s->iterative, s->gap_vec, s->force_vec));
+  PetscCall(CheckSolution(s, s->iterative, s->force_vec));
   PetscCall(KSPGetIterationNumber(s->iterative, &iterations));
   s->spent += (iterations + 1) * s->solve_flops; /* one more for x */
   PetscCall(MatMultTranspose(s->B, s->force_vec, s->rhs));

@@ -5,18 +5,19 @@
 
 typedef struct _n_ConstrainedSolver *ConstrainedSolver;
 
-PETSC_INTERN PetscErrorCode ConstrainedSolverCreate(Mat, Mat, PetscInt, const char[], Compliance, ConstrainedSolver *);
-PETSC_INTERN PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *);
-PETSC_INTERN PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver);
-PETSC_INTERN PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
-PETSC_INTERN PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);
-PETSC_INTERN PetscErrorCode ConstrainedSolverSetDenseLimit(ConstrainedSolver, PetscInt);
-PETSC_INTERN PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver, Mat, const PetscMPIInt[]);
-PETSC_INTERN PetscErrorCode ConstrainedSolverForgetUnknown(ConstrainedSolver);
-PETSC_INTERN PetscErrorCode ConstrainedSolverApplyUnit(ConstrainedSolver, PetscInt, Vec, PetscScalar[]);
-PETSC_INTERN PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver, Vec, Vec);
-PETSC_INTERN PetscErrorCode ConstrainedSolverSolveFree(ConstrainedSolver, Vec, Vec);
-PETSC_INTERN PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);
-PETSC_INTERN PetscErrorCode ConstrainedSolverExtend(ConstrainedSolver, PetscInt);
-PETSC_INTERN PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver, const PetscScalar[], const PetscScalar[], Vec);
-PETSC_INTERN PetscLogDouble ConstrainedSolverGetFlops(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverCreate(Mat, Mat, PetscInt, const char[], Compliance, ConstrainedSolver *);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverDestroy(ConstrainedSolver *);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverRefactor(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverSetDenseLimit(ConstrainedSolver, PetscInt);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverSetRows(ConstrainedSolver, Mat, const PetscMPIInt[]);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverForgetUnknown(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyUnit(ConstrainedSolver, PetscInt, Vec, PetscScalar[]);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyCompliance(ConstrainedSolver, Vec, Vec);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFree(ConstrainedSolver, Vec, Vec);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);
+PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverExtend(ConstrainedSolver, PetscInt);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverCorrect(ConstrainedSolver, const PetscScalar[], const PetscScalar[], Vec);
+PETSC_INTERN PetscLogDouble     ConstrainedSolverGetFlops(ConstrainedSolver);

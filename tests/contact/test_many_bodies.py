@@ -55,7 +55,7 @@ def test_stack_on_ranks(shared_run):
 
 @pytest.mark.long
 def test_ten_balls(shared_run):
-    run = shared_run(BALLS)
+    run = shared_run(f"{BALLS} -controller_step_cuts 0")
     system = run.summary["system"]
     assert len(run.summary["pairs"]) == 45 + 30
     touched = [name for name, pair in run.summary["pairs"].items() if pair["onsets"]]
@@ -72,7 +72,7 @@ def test_ten_balls_explicit(shared_run):
     step while rows open. Nor may a row that is pulled when held and penetrates when not end the rounds for all others, which left discs 6.6e-4 m deep."""
     explicit = " ".join(f"-{b}_ts_type centraldifference -{b}_ts_time_step auto -{b}_material_type linear_elastic" for b in "abcdefghij")
     for step, until, loss in (("2e-4", 0.35, 0.046), ("4e-4", 0.31, 0.05)):  # measured: 0.0357 and 0.0390
-        run = shared_run(f"-options_file options/ten-balls.opts {explicit} -time_step {step} -time_end {until}")
+        run = shared_run(f"-options_file options/ten-balls.opts {explicit} -time_step {step} -time_end {until} -controller_step_cuts 0")
         assert max(depths(run)) <= DEPTH  # measured: 3e-16 m
         assert -loss <= run.summary["system"]["energy_error_min"]
         assert run.summary["system"]["energy_error_max"] <= ROUND_OFF  # measured: 6e-15

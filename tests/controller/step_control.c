@@ -65,6 +65,19 @@ static void newton(void **state)
   assert_int_equal(cuts.lossy_steps, 0);
 }
 
+/* The solver inside Newton's method, where the matrix is not constant; with that of a linear body no step helps, and it is an error at once
+ */
+static void linear_solver(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddFastCollision();
+  AddOptions("-left_ksp_type cg -left_pc_type none -left_ksp_max_it 2 -controller_step_cuts 1");
+  SimulationRepeat(simulation, "");
+  refused(PETSC_ERR_NOT_CONVERGED, "linear solver in Newton's method|'left'|DIVERGED_ITS|cut in halves 1 time, to 0.01 s",
+          ControllerSolve(simulation->controller));
+}
+
 /* An element that a step of 0.2 s inverts, at 0.6 of the speed of sound */
 static void inverted_element(void **state)
 {
@@ -157,6 +170,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       simulation_test(newton),
+      simulation_test(linear_solver),
       simulation_test(inverted_element),
       simulation_test(outer_iteration),
       simulation_test(energy),

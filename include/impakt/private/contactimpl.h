@@ -161,8 +161,8 @@ typedef struct {
 
 /* What the forces of each pair amount to */
 typedef struct {
-  PetscReal *cross_section; /* of its first body: turns lengths and points into areas */
-  PetscReal *impulse; /* this rank's share of the impulse so far, 3 numbers, and of the force at the end of the last step, 3 numbers */
+  PetscReal *cross_section;  /* of its first body: turns lengths and points into areas */
+  PetscReal *impulse;        /* this rank's shares, see resultants.c */
   PetscReal  penalty_energy; /* energy in the penalty springs of all pairs [J] */
   PetscReal *sums;           /* work space */
   PetscReal *maxima;         /* work space */

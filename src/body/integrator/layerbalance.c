@@ -40,14 +40,9 @@ struct _n_LayerBalance {
 /* With contact: under the constraints of the rows; else as if there were no rows */
 static PetscErrorCode SolveLayer(LayerBalance layer, Body body, PetscBool contact)
 {
-  KSP ksp;
-
   PetscFunctionBegin;
   if (contact) PetscCall(ConstrainedSolverSolve(body->solver, layer->rhs, layer->solution));
-  else {
-    PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
-    PetscCall(KSPSolve(ksp, layer->rhs, layer->solution));
-  }
+  else PetscCall(ConstrainedSolverSolveFree(body->solver, layer->rhs, layer->solution));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -374,6 +374,7 @@ PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
 PetscErrorCode BodyImplicitCheckSubstep(Body body)
 {
   SNESConvergedReason reason;
+  KSPConvergedReason  linear;
   PetscInt            iterations;
   SNES                snes;
 
@@ -382,7 +383,14 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   PetscCall(TSGetSNES(body->time.ts, &snes));
   PetscCall(SNESGetConvergedReason(snes, &reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
-  if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  linear = ConstrainedSolverTakeFailure(body->solver);
+  if (reason >= 0 && linear >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (linear < 0)
+    PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
+                             "The linear solver in Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
+                             "): %s; choose a smaller -%sts_time_step, or a direct solver (-%spc_type cholesky)",
+                             body->hdr.name, (double)body->state.time, body->state.step, KSPConvergedReasons[linear],
+                             ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
   PetscCall(BodyNoteInverted(body));
   PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
                            "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT

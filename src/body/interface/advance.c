@@ -142,6 +142,22 @@ PetscErrorCode BodyResetTraces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where the solver of a massless contact layer did not converge the step has failed; that of an implicit body is asked by its integrator */
+static PetscErrorCode CheckSolver(Body body)
+{
+  KSPConvergedReason reason;
+
+  PetscFunctionBegin;
+  if (!body->solver) PetscFunctionReturn(PETSC_SUCCESS);
+  reason = ConstrainedSolverTakeFailure(body->solver);
+  if (reason < 0)
+    PetscCall(
+        StepFailureSet(&body->failure, STEP_DIVERGED_LAYER, PETSC_ERR_NOT_CONVERGED,
+                       "Body '%s': the linear solver of its contact layer did not converge in the step that begins at time %.9g s: %s",
+                       body->hdr.name, (double)body->saved.time, KSPConvergedReasons[reason]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyTryIntegrate - as `BodyIntegrate()`, for those who can do something about a step that fails
 
@@ -174,6 +190,7 @@ PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
   PetscCall(BodyRepeat(body, &done));
   if (!done) {
     PetscCall(BodyMakeSubsteps(body));
+    PetscCall(CheckSolver(body));
     if (body->failure.reason >= 0) PetscCall(BodyNoteInputs(body));
   }
   PetscCall(PetscTime(&end));

@@ -2,7 +2,20 @@
 #include <impakt/private/contactimpl.h>
 
 /* What is summed over the rows of a pair */
-enum { SUM_FORCE, SUM_ACTIVE, SUM_AREA, SUM_VECTOR, SUM_MOMENT = SUM_VECTOR + 3, SUM_IMPULSE = SUM_MOMENT + 3, N_SUMS = SUM_IMPULSE + 3 };
+enum {
+  SUM_FORCE,
+  SUM_ACTIVE,
+  SUM_AREA,
+  SUM_VECTOR,
+  SUM_MOMENT         = SUM_VECTOR + 3,
+  SUM_IMPULSE        = SUM_MOMENT + 3,
+  SUM_NORMAL_IMPULSE = SUM_IMPULSE + 3,
+  N_SUMS
+};
+
+/* What is kept of a pair from step to step: its impulse and the force at the end of the last step, 3 numbers each, and the same of the
+   normal forces, one number each */
+#define N_KEPT 8
 
 /* Of what the largest value of a pair's rows is found */
 enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
@@ -16,7 +29,8 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
   PetscFunctionBegin;
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc4(contact->n_pairs, &contact->resultants.cross_section, N_SUMS * contact->n_pairs, &contact->resultants.sums,
-                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, 6 * contact->n_pairs, &contact->resultants.impulse));
+                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, N_KEPT * contact->n_pairs,
+                         &contact->resultants.impulse));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->resultants.cross_section[p]));
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
@@ -44,12 +58,32 @@ static void SumForces(Contact contact, const ContactPair *pair, const PetscReal 
     for (PetscInt d = 0; d < 3; d++) force[d] += rows[i] * contact->rows.normal[3 * i + d];
 }
 
+/* This rank's share of the resultant of the normal forces of a pair [N] */
+static PetscErrorCode SumNormalForces(Contact contact, const ContactPair *pair, const PetscReal row[], PetscReal *force)
+{
+  TransferRows rows;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  *force = 0;
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+
+    *force += (contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1) * row[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The forces at the start are those that the first controller step begins with */
 PetscErrorCode ContactStartImpulses(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    SumForces(contact, &contact->pairs[p], contact->end.force, contact->resultants.impulse + 6 * p + 3);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p;
+
+    SumForces(contact, &contact->pairs[p], contact->end.force, impulse + 3);
+    PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->end.force, impulse + 7));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -58,7 +92,7 @@ PetscErrorCode ContactAddImpulses(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscReal *impulse = contact->resultants.impulse + 6 * p, *last = impulse + 3, force[3];
+    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, *last = impulse + 3, *normal = impulse + 6, force[3], now = 0;
 
     if (contact->energy.changed) SumForces(contact, &contact->pairs[p], contact->start.force, last);
     SumForces(contact, &contact->pairs[p], contact->end.force, force);
@@ -66,6 +100,10 @@ PetscErrorCode ContactAddImpulses(Contact contact)
       impulse[d] += 0.5 * contact->step * (last[d] + force[d]);
       last[d] = force[d];
     }
+    if (contact->energy.changed) PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->start.force, &normal[1]));
+    PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->end.force, &now));
+    normal[0] += 0.5 * contact->step * (normal[1] + now);
+    normal[1] = now;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,7 +166,8 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   }
   SumForces(contact, pair, contact->end.force, sums + SUM_VECTOR);
   PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
-  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + 6 * p, 3));
+  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + N_KEPT * p, 3));
+  sums[SUM_NORMAL_IMPULSE] = contact->resultants.impulse[N_KEPT * p + 6];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,6 +195,7 @@ static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt en
     PetscCall(PetscArraycpy(state->force_vector, sums + SUM_VECTOR, 3));
     PetscCall(PetscArraycpy(state->moment, sums + SUM_MOMENT, 3));
     PetscCall(PetscArraycpy(state->impulse, sums + SUM_IMPULSE, 3));
+    state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,8 +1,7 @@
 /*
    A contact law of one's own: the surface is covered with a soft layer, whose force grows with the depth g of penetration as K g^(3/2) per
-   unit of area. One function finds the forces of a controller step. A stiff block of mass m = 1 kg flies into a plane with v = 1 m/s. By
-   the energies of this law (Hertz's impact of a sphere) the layer is compressed to (5 m v^2 / (4 K))^(2/5), the contact lasts 2.94328 times
-   that depth divided by v, and the block leaves as fast as it came.
+   unit of area. A stiff block of mass m = 1 kg flies into a plane with v = 1 m/s. By the energies of this law (Hertz's impact of a sphere)
+   the layer is compressed to (5 m v^2 / (4 K))^(2/5), the contact lasts 2.94328 times that depth divided by v; the block leaves as it came.
    Made with the installed library by: cc spring.c -o spring $(pkg-config --cflags --libs impakt)
 */
 #include <impakt.h>
