@@ -56,17 +56,18 @@ typedef struct {
 } BodyMeasures;
 
 /*E
-   BodyMassMoments - what a body with massless contact nodes keeps of its full mass, beyond the total
+   BodyMassMoments - what a body with massless contact nodes keeps of its full mass
 
    Values:
-+ `BODY_MASS_CENTRE`  - the centre of mass
++ `BODY_MASS_TOTAL`   - the total alone: the centre moves inwards
+. `BODY_MASS_CENTRE`  - that and the centre of mass
 - `BODY_MASS_INERTIA` - that and, where positive masses allow, the moments of inertia (default)
 
    Level: intermediate
 
 .seealso: `BodySetMassMoments()`, `BodySetMassRedistribute()`
 E*/
-typedef enum { BODY_MASS_CENTRE, BODY_MASS_INERTIA } BodyMassMoments;
+typedef enum { BODY_MASS_TOTAL, BODY_MASS_CENTRE, BODY_MASS_INERTIA } BodyMassMoments;
 PETSC_EXTERN const char *const BodyMassMomentsNames[];
 
 /*E

@@ -26,8 +26,8 @@ static const KnownOption options[] = {
     {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false|near",
      "whether the mass of contact nodes moves to their inner neighbours, so that contact nodes are massless; default true; near: of those "
      "alone that face a partner at the start, and an error where contact comes to others"},
-    {"bodies", OPTION_OF_BODY, "mass_moments", "centre|inertia",
-     "what that keeps beside the total mass: the centre, or (default) that and the moments of inertia where positive masses allow"},
+    {"bodies", OPTION_OF_BODY, "mass_moments", "total|centre|inertia",
+     "what that keeps: the total mass, its centre too, or (default) the moments of inertia too, where positive masses allow"},
 
     {"meshes", OPTION_OF_BODY, "dm_plex_dim", "1|2|3", "space dimension of the mesh"},
     {"meshes", OPTION_OF_BODY, "dm_plex_shape", "box|ball", "shape of the mesh, default box; a ball in 2-D is a disc"},

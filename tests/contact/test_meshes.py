@@ -23,7 +23,7 @@ def test_unequal_meshes(snes, frame, shared_run):
     run = shared_run(joined(DEFAULTS, faces, ANDERSON if snes == "anderson" else "", FRAMES[frame]))
     assert run.summary["schwarz"]["mean_contact_steps"] <= (5 if snes == "anderson" else 2.5)
     assert worst_energy_error(run.summary) <= 2.4e-6  # measured: 1.8e-6
-    assert force_scatter(run.summary) <= 2e-5  # measured: 1.6e-5
+    assert force_scatter(run.summary) <= 8.5e-5  # measured: 6.5e-5, half the factor on the masses of 73 elements
     assert run.summary["contact"]["onsets"] == 1
     assert {name: body["dofs"] for name, body in run.summary["bodies"].items()} == {"left": 138, "right": 74}
     assert never_tensile(run)

@@ -100,7 +100,7 @@ def test_steps_of_force(shared_run):
     second = 2 * (50 - (-50 + first / z)) / (1 + 1 / z)
     for value, begin, end in ((first, 0, back), (second, back, 5e-4)):
         middle = (time > begin + 0.2 * (end - begin)) & (time < end - 0.2 * (end - begin))
-        assert force[middle].mean() == pytest.approx(value, rel=3e-5)  # measured: 1.8e-5, what ringing leaves over 1/3 of 100 elements
+        assert force[middle].mean() == pytest.approx(value, rel=5e-5)  # measured: 3.8e-5, what ringing and the factor on the masses leave over 1/3 of 100 elements
 
 
 @pytest.mark.parametrize("side", [0, 1], ids=["left", "right"])

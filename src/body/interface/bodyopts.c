@@ -88,11 +88,11 @@ static PetscErrorCode ReadMass(Body body)
 . -<body>_material_type, -<body>_density, ...        - the material, see `MaterialSetFromOptions()`
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
 . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
-. -<body>_mass_redistribute (true|false|near)        - moves the mass of contact nodes to their inner neighbours, default true; near: of
-those that face a partner at the start . -<body>_mass_moments (centre|inertia)              - what that keeps beside the total mass, default
-inertia . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2 . -<body>_ts_time_step
-(auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step . -<body>_ts_alpha_... -
-parameters of `TSALPHA2`, default Newmark's trapezoidal rule
+. -<body>_mass_redistribute (true|false|near)        - moves the mass of contact nodes to their inner neighbours, default true
+. -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
+. -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
+. -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
+. -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
 - -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
 
   Level: beginner

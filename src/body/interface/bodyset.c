@@ -320,10 +320,10 @@ PetscErrorCode BodyGetMassRedistributeNear(Body body, PetscBool *near)
 
   Input Parameters:
 + body    - the `Body`, not yet set up
-- moments - the centre of mass, or (default) that and the moments of inertia where positive masses allow
+- moments - the total mass alone, that and the centre of mass, or (default) the moments of inertia too, where positive masses allow
 
   Options Database Key:
-. -<body>_mass_moments (centre|inertia) - what is kept
+. -<body>_mass_moments (total|centre|inertia) - what is kept
 
   Level: intermediate
 
@@ -340,8 +340,8 @@ PetscErrorCode BodySetMassMoments(Body body, BodyMassMoments moments)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(body, moments, 2);
   CheckNotSetUp(body);
-  PetscCheck(moments == BODY_MASS_CENTRE || moments == BODY_MASS_INERTIA, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
-             "Body '%s': there are no moments %d", body->hdr.name, (int)moments);
+  PetscCheck(moments == BODY_MASS_TOTAL || moments == BODY_MASS_CENTRE || moments == BODY_MASS_INERTIA, PetscObjectComm((PetscObject)body),
+             PETSC_ERR_ARG_OUTOFRANGE, "Body '%s': there are no moments %d", body->hdr.name, (int)moments);
   body->mass.moments = moments;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

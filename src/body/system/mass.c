@@ -2,7 +2,7 @@
 #include <body/layout/bodyimpl.h>
 
 const char *const BodyMassTypes[]        = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
-const char *const BodyMassMomentsNames[] = {"centre", "inertia", "BodyMassMoments", "BODY_MASS_", NULL};
+const char *const BodyMassMomentsNames[] = {"total", "centre", "inertia", "BodyMassMoments", "BODY_MASS_", NULL};
 
 /* Moves the mass of an element's contact nodes to its inner nodes: what these have is scaled to the mass of the element, with the coupling
    between them, so that the mass does not spread along the layer. Without inner nodes nothing is left: BodyFindOrphans() finds the mass a

@@ -436,7 +436,8 @@ static PetscErrorCode FindFactor(Problem *problem)
   PetscBool       converged = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < n_attempts && !converged; i++) {
+  PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));
+  for (PetscInt i = 0; i < n_attempts && !converged && problem->body->mass.moments != BODY_MASS_TOTAL; i++) {
     if (attempts[i].dim && attempts[i].dim != dim) continue;
     SetConditions(problem, centre_alone ? FIRST_ORDER : attempts[i].order, attempts[i].centre, attempts[i].inertia);
     PetscCall(Solve(problem, coefficients, &converged));
@@ -455,7 +456,7 @@ static PetscErrorCode FindFactor(Problem *problem)
 /* Finds the factor with which the mass that is left has the moments of the full mass, where any node is massless */
 PetscErrorCode BodyFindMassFactor(Body body)
 {
-  Problem   problem = {.body = body};
+  Problem   problem = {.body = body, .most = PETSC_MAX_REAL};
   PetscBool any     = PETSC_FALSE;
 
   PetscFunctionBegin;

@@ -178,9 +178,10 @@ static BodyMeasures two_steps(const char integrator[], PetscBool tries)
   BodyTraces   traces;
   BodyMeasures kept = {0}, other = {0}, back = {0}, end = {0};
   NodeRows     rows;
-  PetscOptions options = solid_body_create(
-      &body, BLOCK "-ts_type %s -ts_time_step %.17g -gravity 0.3,-0.2 -boundary_displacement ymin -boundary_displacement_ymin 0,0.1*t",
-      integrator, STEP / 3);
+  PetscOptions options = solid_body_create(&body,
+                                           BLOCK "-ts_type %s -ts_time_step %.17g -gravity 0.3,-0.2 "
+                                                 "-boundary_displacement ymin -boundary_displacement_ymin 0,0.1*t",
+                                           integrator, STEP / 3);
 
   touch_side(body, "ymax");
   ok(BodySetControllerStep(body, 0, STEP));
@@ -213,13 +214,19 @@ static BodyMeasures two_steps(const char integrator[], PetscBool tries)
 static void what_is_kept_comes_back_with_its_work(void **state)
 {
   static const char *const integrators[] = {TSALPHA2, TSCENTRALDIFFERENCE};
+  PetscMPIInt              size;
 
   (void)state;
+  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
   for (PetscInt i = 0; i < 2; i++) {
     const BodyMeasures straight = two_steps(integrators[i], PETSC_FALSE), tried = two_steps(integrators[i], PETSC_TRUE);
 
     assert_true(straight.external_work != 0);
-    assert_memory_equal(&tried, &straight, sizeof(tried));
+    if (size <= 2) assert_memory_equal(&tried, &straight, sizeof(tried));
+    /* PETSc adds what comes from two other ranks to the matrices of the two bodies as it comes */
+    near(tried.external_work, straight.external_work, 1e-14);
+    near(tried.kinetic, straight.kinetic, 1e-14);
+    near(tried.potential, straight.potential, 1e-14);
   }
 }
 
