@@ -32,7 +32,8 @@ static PetscReal SplitRow(const Transfer transfer, PetscInt row, const PetscReal
 
   for (PetscInt d = 0; d < transfer->dim; d++) {
     across[d] = -x[3 * row + d];
-    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++) across[d] += set->shares[j].value * columns[3 * set->columns[j] + d];
+    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
+      across[d] += set->shares[j].value * columns[3 * set->columns[j] + d];
     along += normal[d] * across[d];
   }
   for (PetscInt d = 0; d < transfer->dim; d++) across[d] -= along * normal[d];
@@ -82,7 +83,7 @@ static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal 
 {
   RowSet         *set   = &transfer->rows;
   const PetscInt  first = set->offsets[row], n = set->offsets[row + 1] - first;
-  const PetscReal slip  = PetscSqrtReal(Dot(ahead, ahead)) / (transfer->slip_bound * transfer->dirichlet->data.sizes[row]);
+  const PetscReal slip = PetscSqrtReal(Dot(ahead, ahead)) / (transfer->slip_bound * transfer->dirichlet->data.sizes[row]);
   const PetscReal rest = PetscMax(set->rest[row] - slip, 0), part = set->rest[row] > 0 ? 1 - rest / set->rest[row] : 0;
   PetscReal       weights[FOLLOW_MAX];
 
@@ -100,7 +101,8 @@ static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal 
 }
 
 /* Whether neither the slip that is expected nor the turn of the normal since the row was changed is worth a change */
-static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, const PetscReal across[], const PetscReal ahead[])
+static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, const PetscReal across[],
+                         const PetscReal ahead[])
 {
   const SurfaceData *data = &transfer->dirichlet->data;
   PetscReal          slip = 0, turn = 0, normal[3];
@@ -136,7 +138,7 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
   }
   if (turns) TransferPresentNormal(transfer, row, set->normals + dim * row);
   PetscCall(Approach(transfer, row, ahead));
-  way = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
+  way           = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
   set->gap[row] = gap - 0.5 * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
                   SplitRow(transfer, row, data->positions, transfer->column_x, after);
   /* slips are counted from the last build on */
@@ -153,8 +155,8 @@ static PetscReal PresentGap(Transfer transfer, PetscInt row)
          AlongRow(transfer, row, data->reference, transfer->column_reference);
 }
 
-/* Marks rows that are to follow: those of nodes that touch, or may within the reach. Nodes beyond the end of the partner have their gap from
-   where it ends, which only a build tells. */
+/* Marks rows that are to follow: those of nodes that touch, or may within the reach. Nodes beyond the end of the partner have their gap
+   from where it ends, which only a build tells. */
 static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscBool *any)
 {
   const RowSet *set   = &transfer->rows;
@@ -166,8 +168,8 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];
 
-    transfer->followed[row] =
-        (PetscBool)(set->opposite[row] && !set->beyond[row] && n <= FOLLOW_MAX && (touches[row] || PresentGap(transfer, row) <= reach));
+    transfer->followed[row] = (PetscBool)(set->opposite[row] && !set->beyond[row] && n <= FOLLOW_MAX &&
+                                          (touches[row] || PresentGap(transfer, row) <= reach));
     if (transfer->followed[row]) found = 1;
     else transfer->follow.known[row] = PETSC_FALSE;
   }
@@ -179,8 +181,8 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
 /* Notes where the nodes of both sides are, and how they have moved since the step before */
 static PetscErrorCode NoteMotion(Transfer transfer)
 {
-  const SurfaceData *data[2] = {&transfer->dirichlet->data, &transfer->neumann->data};
-  Follow            *follow  = &transfer->follow;
+  const SurfaceData *data[2]  = {&transfer->dirichlet->data, &transfer->neumann->data};
+  Follow            *follow   = &transfer->follow;
   PetscReal         *moved[2] = {follow->moved, follow->partner_moved};
 
   PetscFunctionBegin;
@@ -217,8 +219,8 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 
 .seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
 @*/
-PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns, PetscReal step,
-                              PetscBool *any)
+PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns,
+                              PetscReal step, PetscBool *any)
 {
   Follow *follow = &transfer->follow;
 

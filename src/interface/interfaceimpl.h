@@ -51,7 +51,8 @@ typedef struct {
   PetscReal   goal;  /* what the weight is to become as a row that follows the surfaces slips on; of other rows the weight itself */
 } Share;
 
-/* Partners of a row that follows the surfaces, at most: on a surface with this many faces to one of the other side it hardly slips by a bound */
+/* Partners of a row that follows the surfaces, at most: on a surface with this many faces to one of the other side it hardly slips by a
+ * bound */
 #define FOLLOW_MAX 256
 
 /* What lies opposite to a Dirichlet node: nothing; nothing, but the partner ends on a face beside the node; a face of the partner */
@@ -72,11 +73,11 @@ typedef struct {
 /* What rows that follow the surfaces know of the step before */
 typedef struct {
   PetscBool  has_last;
-  PetscReal  step;                    /* [s] */
-  PetscReal *x[2];                    /* positions of the owned nodes of both sides at the last update [m] */
-  PetscReal *moved, *partner_moved;   /* since the update before [m] */
-  PetscReal *slip;                    /* per row: what the partner is expected to slip in a step, 3 numbers each [m] */
-  PetscBool *known;                   /* per row: it has followed in the last step too */
+  PetscReal  step;                  /* [s] */
+  PetscReal *x[2];                  /* positions of the owned nodes of both sides at the last update [m] */
+  PetscReal *moved, *partner_moved; /* since the update before [m] */
+  PetscReal *slip;                  /* per row: what the partner is expected to slip in a step, 3 numbers each [m] */
+  PetscBool *known;                 /* per row: it has followed in the last step too */
 } Follow;
 
 struct _p_Transfer {
@@ -99,7 +100,7 @@ struct _p_Transfer {
   PetscBool     *followed; /* per row: it has followed the surfaces since the last update, see TransferFollow() */
   PetscBool     *goes_on;  /* per row: in the next build its weights go on from where they are */
   Follow         follow;
-  PetscReal     *column_x, *column_normals; /* of the columns: present positions and normals, */
+  PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
   PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
   TransferCounts counts;
 };
@@ -155,6 +156,7 @@ PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
-PETSC_INTERN void RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
-PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[], const PetscReal[]);
+PETSC_INTERN void           RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal      RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
+                                     const PetscReal[]);
 PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

@@ -184,8 +184,8 @@ void RowNormal(PetscInt dim, PetscInt n, const PetscReal node[], const PetscReal
   for (PetscInt d = 0; d < dim; d++) normal[d] = square > 0 ? sum[d] / PetscSqrtReal(square) : node[d];
 }
 
-/* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its nodes
-   and the planes through them across their normals a surface of second order is met:
+/* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its
+   nodes and the planes through them across their normals a surface of second order is met:
 
      gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)) */
 PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
@@ -208,7 +208,8 @@ PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscRea
   return counts * bulge;
 }
 
-/* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known. */
+/* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known.
+ */
 static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal *gap,
                            PetscReal *present, RowSet *set)
 {
@@ -236,13 +237,13 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
    touches when the end of the partner does, not before or after. */
-static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], const PetscReal column_normals[], PetscReal end,
-                                PetscReal ahead, PetscReal behind, RowSet *set)
+static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
+                                const PetscReal column_normals[], PetscReal end, PetscReal ahead, PetscReal behind, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   **normals, **partners;
-  PetscReal         *weights, gap, present, bulge, normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
+  const PetscReal  **normals, **partners;
+  PetscReal *weights, gap, present, bulge, normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];

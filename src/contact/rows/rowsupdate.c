@@ -243,8 +243,8 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of two bodies with inertia follow their surfaces, so that neither angular momentum nor energy is lost as they slide and turn. Rows of
-   static bodies are built anew at the place where they are, and merged rows are means of several. */
+/* Rows of two bodies with inertia follow their surfaces, so that neither angular momentum nor energy is lost as they slide and turn. Rows
+   of static bodies are built anew at the place where they are, and merged rows are means of several. */
 static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *any)
 {
   PetscBool linear = PETSC_TRUE;
@@ -267,8 +267,8 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those near
-   contact follow. Rows in contact that have no partner opposite any more are let go. */
+/* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those
+   near contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
   PetscReal near = 0;
