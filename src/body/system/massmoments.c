@@ -353,7 +353,12 @@ static void SetConditions(Problem *problem, Order order, PetscReal centre, Petsc
   problem->most = inertia > 0 ? MOST_FACTOR : PETSC_MAX_REAL;
   for (PetscInt m = 0; m <= dim; m++) (void)AddCondition(problem, m, m ? centre : 0);
   if (order == FIRST_ORDER) return;
-  for (PetscInt m = dim + 1; m < problem->n_moments; m++) (void)AddCondition(problem, m, inertia);
+  for (PetscInt m = dim + 1; m < problem->n_moments; m++) {
+    PetscReal *weights = AddCondition(problem, m, inertia);
+
+    /* such a moment counts twice, so that what is missing does not depend on how the axes of a cube are chosen */
+    if (problem->pair[m][0] != problem->pair[m][1]) weights[m] = PetscSqrtReal(2);
+  }
   if (order == SECOND_ORDER_AND_ROTATION) {
     PetscReal *weights = AddCondition(problem, -1, 0);
 

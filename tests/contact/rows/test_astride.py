@@ -182,6 +182,6 @@ def test_bar_on_two_bars(more, shared_run):
     velocity = 0.1 / sum(impedance.values())
     for name in "bc":
         force = run.history[f"contact/a:{name}/force"][()][steady]
-        np.testing.assert_allclose(force, impedance[name] * velocity, rtol=3e-4)  # measured: 1.6e-4, what is left of the front, which dispersion spreads
+        np.testing.assert_allclose(force, impedance[name] * velocity, rtol=6.3e-4)  # measured: 4.8e-4, half the factor on the masses of 50 elements, and what is left of the front, which dispersion spreads
     assert worst_energy_error(run.summary) <= 1.4e-4  # measured: 1.02e-4 at most
     assert run.summary["system"]["momentum_error_max"] <= 1e-12
