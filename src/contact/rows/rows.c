@@ -305,19 +305,23 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscReal *extent)
 {
   PetscBool rebuilt;
-  PetscBool inertia = PETSC_TRUE;
+  PetscBool inertia = PETSC_TRUE, linear = PETSC_TRUE;
   PetscInt  dims[2] = {contact->dim, contact->dim};
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal lower[3], upper[3];
-    PetscBool is_static;
+    PetscBool is_static, is_linear;
+    Material  material;
     DM        dm;
 
     PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
     PetscCall(DMGetCoordinateDim(dm, &dims[side]));
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
     inertia = (PetscBool)(inertia && !is_static);
+    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
+    PetscCall(MaterialIsLinear(material, &is_linear));
+    linear = (PetscBool)(linear && is_linear);
     PetscCall(SurfaceCreate(dm, pair->surface[side], &pair->surfaces[side]));
     PetscCall(DMGetBoundingBox(dm, lower, upper));
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
@@ -333,7 +337,8 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
   /* in three dimensions coarse balls lose six times the energy if bends count, since normals of their nodes differ by too much */
-  PetscCall(TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && contact->dim == 2)));
+  PetscCall(
+      TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && !linear && contact->dim == 2)));
   PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
