@@ -21,8 +21,8 @@
 
   Note:
   What is compared is kinetic and potential energy of all bodies and energy of penalty springs, less the work of loads and of held
-  displacements, at the end of each controller step. Where a body is static there is no guard: what its contact forces have done is known up
-  to their lag behind it by a step.
+  displacements, at the end of each controller step. There is no guard where nothing can touch, nor where a body is static: what its contact
+  forces have done is known up to their lag behind it by a step.
 
 .seealso: `Controller`, `ControllerGetEnergyGuard()`, `ContactSetEnergyCap()`
 @*/
@@ -109,7 +109,7 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
   PetscReal now = frame->penalty_energy, start = 0, size = 0, scale;
 
   PetscFunctionBegin;
-  if (controller->guard.part == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (controller->guard.part == 0 || !frame->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < frame->n_bodies; b++) {
     PetscBool without_inertia;
 
@@ -118,7 +118,7 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
     if (frame->step == 0) controller->guard.start[b] = BodyEnergy(&frame->bodies[b]);
     now += BodyEnergy(&frame->bodies[b]);
     start += controller->guard.start[b];
-    size += frame->bodies[b].kinetic + frame->bodies[b].potential;
+    size += frame->bodies[b].kinetic + frame->bodies[b].potential + PetscAbsReal(frame->bodies[b].external_work);
   }
   controller->guard.largest = PetscMax(controller->guard.largest, size);
   scale                     = start > NOTHING_AT_START * controller->guard.largest ? start : controller->guard.largest;

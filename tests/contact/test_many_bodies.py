@@ -39,9 +39,9 @@ def test_stack(more, shared_run):
 
 
 def test_stack_converges(shared_run):
-    """Half the step, about a quarter of the loss: measured 0.28."""
-    losses = [-shared_run(f"{STACK} {more}").summary["system"]["energy_error_min"] for more in ("", "-time_step 5e-5")]
-    assert 0.2 * losses[0] <= losses[1] <= 0.36 * losses[0]
+    """A fifth of the step, about a tenth of the loss: measured 0.09. At steps in between it is 0.3 to 2.3 times that of 1e-4 s, since blocks that tilt meet in other places."""
+    losses = [-shared_run(f"{STACK} {more}").summary["system"]["energy_error_min"] for more in ("", "-time_step 2e-5")]
+    assert losses[1] <= 0.2 * losses[0]
 
 
 def test_stack_on_ranks(shared_run):
@@ -81,7 +81,7 @@ def test_ten_balls_explicit(shared_run):
 
 @pytest.mark.parametrize(
     ("steps", "loss"),
-    [("-a_ts_time_step 2e-5", 0.0235), ("-b_ts_type centraldifference -a_ts_time_step 2e-5 -b_ts_time_step 2.5e-5", 0.0286)],
+    [("-a_ts_time_step 2e-5", 0.0235), ("-b_ts_type centraldifference -a_ts_time_step 2e-5 -b_ts_time_step 2.5e-5", 0.0082)],
     ids=["10 to 1", "10 to 8"],
 )
 def test_two_discs_of_other_steps(steps, loss, shared_run):
