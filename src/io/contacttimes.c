@@ -1,6 +1,6 @@
 /* When contact begins and ends, by linear interpolation inside the controller step. A step that ends in contact has no gap, whenever in the
    step it closed, and one that ends without contact has no force, whenever in the step that went. So the rates are those of the
-   neighbouring step. */
+   neighbouring step. Contact that begins and ends inside a step that was made in parts is known by its impulse. */
 #include "contacttimes.h"
 #include <math.h>
 
@@ -9,8 +9,9 @@
 
 /* What a pair does at the end of a controller step */
 typedef struct {
-  PetscReal time, gap, force; /* s, m, N */
+  PetscReal time, gap, force, impulse; /* s, m, N, N s */
   PetscBool touches;
+  PetscBool inside; /* it touches at neither end of the step, but inside */
 } Record;
 
 typedef struct {
@@ -97,7 +98,7 @@ static PetscReal SeparationByGap(const PairTimes *pair, const Record *now)
   const PetscReal rate = (now->gap - last[0].gap) / (now->time - last[0].time);
 
   if (!(rate > 0) || now->gap >= NO_GAP) return pair->results.separation;
-  return PetscClipInterval(last[0].time - last[0].gap / rate, last[1].time, last[0].time);
+  return PetscClipInterval(last[0].time - last[0].gap / rate, PetscMax(last[1].time, pair->results.onset), last[0].time);
 }
 
 /* ContactTimesAdd - takes note of the start (step 0) or the end of a controller step */
@@ -109,13 +110,16 @@ PetscErrorCode ContactTimesAdd(ContactTimes times, const ControllerFrame *frame)
     const ContactPairState *state   = &frame->pairs[p];
     PairTimes              *pair    = &times->pairs[p];
     ContactTimesResults    *results = &pair->results;
-    const Record            now     = {frame->time, state->gap, state->force, (PetscBool)(frame->step > 0 && state->active > 0)};
+    Record                  now     = {.time = frame->time, .gap = state->gap, .force = state->force, .impulse = state->normal_impulse};
 
-    if (now.touches) {
-      if (PetscIsNanReal(results->onset)) results->onset = FindOnset(pair, now.time, StartRate(times, pair, state->force_vector));
-      results->separation = NAN;
-    } else if (pair->n && pair->last[0].touches) results->separation = SeparationByForce(pair, now.time);
-    else if (pair->n > 1 && pair->last[1].touches) results->separation = SeparationByGap(pair, &now);
+    now.touches = (PetscBool)(frame->step > 0 && state->active > 0);
+    now.inside  = (PetscBool)(pair->n && !now.touches && !pair->last[0].touches && now.impulse > pair->last[0].impulse);
+    if ((now.touches || now.inside) && PetscIsNanReal(results->onset))
+      results->onset = FindOnset(pair, now.time, StartRate(times, pair, state->force_vector));
+    if (now.touches) results->separation = NAN;
+    else if (now.inside) results->separation = now.time;
+    else if (pair->n && pair->last[0].touches) results->separation = SeparationByForce(pair, now.time);
+    else if (pair->n > 1 && (pair->last[1].touches || pair->last[0].inside)) results->separation = SeparationByGap(pair, &now);
     results->in_contact_at_end = now.touches;
     pair->last[1]              = pair->last[0];
     pair->last[0]              = now;

@@ -251,8 +251,10 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
                        PetscReal time_step, PetscBool cut)
 {
   const PetscBool touches = state->active > 0 ? PETSC_TRUE : PETSC_FALSE;
+  /* contact that begins and ends inside a step made in parts leaves its impulse alone */
+  const PetscBool inside = (PetscBool)(!touches && !memory->touches && state->normal_impulse > memory->impulse);
 
-  if (touches) {
+  if (touches || inside) {
     if (!contact->steps_in_contact++) contact->first_contact_time = time;
     if (!memory->touches) contact->onsets++;
     contact->release_time = time;

@@ -11,7 +11,7 @@ typedef struct {
   PetscReal first_contact_time;               /* end of the first controller step in contact [s] */
   PetscReal release_time;                     /* end of the last controller step in contact [s] */
   PetscInt  onsets;                           /* how often a step in contact followed one without contact */
-  PetscInt  steps_in_contact;                 /* controller steps that end in contact */
+  PetscInt  steps_in_contact;                 /* controller steps that end in contact, or have all of it inside */
   PetscReal force_mean, force_std, force_min; /* over the middle 3/5 from first contact to release; minimum: while in contact [N] */
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */

@@ -23,7 +23,8 @@ PAIR = "l.xmax:r.xmin"
 
 
 def options(shape):
-    bodies = [SHAPES[shape].format(b=b, low=low, high=high, v=v) + f" -{b}_density 1000 -{b}_youngs_modulus 1e9" for b, low, high, v in BODIES]
+    """A bar in one dimension has no moments of inertia to keep: so that solids have its masses, they keep their centre alone."""
+    bodies = [SHAPES[shape].format(b=b, low=low, high=high, v=v) + f" -{b}_density 1000 -{b}_youngs_modulus 1e9 -{b}_mass_moments centre" for b, low, high, v in BODIES]
     return " ".join([f"-bodies l,r -contact_pairs {PAIR}", TIMES, *bodies])
 
 

@@ -63,6 +63,7 @@ static PetscErrorCode ComputeGroupWork(Contact contact)
     energy->group_work[energy->group[b]] += energy->first_work[b] + energy->energies[b] - energy->first_energy[b];
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->springs[2 * p] - energy->first_springs[2 * p];
+  PetscCall(ContactLeaveOutStatic(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,6 +263,7 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->pair_sums[2 * p];
   for (PetscInt p = 0; p < contact->n_pairs && !touch; p++) touch = (PetscBool)(energy->pair_sums[2 * p + 1] != 0);
   if (energy->rebuilt && touch) PetscCall(MeasureGroupWork(contact));
+  PetscCall(ContactLeaveOutStatic(contact));
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   if (contact->attempt.may_cut) { /* what is cut in halves all the same need not be limited */
     PetscReal loss;
