@@ -4,6 +4,8 @@
 /* Bars move as a whole and undeformed if their energies are those of their mean velocity but for this part: round-off of sums over all
    nodes */
 #define ENERGY_ROUND_OFF 1e-9
+/* Bars approach each other if the difference of their mean velocities is more than this part of them: round-off of the same sums */
+#define VELOCITY_ROUND_OFF 1e-12
 
 /* Smallest and largest coordinate along the normal of all nodes [m] */
 static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal normal[], PetscReal *lower, PetscReal *upper)
@@ -67,8 +69,10 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
 /* Ends with an error unless the two bars are undeformed and fly towards each other along the normal without turning */
 static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar bars[2], const BodyMeasures measures[2])
 {
+  const PetscReal small = VELOCITY_ROUND_OFF * (PetscAbsReal(bars[0].velocity) + PetscAbsReal(bars[1].velocity));
+
   PetscFunctionBegin;
-  PetscCheck(bars[0].velocity > bars[1].velocity, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(bars[0].velocity - bars[1].velocity > small, comm, PETSC_ERR_USER_INPUT,
              "-exact %s needs bars that approach each other, but along the contact normal '%s' moves at %g m/s and '%s' at %g m/s; change "
              "an initial velocity, or leave -exact out",
              type, bars[0].name, (double)bars[0].velocity, bars[1].name, (double)bars[1].velocity);

@@ -47,13 +47,13 @@ static PetscReal AlongRow(const Transfer transfer, PetscInt row, const PetscReal
   return SplitRow(transfer, row, x, columns, across);
 }
 
-/* Takes the slip of the last step into the mean. `across`: that slip [m] */
+/* Takes the slip of the last step into the mean. `across`: that slip [m]; `ratio`: of this step to the last one */
 static void ExpectSlip(Transfer transfer, PetscInt row, const PetscReal across[], PetscReal ratio)
 {
   PetscReal *slip = transfer->follow.slip + 3 * row;
 
   for (PetscInt d = 0; d < transfer->dim; d++) {
-    slip[d] *= ratio;
+    slip[d] *= transfer->follow.scale;
     slip[d] += (transfer->follow.known[row] ? LATEST : 1) * (ratio * across[d] - slip[d]);
   }
 }
@@ -206,7 +206,8 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 . reach    - other rows follow if their gap is not larger than that [m]
 . still    - rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit
 . turns    - whether normals become those of the surface, which they else do where rows are built
-- step     - until the next update [s]
+. step     - until the next update, as far as is known: one that fails is made again in shorter ones with the same rows [s]
+- last     - from the last update to this one [s]
 
   Output Parameter:
 . any - whether any row on any rank has followed; which, `TransferRows` tells
@@ -220,7 +221,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 .seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
 @*/
 PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns,
-                              PetscReal step, PetscBool *any)
+                              PetscReal step, PetscReal last, PetscBool *any)
 {
   Follow *follow = &transfer->follow;
 
@@ -230,10 +231,13 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   PetscValidLogicalCollectiveReal(transfer, still, 4);
   PetscValidLogicalCollectiveBool(transfer, turns, 5);
   PetscValidLogicalCollectiveReal(transfer, step, 6);
-  PetscAssertPointer(any, 7);
+  PetscValidLogicalCollectiveReal(transfer, last, 7);
+  PetscAssertPointer(any, 8);
   PetscCheck(transfer->built && transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
              "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
-  PetscCheck(step > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The step %g s must be positive", (double)step);
+  PetscCheck(step > 0 && last > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The steps %g s and %g s must be positive", (double)step,
+             (double)last);
+  follow->scale = follow->step > 0 ? step / follow->step : 1;
   PetscCall(NoteMotion(transfer));
   PetscCall(MarkFollowers(transfer, touches, reach, any));
   if (*any) {
@@ -241,7 +245,7 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
 
     PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
     for (PetscInt row = 0; row < transfer->n; row++) {
-      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, still, turns, follow->step > 0 ? step / follow->step : 1));
+      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, still, turns, step / last));
       if (transfer->followed[row]) found = 1;
     }
     PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));

@@ -73,7 +73,8 @@ typedef struct {
 /* What rows that follow the surfaces know of the step before */
 typedef struct {
   PetscBool  has_last;
-  PetscReal  step;                  /* [s] */
+  PetscReal  step;                  /* that the slip is expected in [s] */
+  PetscReal  scale;                 /* of this step to that one */
   PetscReal *x[2];                  /* positions of the owned nodes of both sides at the last update [m] */
   PetscReal *moved, *partner_moved; /* since the update before [m] */
   PetscReal *slip;                  /* per row: what the partner is expected to slip in a step, 3 numbers each [m] */

@@ -100,13 +100,17 @@ static inline void SimulationRepeat(Simulation *simulation, const char options[]
   ok(SimulationCreate(simulation));
 }
 
-/* One controller step, and the only pair at its end */
+/* One controller step with all its parts, see ContactGetParts(), and the only pair at its end */
 static inline ContactPairState Step(Simulation *simulation)
 {
   ContactPairState pair;
+  PetscInt         parts;
 
-  ok(ContactStep(simulation->contact));
-  ok(ContactAccept(simulation->contact));
+  ok(ContactGetParts(simulation->contact, &parts));
+  for (PetscInt part = 0; part < parts; part++) {
+    ok(ContactStep(simulation->contact));
+    ok(ContactAccept(simulation->contact));
+  }
   ok(ContactGetPairState(simulation->contact, 0, &pair));
   return pair;
 }

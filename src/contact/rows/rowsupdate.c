@@ -263,7 +263,7 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
     linear = (PetscBool)(linear && is_linear);
   }
   PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
-                           contact->step, any));
+                           contact->step, contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,7 +15,7 @@
 static PetscErrorCode CreateMesh(PetscReal lower, DM *mesh)
 {
   const PetscReal upper    = lower + LENGTH;
-  const PetscInt  elements = 100;
+  const PetscInt  elements = 200;
 
   PetscFunctionBegin;
   PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 1, PETSC_FALSE, &elements, &lower, &upper, NULL, PETSC_TRUE, 0, PETSC_FALSE, mesh));

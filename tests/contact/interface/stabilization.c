@@ -29,6 +29,8 @@ static void naive(void **state)
   AddCollision(8, 10, 0);
   AddOptions(lumped);
   AddOptions("-contact_penalty 500 -contact_augmentation_max_it 10000");
+  /* multipliers at the end of the step gain energy where both sides have mass; here only accelerations count */
+  AddOptions("-contact_allow_unstable true");
   for (PetscInt k = 0; k < 4; k++) {
     SimulationRepeat(simulation, methods[k]);
     AddOptions("-contact_stabilization none");

@@ -6,6 +6,7 @@
 #define STEPS      12 /* whole controller steps */
 #define MAX_VALUES 4096
 #define ROUND_OFF  1e-10 /* of forces of 0.1 N whose penalty is found to 1e-9 of them */
+#define FOLLOWS    1e-5  /* of forces of 0.06 N and less of momenta and energies, where rows follow: measured 3.8e-6 */
 
 /* How the steps are made */
 typedef enum {
@@ -15,9 +16,10 @@ typedef enum {
   MIXED_FAILS /* the same, each cut after a step that has failed */
 } Way;
 
-/* Displacement, velocity and acceleration of all bodies, on several ranks their energies and momenta, and the force, after each whole step
- */
+/* Displacement, velocity and acceleration of all bodies, on one rank and if `states` asks for them, their energies and momenta, and the
+   force, after each whole step */
 typedef struct {
+  PetscBool   states;
   PetscInt    n;
   PetscScalar values[STEPS][MAX_VALUES];
 } Record;
@@ -57,7 +59,7 @@ static void Note(Simulation *simulation, PetscInt step, Record *record)
   for (PetscInt b = 0; b < simulation->n_bodies; b++) {
     BodyMeasures measures;
 
-    if (Ranks() == 1) NoteState(simulation->bodies[b], values, &record->n);
+    if (Ranks() == 1 && record->states) NoteState(simulation->bodies[b], values, &record->n);
     ok(BodyGetMeasures(simulation->bodies[b], &measures));
     values[record->n++] = measures.kinetic;
     values[record->n++] = measures.potential;
@@ -102,55 +104,57 @@ static void MakeMixed(Simulation *simulation, PetscInt step, PetscBool fails)
   Make(simulation, 1);
 }
 
+/* Parts of a controller step, at whose ends all bodies have a time in common, are cut each for itself */
 static void Run(Simulation *simulation, Way way, Record *record)
 {
+  PetscInt parts;
+
+  ok(ContactGetParts(simulation->contact, &parts));
   for (PetscInt step = 0; step < STEPS; step++) {
-    switch (way) {
-    case HALVES:
-      Step(simulation);
-      Step(simulation);
-      break;
-    case CUT:
+    for (PetscInt part = 0; part < parts && way == CUT; part++) {
       Fail(simulation, 0);
       Make(simulation, 1);
       Make(simulation, 1);
-      break;
-    default:
-      MakeMixed(simulation, step, (PetscBool)(way == MIXED_FAILS));
     }
+    for (PetscInt part = 0; part < parts && (way == MIXED || way == MIXED_FAILS); part++)
+      MakeMixed(simulation, parts * step + part, (PetscBool)(way == MIXED_FAILS));
+    for (PetscInt half = 0; half < 2 && way == HALVES; half++) Step(simulation);
     Note(simulation, step, record);
   }
 }
 
-static void Compare(const Record *a, const Record *b)
+static void Compare(const Record *a, const Record *b, PetscReal tolerance)
 {
   PetscBool touched = PETSC_FALSE;
 
   assert_int_equal(a->n, b->n);
   for (PetscInt step = 0; step < STEPS; step++) {
-    for (PetscInt i = 0; i < a->n; i++) near(a->values[step][i], b->values[step][i], Ranks() == 1 ? 0 : ROUND_OFF);
+    for (PetscInt i = 0; i < a->n; i++) near(a->values[step][i], b->values[step][i], tolerance);
     touched = (PetscBool)(touched || PetscRealPart(a->values[step][a->n - 1]) > 0);
   }
   assert_true(touched);
 }
 
-/* `whole` and `half`: the options that have times in them, of a controller step and of half of it */
-static void CompareWays(Simulation *simulation, const char whole[], const char half[], const char options[])
+/* `whole` and `half`: the options that have times in them, of a controller step and of half of it; `follow`: what rows that follow the
+   surfaces may change */
+static void CompareWays(Simulation *simulation, const char whole[], const char half[], const char options[], PetscReal follow)
 {
-  Record *records;
+  const PetscReal tolerance = Ranks() == 1 ? follow : PetscMax(follow, ROUND_OFF);
+  Record         *records;
 
   ok(PetscMalloc1(2, &records));
+  records[0].states = records[1].states = (PetscBool)(follow == 0);
   AddOptions(options);
   SimulationRepeat(simulation, half);
   Run(simulation, HALVES, &records[0]);
   SimulationRepeat(simulation, whole);
   Run(simulation, CUT, &records[1]);
-  Compare(&records[0], &records[1]);
+  Compare(&records[0], &records[1], tolerance);
   SimulationRepeat(simulation, whole);
   Run(simulation, MIXED, &records[0]);
   SimulationRepeat(simulation, whole);
   Run(simulation, MIXED_FAILS, &records[1]);
-  Compare(&records[0], &records[1]);
+  Compare(&records[0], &records[1], tolerance);
   ok(PetscFree(records));
 }
 
@@ -176,7 +180,7 @@ static void bars(void **state)
   };
 
   AddCollision(8, 13, 0);
-  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i]);
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i], 0);
 }
 
 static void substeps(void **state)
@@ -186,9 +190,12 @@ static void substeps(void **state)
                                   "-left_ts_type centraldifference", "-left_material_type neo_hookean"};
 
   AddCollision(8, 13, 0);
-  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++)
-    CompareWays(simulation, "-left_ts_time_step 0.005 -right_ts_time_step 0.01 -time_step 0.02",
-                "-left_ts_time_step 0.0025 -right_ts_time_step 0.005 -time_step 0.01", variants[i]);
+  for (PetscInt shared = 0; shared < 2; shared++) {
+    AddOptions(shared ? "-contact_shared_times true" : "-contact_shared_times false");
+    for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++)
+      CompareWays(simulation, "-left_ts_time_step 0.005 -right_ts_time_step 0.01 -time_step 0.02",
+                  "-left_ts_time_step 0.0025 -right_ts_time_step 0.005 -time_step 0.01", variants[i], 0);
+  }
 }
 
 static void other_methods(void **state)
@@ -202,10 +209,12 @@ static void other_methods(void **state)
                                   "-right_ts_type alpha2"};
 
   AddCollision(8, 13, 0);
-  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i]);
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i], 0);
 }
 
-/* Blocks of which one is turned by 3 degrees: more rows than are known from the start, which join and leave */
+/* Blocks of which one is turned by 3 degrees: more rows than are known from the start, which join and leave. Between nonlinear blocks rows
+   follow the surfaces, ahead by the slip that is expected in a step; a step that fails is made again in halves with the rows that it had,
+   which look ahead by the whole of it. */
 static void turned_blocks(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
@@ -218,7 +227,8 @@ static void turned_blocks(void **state)
       "-right_density 1 -right_youngs_modulus 1 -right_poissons_ratio 0.2 -right_initial_velocity -0.1,0 -left_dm_plex_box_lower 0,0 "
       "-left_dm_plex_box_upper 0.5,1 -right_dm_plex_box_lower 0.53,0 -right_dm_plex_box_upper 1.03,1 -right_rotate 3 "
       "-right_rotate_centre 0.53,0.5");
-  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWays(simulation, STABLE, HALF, variants[i]);
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++)
+    CompareWays(simulation, STABLE, HALF, variants[i], i < 2 ? 0 : FOLLOWS);
 }
 
 int main(int argc, char **argv)
