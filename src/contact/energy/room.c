@@ -32,8 +32,8 @@ void ContactFindGroups(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group[b] = Root(energy->group, b);
 }
 
-/* Groups in which a body has no inertia neither gain nor lose: static balance knows no force at the start of a step, so that the trapezoidal
-   rule does not tell the work of contact, and no other force there changes the step. */
+/* Groups in which a body has no inertia neither gain nor lose: static balance knows no force at the start of a step, so that the
+   trapezoidal rule does not tell the work of contact, and no other force there changes the step. */
 PetscErrorCode ContactLeaveOutStatic(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
