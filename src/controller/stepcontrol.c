@@ -1,8 +1,8 @@
 /*
-   Controller steps that cannot be made as they are: a step that does not converge, that inverts an element, or in which contact takes or brings
-   more energy than it may, is undone and made again in halves, each of which may be cut again. What follows the two halves is a step of the
-   size that has been cut: so the steps that a run makes hang on its solution alone, and not on what happened before. Observers see the ends
-   of whole controller steps.
+   Controller steps that cannot be made as they are: a step that does not converge, that inverts an element, or in which contact takes or
+   brings more energy than it may, is undone and made again in halves, each of which may be cut again. What follows the two halves is a step
+   of the size that has been cut: so the steps that a run makes hang on its solution alone, and not on what happened before. Observers see
+   the ends of whole controller steps.
 */
 #include "controllerimpl.h"
 

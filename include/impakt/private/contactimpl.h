@@ -273,6 +273,11 @@ struct _p_Contact {
   void             *data;           /* what the method keeps */
 };
 
+/* For setters */
+#define ContactCheckNotSetUp(contact)                                                                                                      \
+  PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
+             PETSC_FUNCTION_NAME)
+
 PETSC_INTERN PetscFunctionList ContactList;
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;

@@ -1,7 +1,7 @@
 /*
-   Controller steps that are cut in halves. At level k the controller step is that of the set-up over 2^k, and so is each substep, whose number
-   stays. What depends on the step, the effective matrix with its factors and the interface compliance, a body keeps for each level apart,
-   from the first step at that level on.
+   Controller steps that are cut in halves. At level k the controller step is that of the set-up over 2^k, and so is each substep, whose
+   number stays. What depends on the step, the effective matrix with its factors and the interface compliance, a body keeps for each level
+   apart, from the first step at that level on.
 
    A step that has failed must leave no trace in later ones: a run that is cut is to end with the bits of one that makes the same steps and
    none that fail. Rows that become known to the compliance in a failed step are forgotten again. What a nonlinear body remembers of earlier

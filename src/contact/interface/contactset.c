@@ -4,9 +4,25 @@
 const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
 
-#define CheckNotSetUp(contact)                                                                                                             \
-  PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
-             PETSC_FUNCTION_NAME)
+/* Pairs find bodies and obstacles by their names */
+PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)contact);
+  const char *other;
+  PetscBool   same;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(PetscStrcmp(name, ((PetscObject)contact->bodies[b])->name, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
+  }
+  for (PetscInt o = 0; o < contact->n_obstacles; o++) {
+    PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+    PetscCall(PetscStrcmp(name, other, &same));
+    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of an obstacle already", name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   ContactSetLaw - sets what contact surfaces do to each other
@@ -29,7 +45,7 @@ PetscErrorCode ContactSetLaw(Contact contact, ContactLaw law)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(contact, law, 2);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   PetscCheck((int)law >= 0 && law <= CONTACT_LAW_BONDED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no contact law %d", (int)law);
   contact->options.law = law;
@@ -84,7 +100,7 @@ PetscErrorCode ContactSetConstraint(Contact contact, ContactConstraint constrain
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(contact, constraint, 2);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   PetscCheck((int)constraint >= 0 && constraint <= CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no constraint %d", (int)constraint);
   contact->options.constraint = constraint;
@@ -136,7 +152,7 @@ PetscErrorCode ContactSetStabilization(Contact contact, ContactStabilization sta
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(contact, stabilization, 2);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   PetscCheck((int)stabilization >= 0 && stabilization <= CONTACT_STABILIZATION_CONTACT_STABILIZED, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_ARG_OUTOFRANGE, "There is no stabilization %d", (int)stabilization);
   contact->options.stabilization = stabilization;
@@ -188,7 +204,7 @@ PetscErrorCode ContactSetFacing(Contact contact, PetscBool facing)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveBool(contact, facing, 2);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   contact->options.facing = facing;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -238,7 +254,7 @@ PetscErrorCode ContactSetTolerance(Contact contact, PetscReal tolerance)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveReal(contact, tolerance, 2);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   PetscCheck(tolerance >= 0 || tolerance == (PetscReal)PETSC_DEFAULT, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "A contact tolerance of %g m must not be negative", (double)tolerance);
   contact->options.tolerance = tolerance;
@@ -294,7 +310,7 @@ PetscErrorCode ContactSetTieDistance(Contact contact, PetscReal distance)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveReal(contact, distance, 2);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   PetscCheck(distance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "A tie distance of %g of a face must be positive", (double)distance);
   contact->options.tie_distance = distance;
@@ -349,7 +365,7 @@ PetscErrorCode ContactSetBounds(Contact contact, PetscReal slip, PetscReal angle
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveReal(contact, slip, 2);
   PetscValidLogicalCollectiveReal(contact, angle, 3);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   PetscCheck(slip > 0 && angle > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "The bounds of slip, %g, and angle, %g, must be positive", (double)slip, (double)angle);
   contact->options.slip_bound  = slip;
@@ -383,198 +399,6 @@ PetscErrorCode ContactGetBounds(Contact contact, PetscReal *slip, PetscReal *ang
 }
 
 /*@
-  ContactSetAllowUnstable - whether choices that are known to gain energy run all the same
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- allow   - false by default
-
-  Options Database Key:
-. -contact_allow_unstable (true|false) - whether they do
-
-  Level: intermediate
-
-  Note:
-  Refused otherwise, where contact nodes have mass: Robin and impedance conditions, and Lagrange multipliers at the end of the step without
-a stabilization. To compare with.
-
-.seealso: `Contact`, `ContactGetAllowUnstable()`, `ContactSetEnergyCap()`
-@*/
-PetscErrorCode ContactSetAllowUnstable(Contact contact, PetscBool allow)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, allow, 2);
-  CheckNotSetUp(contact);
-  contact->options.allow_unstable = allow;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetAllowUnstable - whether choices that are known to gain energy run all the same
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. allow - whether they do
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetAllowUnstable()`
-@*/
-PetscErrorCode ContactGetAllowUnstable(Contact contact, PetscBool *allow)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(allow, 2);
-  *allow = contact->options.allow_unstable;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetSharedTimes - whether contact holds at all times that all bodies have in common, or at the ends of controller steps alone
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- shared  - true by default
-
-  Options Database Key:
-. -contact_shared_times (true|false) - whether it does
-
-  Level: intermediate
-
-  Note:
-  Where the substeps of all bodies have a common divisor, a controller step is made in so many parts, each like a controller step of its own
-  for the contact: rows join and leave, and monitors see the end of the last one.
-
-.seealso: `Contact`, `ContactGetSharedTimes()`, `ContactGetParts()`
-@*/
-PetscErrorCode ContactSetSharedTimes(Contact contact, PetscBool shared)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, shared, 2);
-  CheckNotSetUp(contact);
-  contact->options.shared_times = shared;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetSharedTimes - whether contact holds at all times that all bodies have in common
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. shared - whether it does
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetSharedTimes()`
-@*/
-PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(shared, 2);
-  *shared = contact->options.shared_times;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-. cap     - whether steps are made again; true by default
-- excess  - part of the system's energy that contact may gain in the whole run, 1e-3 by default
-
-  Options Database Keys:
-+ -contact_energy_cap (true|false) - whether steps are made again
-- -contact_energy_excess e         - the part
-
-  Level: intermediate
-
-  Notes:
-  A controller step that does not resolve the contact gains energy where rows open: with the trapezoidal rule half the force at the start of
-  the step times the gap at its end. Beyond what contact has lost before and the excess, such a step is made again, with less force at its
-  start on the rows that open, on both bodies.
-
-  The energy is that at the start or, where all starts at rest without strain, the largest one so far.
-
-.seealso: `Contact`, `ContactGetEnergyCap()`, `ContactCounts`
-@*/
-PetscErrorCode ContactSetEnergyCap(Contact contact, PetscBool cap, PetscReal excess)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, cap, 2);
-  PetscValidLogicalCollectiveReal(contact, excess, 3);
-  CheckNotSetUp(contact);
-  PetscCheck(excess >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "The energy excess %g must not be negative",
-             (double)excess);
-  contact->energy.limits = cap;
-  contact->energy.excess = excess;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameters:
-+ cap    - whether steps are made again, or `NULL`
-- excess - part of the system's energy, or `NULL`
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetEnergyCap()`
-@*/
-PetscErrorCode ContactGetEnergyCap(Contact contact, PetscBool *cap, PetscReal *excess)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  if (cap) *cap = contact->energy.limits;
-  if (excess) *excess = contact->energy.excess;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Pairs find bodies and obstacles by their names */
-PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])
-{
-  MPI_Comm    comm = PetscObjectComm((PetscObject)contact);
-  const char *other;
-  PetscBool   same;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(PetscStrcmp(name, ((PetscObject)contact->bodies[b])->name, &same));
-    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
-  }
-  for (PetscInt o = 0; o < contact->n_obstacles; o++) {
-    PetscCall(ObstacleGetName(contact->obstacles[o], &other));
-    PetscCall(PetscStrcmp(name, other, &same));
-    PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of an obstacle already", name);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   ContactAddObstacle - adds a rigid obstacle that bodies may touch
 
   Logically Collective
@@ -600,7 +424,7 @@ PetscErrorCode ContactAddObstacle(Contact contact, Obstacle obstacle)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 2);
-  CheckNotSetUp(contact);
+  ContactCheckNotSetUp(contact);
   PetscCall(ObstacleSetUp(obstacle));
   PetscCall(ObstacleGetName(obstacle, &name));
   PetscCall(ContactCheckObstacleName(contact, name));

@@ -1,0 +1,174 @@
+/* What keeps the energy of a run: steps made again, contact at all shared times, refusals of what is known to be unstable. */
+#include <impakt/private/contactimpl.h>
+
+/*@
+  ContactSetAllowUnstable - whether choices that are known to gain energy run all the same
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- allow   - false by default
+
+  Options Database Key:
+. -contact_allow_unstable (true|false) - whether they do
+
+  Level: intermediate
+
+  Note:
+  Refused otherwise, where contact nodes have mass: Robin and impedance conditions, and Lagrange multipliers at the end of the step without
+a stabilization. To compare with.
+
+.seealso: `Contact`, `ContactGetAllowUnstable()`, `ContactSetEnergyCap()`
+@*/
+PetscErrorCode ContactSetAllowUnstable(Contact contact, PetscBool allow)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, allow, 2);
+  ContactCheckNotSetUp(contact);
+  contact->options.allow_unstable = allow;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetAllowUnstable - whether choices that are known to gain energy run all the same
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. allow - whether they do
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetAllowUnstable()`
+@*/
+PetscErrorCode ContactGetAllowUnstable(Contact contact, PetscBool *allow)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(allow, 2);
+  *allow = contact->options.allow_unstable;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetSharedTimes - whether contact holds at all times that all bodies have in common, or at the ends of controller steps alone
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- shared  - true by default
+
+  Options Database Key:
+. -contact_shared_times (true|false) - whether it does
+
+  Level: intermediate
+
+  Note:
+  Where the substeps of all bodies have a common divisor, a controller step is made in so many parts, each like a controller step of its own
+  for the contact: rows join and leave, and monitors see the end of the last one.
+
+.seealso: `Contact`, `ContactGetSharedTimes()`, `ContactGetParts()`
+@*/
+PetscErrorCode ContactSetSharedTimes(Contact contact, PetscBool shared)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, shared, 2);
+  ContactCheckNotSetUp(contact);
+  contact->options.shared_times = shared;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetSharedTimes - whether contact holds at all times that all bodies have in common
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. shared - whether it does
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetSharedTimes()`
+@*/
+PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(shared, 2);
+  *shared = contact->options.shared_times;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+. cap     - whether steps are made again; true by default
+- excess  - part of the system's energy that contact may gain in the whole run, 1e-3 by default
+
+  Options Database Keys:
++ -contact_energy_cap (true|false) - whether steps are made again
+- -contact_energy_excess e         - the part
+
+  Level: intermediate
+
+  Notes:
+  A controller step that does not resolve the contact gains energy where rows open: with the trapezoidal rule half the force at the start of
+  the step times the gap at its end. Beyond what contact has lost before and the excess, such a step is made again, with less force at its
+  start on the rows that open, on both bodies.
+
+  The energy is that at the start or, where all starts at rest without strain, the largest one so far.
+
+.seealso: `Contact`, `ContactGetEnergyCap()`, `ContactCounts`
+@*/
+PetscErrorCode ContactSetEnergyCap(Contact contact, PetscBool cap, PetscReal excess)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, cap, 2);
+  PetscValidLogicalCollectiveReal(contact, excess, 3);
+  ContactCheckNotSetUp(contact);
+  PetscCheck(excess >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "The energy excess %g must not be negative",
+             (double)excess);
+  contact->energy.limits = cap;
+  contact->energy.excess = excess;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameters:
++ cap    - whether steps are made again, or `NULL`
+- excess - part of the system's energy, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetEnergyCap()`
+@*/
+PetscErrorCode ContactGetEnergyCap(Contact contact, PetscBool *cap, PetscReal *excess)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (cap) *cap = contact->energy.limits;
+  if (excess) *excess = contact->energy.excess;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
