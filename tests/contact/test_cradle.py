@@ -33,7 +33,7 @@ SIDES = {
 def check_system(run):
     """Also Newton's two sweeps."""
     schwarz = run.summary["schwarz"]
-    assert run.summary["system"]["momentum_error_max"] <= 2e-11  # measured: 8e-12
+    assert run.summary["system"]["momentum_error_max"] <= 4e-11  # measured: 2.3e-11; masses that keep the centre are no powers of two times each other, and leave more round-off
     assert worst_energy_error(run.summary) <= 1.5e-6  # measured: 1.1e-6
     assert run.summary["contact"]["max_penetration"] <= 2e-11  # measured: 7e-12
     assert schwarz["unconverged_steps"] == 0
