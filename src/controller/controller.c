@@ -149,6 +149,7 @@ PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g s, %" PetscInt_FMT " controller steps of %g s\n", (double)controller->time_start,
                                    (double)(controller->time_start + controller->steps * controller->time_step), controller->steps,
                                    (double)controller->time_step));
+  if (controller->whole) PetscCall(PetscViewerASCIIPrintf(viewer, "  steps that fail are not cut in halves: %s\n", controller->whole));
   if (controller->chooses_step)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  the largest step that resolves contact: %s\n", controller->step_reason));
   for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodyView(controller->bodies[b], viewer));

@@ -24,6 +24,7 @@ struct _p_Controller {
   char      step_reason[512]; /* what that follows from */
   /* step control */
   PetscInt       parts;     /* of a controller step, see ContactGetParts() */
+  const char    *whole;     /* why steps are not cut, or NULL */
   PetscInt       most_cuts; /* how often a step may be cut in halves */
   ControllerCuts cuts;
   PetscInt       step_cuts, step_sweeps;         /* of the controller step under way; the sweeps with those of steps that failed */

@@ -11,8 +11,8 @@
 
   Input Parameters:
 + controller - the `Controller`, not yet set up
-- part       - of the energy at the start or, where all starts at rest without strain, of the largest since then; 0 for no guard; 0.05 by
-               default
+- part       - of the energy at the start or, where all starts at rest without strain, of the largest since then, and of the work of loads;
+0 for no guard; 0.05 by default
 
   Options Database Key:
 . -energy_guard part - how much
@@ -106,7 +106,7 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
 /* Ends the run where energies have grown beyond the guard; collective, with the same frame on every rank */
 PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFrame *frame)
 {
-  PetscReal now = frame->penalty_energy, start = 0, size = 0, scale;
+  PetscReal now = frame->penalty_energy, start = 0, size = 0, work = 0, scale;
 
   PetscFunctionBegin;
   if (controller->guard.part == 0 || !frame->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,10 +118,11 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
     if (frame->step == 0) controller->guard.start[b] = BodyEnergy(&frame->bodies[b]);
     now += BodyEnergy(&frame->bodies[b]);
     start += controller->guard.start[b];
-    size += frame->bodies[b].kinetic + frame->bodies[b].potential + PetscAbsReal(frame->bodies[b].external_work);
+    work += PetscAbsReal(frame->bodies[b].external_work);
+    size += frame->bodies[b].kinetic + frame->bodies[b].potential;
   }
   controller->guard.largest = PetscMax(controller->guard.largest, size);
-  scale                     = start > NOTHING_AT_START * controller->guard.largest ? start : controller->guard.largest;
+  scale                     = (start > NOTHING_AT_START * controller->guard.largest ? start : controller->guard.largest) + work;
   if (now - start > controller->guard.part * scale) PetscCall(EndRun(controller, frame, (now - start) / scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

