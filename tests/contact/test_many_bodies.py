@@ -71,12 +71,14 @@ def test_ten_balls_explicit(shared_run):
     """Bodies with substeps. The longer step loses much where contacts begin, but must not gain where they end: 1.4e-3 if forces fade over the whole
     step while rows open. Nor may a row that is pulled when held and penetrates when not end the rounds for all others, which left discs 6.6e-4 m deep."""
     explicit = " ".join(f"-{b}_ts_type centraldifference -{b}_ts_time_step auto -{b}_material_type linear_elastic" for b in "abcdefghij")
-    for step, until, loss in (("2e-4", 0.35, 0.046), ("4e-4", 0.31, 0.06)):  # measured: 0.0357, and 0.0536 at 4e-4 s, where rows follow from a slip of a twentieth on; 0.0390 with rows that did not
-        run = shared_run(f"-options_file options/ten-balls.opts {explicit} -time_step {step} -time_end {until} -controller_step_cuts 0")
+    cycles = 0
+    for step, loss in (("2e-4", 0.036), ("3.5e-4", 0.04), ("5e-4", 0.092)):  # measured: 0.0272, 0.0305, 0.0701
+        run = shared_run(f"-options_file options/ten-balls.opts {explicit} -time_step {step} -time_end 0.35 -controller_step_cuts 0")
         assert max(depths(run)) <= DEPTH  # measured: 3e-16 m
         assert -loss <= run.summary["system"]["energy_error_min"]
-        assert run.summary["system"]["energy_error_max"] <= ROUND_OFF  # measured: 6e-15
-    assert run.summary["schwarz"]["set_cycles"] >= 1  # there is such a row
+        assert run.summary["system"]["energy_error_max"] <= ROUND_OFF  # measured: 2e-14
+        cycles += run.summary["schwarz"]["set_cycles"]
+    assert cycles >= 1  # there is such a row; measured: 1
 
 
 @pytest.mark.parametrize(
@@ -112,7 +114,7 @@ def test_ten_balls_in_three_dimensions(shared_run):
     """In three dimensions: measured, energy grows by 1.2e-4 of itself at most, at a step of 2e-4 s; rows close to 1e-15 m."""
     summary = shared_run("-options_file options/ten-balls-3d.opts").summary
     assert summary["system"]["energy_error_max"] <= 1.5e-4  # 1.16e-4; 7.2e-5 before rows followed
-    assert -6.1e-3 <= summary["system"]["energy_error_min"] < 0  # what impacts inside steps cost: measured 4.7e-3
+    assert -9.3e-3 <= summary["system"]["energy_error_min"] < 0  # what impacts inside steps cost: measured 7.1e-3, half of it in one step at 0.294 s, where one of three rows opens
     assert summary["contact"]["max_penetration"] <= 1e-14
     assert summary["contact"]["onsets"] >= 10  # they do meet
 
