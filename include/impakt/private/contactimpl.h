@@ -141,6 +141,15 @@ typedef struct {
   PetscBool *active; /* it is in contact */
 } ContactState;
 
+/* Rows and their states at the start of the controller step, before any have changed, see src/contact/rows/saverows.c */
+typedef struct {
+  PetscReal   *normal, *initial_gap, *area, *gap_shift, *merged_gap;
+  PetscBool   *opposite, *tied, *dropped, *heir;
+  ContactState start, end;
+  PetscInt     rebuilds; /* counted then */
+  PetscBool    moved;    /* rows have changed since */
+} ContactSavedRows;
+
 /* Forces of rows that are let go in a controller step */
 typedef struct {
   PetscBool  fades;     /* these forces fall to zero in the course of the step, not all at once */
@@ -219,7 +228,7 @@ typedef struct {
   PetscInt    level, accepted_level; /* how often the step is cut in halves; how often that was which was accepted last */
   PetscReal   whole_step;            /* the controller step before any cut [s] */
   PetscBool   moves_start;           /* the method changes the state that its steps start from, so that none can be made again */
-  PetscBool   again; /* the step before this one began at the same state, and has failed: rows and sides are those of this step already */
+  PetscBool   again; /* the step before this one began at the same state, and has failed: sides are those of this step already */
 } ContactAttempt;
 
 /* Work space */
@@ -261,6 +270,7 @@ struct _p_Contact {
   SharedNodes       shared;
   ContactState      end;
   ContactState      start;
+  ContactSavedRows  saved;
   ContactRelease    release;
   ContactEnergy     energy;
   ContactRanks      ranks;
@@ -335,6 +345,10 @@ PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSavedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroySavedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
+PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);

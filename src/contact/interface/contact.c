@@ -171,7 +171,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscCall(ContactBeginEnergy(contact));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactBond(contact));
-  if (!contact->attempt.again) PetscCall(ContactUpdateRows(contact));
+  PetscCall(ContactUpdateRows(contact));
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) {

@@ -132,6 +132,7 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscCalloc5(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
                          &contact->rows.followed, n, &contact->work.moved));
+  PetscCall(ContactSetUpSavedRows(contact));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
@@ -423,6 +424,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
       PetscFree5(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed, contact->work.moved));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(PetscFree2(contact->ties.holds, contact->ties.distance));
+  PetscCall(ContactDestroySavedRows(contact));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
