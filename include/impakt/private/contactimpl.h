@@ -215,6 +215,7 @@ typedef struct {
   PetscReal     *accepted_force;          /* the same, also of rows that have been let go since, with their surfaces [N] */
   PetscReal     *last_stored;             /* per row: what springs had stored then [J] */
   PetscReal     *start_force;             /* per row: that with which the step begins instead [N] */
+  PetscReal     *rest;                    /* per row: the part that remains of what goes over from it as it was before it changed */
   PetscReal     *last, *now;              /* work space, per row */
   PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                  /* per group, by its first body */

@@ -94,6 +94,7 @@ typedef struct {
 typedef struct {
   Mat        matrix;       /* the rows of the last accepted step; NULL before the first */
   PetscReal *before, *now; /* per local row: force at the start of the step, along the row as it was and as it is [N] */
+  PetscReal *rest;         /* per local row: the part of it that remains, see BodySetStartForce() */
   PetscInt  *intervals;    /* per local row: of the waveform of its force */
   PetscReal  until;        /* position in the controller step from which on there is nothing of the old rows; 0: they are the same */
 } BodyHandover;
@@ -241,6 +242,8 @@ PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Ve
 PETSC_INTERN PetscErrorCode BodyHandoverEnd(Body);
 PETSC_INTERN PetscErrorCode BodyHandoverDestroy(BodyHandover *);
 PETSC_INTERN PetscBool      BodyHandsOver(Body);
+PETSC_INTERN PetscErrorCode BodySetHandoverRest(Body, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyAddStoppedHandover(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);

@@ -133,7 +133,7 @@ PetscErrorCode ContactSetUpEnergy(Contact contact)
                          &energy->first_energy, n, &energy->energies));
   PetscCall(PetscCalloc6(rows, &energy->last_force, rows, &energy->start_force, rows, &energy->last, rows, &energy->now, rows,
                          &energy->leaves, n, &energy->search));
-  PetscCall(PetscCalloc2(2 * contact->n_pairs, &energy->first_springs, 2 * contact->n_pairs, &energy->springs));
+  PetscCall(PetscCalloc3(2 * contact->n_pairs, &energy->first_springs, 2 * contact->n_pairs, &energy->springs, rows, &energy->rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,6 +165,6 @@ PetscErrorCode ContactDestroyEnergy(Contact contact)
   PetscCall(PetscFree4(energy->start_energy, energy->first_work, energy->last_stored, energy->accepted_force));
   PetscCall(PetscFree6(energy->room, energy->group, energy->group_work, energy->pair_sums, energy->first_energy, energy->energies));
   PetscCall(PetscFree6(energy->last_force, energy->start_force, energy->last, energy->now, energy->leaves, energy->search));
-  PetscCall(PetscFree2(energy->first_springs, energy->springs));
+  PetscCall(PetscFree3(energy->first_springs, energy->springs, energy->rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
