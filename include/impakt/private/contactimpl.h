@@ -203,6 +203,8 @@ typedef struct {
   PetscReal      work;                    /* of all accepted steps [J] */
   PetscReal      step_work;               /* of the present step [J] */
   PetscReal     *room;                    /* per body: what contact may bring it [J] */
+  PetscReal     *change;                  /* per body: what its energy has changed by at the start, since this step has another size [J] */
+  PetscBool      stays_whole;             /* halves of the step would have more energy from the start than there is room for */
   PetscInt      *group;                   /* per body: the first body of the group that touches in this step */
   PetscReal     *group_work;              /* per group, by its first body: work of contact in the step [J] */
   PetscReal     *first_work;              /* the same in the step as made first, by the first bodies of the groups then [J] */
@@ -362,6 +364,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteRebuild(Contact);
 PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactNoteLevel(Contact);
 PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
 

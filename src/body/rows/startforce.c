@@ -41,7 +41,8 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   Input Parameters:
 + body  - the `Body`, saved
 . force - by how much more than at the end of the last step acts along each row of this rank [N]
-- rest  - for each row of this rank, the part that remains of what goes over from the rows of the last step, see `BodyHandOver()`; `NULL`: all
+- rest  - for each row of this rank, the part that remains of what goes over from the rows of the last step, see `BodyHandOver()`; `NULL`:
+all
 
   Level: developer
 

@@ -103,8 +103,8 @@ PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What remains of the forces of a row that leaves, where the step is made again with another force at its start: the part that the row starts
-   with, so that a row which starts without force brings no energy in the course of the step */
+/* What remains of the forces of a row that leaves, where the step is made again with another force at its start: the part that the row
+   starts with, so that a row which starts without force brings no energy in the course of the step */
 static PetscReal PartLeft(Contact contact, PetscInt i)
 {
   const PetscReal last = contact->energy.last_force ? contact->energy.last_force[i] : 0;

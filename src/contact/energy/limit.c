@@ -108,15 +108,17 @@ static void StartWithPart(Contact contact, PetscInt g, PetscReal part)
     }
 }
 
-/* All rows of a group start half way from what they have started with to what they have ended with, and with half of what goes over from
-   the rows as they were */
+/* All rows of a group start half way from what they have started with to what they have ended with, but for a pull on rows that are not
+   tied, and with half of what goes over from the rows as they were */
 static void StartHalfWay(Contact contact, PetscInt g)
 {
   ContactEnergy *energy = &contact->energy;
 
   for (PetscInt i = 0; i < contact->rows.n; i++)
     if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g) {
-      energy->start_force[i] += 0.5 * (contact->end.force[i] - energy->start_force[i]);
+      const PetscReal end = contact->rows.tied[i] ? contact->end.force[i] : PetscMax(contact->end.force[i], 0);
+
+      energy->start_force[i] += 0.5 * (end - energy->start_force[i]);
       energy->rest[i] *= 0.5;
     }
 }
@@ -257,9 +259,10 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   PetscBool      touch  = PETSC_FALSE;
 
   PetscFunctionBegin;
-  energy->known     = (PetscBool)!energy->unlimited;
-  energy->changed   = PETSC_FALSE;
-  energy->step_work = 0;
+  energy->known       = (PetscBool)!energy->unlimited;
+  energy->changed     = PETSC_FALSE;
+  energy->step_work   = 0;
+  energy->stays_whole = PETSC_FALSE;
   if (energy->unlimited) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(energy->last_force, contact->start.force, contact->rows.n));
   PetscCall(ContactComputeWork(contact));
@@ -273,9 +276,14 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   if (contact->attempt.may_cut) { /* what is cut in halves all the same need not be limited */
     PetscReal loss;
+    PetscBool can;
 
     PetscCall(ContactGetEnergyLoss(contact, &loss));
-    if (PetscAbsReal(loss) > contact->attempt.most_loss) PetscFunctionReturn(PETSC_SUCCESS);
+    if (PetscAbsReal(loss) > contact->attempt.most_loss) {
+      PetscCall(ContactCanAffordHalves(contact, &can));
+      if (can) PetscFunctionReturn(PETSC_SUCCESS);
+      energy->stays_whole = PETSC_TRUE;
+    }
   }
   if (!energy->limits || !AnyGainsTooMuch(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Attempt(contact));

@@ -169,6 +169,7 @@ PetscErrorCode ContactStep(Contact contact)
   StepFailureClear(&contact->attempt.failure);
   contact->counts.sweeps = 0;
   PetscCall(ContactBeginEnergy(contact));
+  PetscCall(ContactNoteLevel(contact));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactBond(contact));
   PetscCall(ContactUpdateRows(contact));
