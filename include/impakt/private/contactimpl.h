@@ -116,6 +116,9 @@ typedef struct {
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
   PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
+  PetscBool  filled;      /* the matrices have been filled in this controller step */
+  PetscInt64 pattern;     /* counts how often they have got entries in other places */
+  PetscInt64 patterns[2]; /* that count for `interfaces` and `spares`, when they were filled; -1: they are made anew */
 } ContactRows;
 
 /* Which rows tie surfaces that lay on each other at the start, see src/contact/rows/ties.c */
@@ -147,6 +150,7 @@ typedef struct {
   PetscBool   *opposite, *tied, *dropped, *heir;
   ContactState start, end;
   PetscInt     rebuilds; /* counted then */
+  PetscInt64   pattern;  /* that of the matrices */
   PetscBool    moved;    /* rows have changed since */
 } ContactSavedRows;
 
@@ -266,6 +270,7 @@ struct _p_Contact {
   PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
   BodyTraces       *traces;     /* per body; the last ones are those of all obstacles, which do not move */
   Mat              *interfaces; /* per body: its part of all rows */
+  Mat              *spares;     /* the same of other steps, to be filled next */
   ContactNodes      nodes;
   ContactRows       rows;
   ContactTies       ties;

@@ -300,7 +300,10 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     PetscCall(ContactDescribeRows(contact, pair));
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  if (built) contact->counts.rebuilds++;
+  if (built) {
+    contact->counts.rebuilds++;
+    contact->rows.pattern++;
+  }
   contact->energy.rebuilt = contact->saved.moved = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));

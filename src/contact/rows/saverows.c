@@ -82,6 +82,7 @@ PetscErrorCode ContactSaveRows(Contact contact)
   PetscFunctionBegin;
   PetscCall(Copy(contact, PETSC_FALSE));
   contact->saved.rebuilds = contact->counts.rebuilds;
+  contact->saved.pattern  = contact->rows.pattern;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (!contact->pairs[p].bonded) PetscCall(TransferSave(contact->pairs[p].transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -93,6 +94,7 @@ PetscErrorCode ContactRestoreRows(Contact contact)
   PetscFunctionBegin;
   PetscCall(Copy(contact, PETSC_TRUE));
   contact->counts.rebuilds = contact->saved.rebuilds;
+  if (contact->rows.pattern != contact->saved.pattern) contact->rows.pattern++;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (!contact->pairs[p].bonded) PetscCall(TransferRestore(contact->pairs[p].transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
