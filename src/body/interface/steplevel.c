@@ -24,13 +24,11 @@ static PetscErrorCode FreeRows(Body body)
 /* Forgets all rows of the present compliance */
 static PetscErrorCode ForgetAll(Body body)
 {
-  PetscMPIInt *all;
+  PetscMPIInt *all = body->rows.changed;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(body->rows.global, &all));
   for (PetscInt i = 0; i < body->rows.global; i++) all[i] = 1;
   PetscCall(ComplianceForget(body->compliance->matrices, all));
-  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

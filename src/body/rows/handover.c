@@ -14,6 +14,13 @@
 */
 #include <body/layout/bodyimpl.h>
 
+PetscErrorCode BodyHandoverCreate(PetscInt n, BodyHandover *handover)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(n, &handover->before, n, &handover->now, n, &handover->rest, n, &handover->intervals));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode BodyHandoverDestroy(BodyHandover *handover)
 {
   PetscFunctionBegin;
@@ -65,9 +72,6 @@ PetscErrorCode BodyHandOver(Body body, const PetscReal before[], const PetscReal
   PetscCheck(handover->matrix, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySave()");
   PetscCheck(fewest > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "A controller step has %" PetscInt_FMT " intervals, but must have 1 at least", fewest);
-  if (!handover->before)
-    PetscCall(PetscMalloc4(rows->local, &handover->before, rows->local, &handover->now, rows->local, &handover->rest, rows->local,
-                           &handover->intervals));
   PetscCall(PetscArraycpy(handover->before, before, rows->local));
   PetscCall(PetscArraycpy(handover->now, now, rows->local));
   PetscCall(PetscArraycpy(handover->intervals, intervals, rows->local));
