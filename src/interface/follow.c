@@ -206,7 +206,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 . reach    - other rows follow if their gap is not larger than that [m]
 . still    - rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit
 . turns    - whether normals become those of the surface, which they else do where rows are built
-. step     - until the next update, as far as is known: one that fails is made again in shorter ones with the same rows [s]
+. step     - until the next update [s]
 - last     - from the last update to this one [s]
 
   Output Parameter:

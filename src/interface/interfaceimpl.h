@@ -81,6 +81,16 @@ typedef struct {
   PetscBool *known;                 /* per row: it has followed in the last step too */
 } Follow;
 
+/* What TransferSave() puts aside */
+typedef struct {
+  PetscBool  ready;  /* there is room for it */
+  PetscInt   builds; /* those counted when the rows were put aside; 0: none have been */
+  RowSet     rows;
+  PetscReal *built_x[2], *built_slip, *slip, built_near, smallest_size;
+  PetscReal *x[2], *follow_slip, step; /* of Follow */
+  PetscBool *known, has_last;
+} TransferSaved;
+
 struct _p_Transfer {
   PETSCHEADER(int);
   MPI_Comm       comm;
@@ -104,6 +114,7 @@ struct _p_Transfer {
   PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
   PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
   TransferCounts counts;
+  TransferSaved  saved;
 };
 
 static inline PetscReal Dot(const PetscReal a[], const PetscReal b[])
@@ -153,6 +164,8 @@ PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, Pe
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
+PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);

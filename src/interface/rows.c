@@ -414,9 +414,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
-  PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
-  PetscCall(PetscMalloc4(3 * set.n_columns, &transfer->column_x, 3 * set.n_columns, &transfer->column_normals, 3 * set.n_columns,
-                         &transfer->column_moved, 3 * set.n_columns, &transfer->column_reference));
+  PetscCall(TransferAllocateColumns(transfer));
   PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
   PetscCall(PetscFree3(x, reference, normals));
   PetscCall(PetscFree3(marks, lumped, ends));

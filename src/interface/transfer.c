@@ -86,6 +86,7 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
+  PetscCall(TransferDestroySaved(*transfer));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
   PetscCall(PetscFree6((*transfer)->follow.x[0], (*transfer)->follow.x[1], (*transfer)->follow.moved, (*transfer)->follow.partner_moved,

@@ -8,6 +8,7 @@ struct _n_Compliance {
   PetscInt    *place;                        /* per row of all ranks: its place among the known ones, or -1 */
   PetscInt    *rows;                         /* per place: its row */
   PetscInt    *known;                        /* per place: levels that its column has */
+  PetscInt    *from;                         /* work space, per place */
   PetscScalar *matrices;                     /* levels of them, room x room by columns [m/N] */
   PetscScalar *ramp;                         /* room x room; made when asked for */
   PetscBool    ramp_valid;
@@ -41,7 +42,7 @@ PetscErrorCode ComplianceDestroy(Compliance *compliance)
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(c->place));
-  PetscCall(PetscFree2(c->rows, c->known));
+  PetscCall(PetscFree3(c->rows, c->known, c->from));
   PetscCall(PetscFree3(c->matrices, c->ramp, c->column));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -51,21 +52,22 @@ PetscErrorCode ComplianceDestroy(Compliance *compliance)
 PetscErrorCode ComplianceReserve(Compliance c, PetscInt more)
 {
   const PetscInt old = c->room, room = PetscMin(c->global, PetscMax(c->n + more, 2 * old));
-  PetscInt      *rows, *known;
+  PetscInt      *rows, *known, *from;
   PetscScalar   *matrices, *ramp, *column;
 
   PetscFunctionBegin;
   if (c->n + more <= old) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(room, &rows, room, &known));
+  PetscCall(PetscMalloc3(room, &rows, room, &known, room, &from));
   PetscCall(PetscMalloc3(c->levels * room * room, &matrices, room * room, &ramp, c->levels * room, &column));
   PetscCall(PetscArraycpy(rows, c->rows, c->n));
   PetscCall(PetscArraycpy(known, c->known, c->n));
   for (PetscInt k = 0; k < c->levels; k++)
     for (PetscInt j = 0; j < c->n; j++) PetscCall(PetscArraycpy(matrices + (k * room + j) * room, c->matrices + (k * old + j) * old, c->n));
-  PetscCall(PetscFree2(c->rows, c->known));
+  PetscCall(PetscFree3(c->rows, c->known, c->from));
   PetscCall(PetscFree3(c->matrices, c->ramp, c->column));
   c->rows       = rows;
   c->known      = known;
+  c->from       = from;
   c->matrices   = matrices;
   c->ramp       = ramp;
   c->column     = column;
@@ -130,10 +132,9 @@ PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, 
 /* Rows that have changed are not known any more; `changed`: for each row of all ranks */
 PetscErrorCode ComplianceForget(Compliance c, const PetscMPIInt changed[])
 {
-  PetscInt n = 0, *from;
+  PetscInt n = 0, *from = c->from;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(c->n, &from));
   for (PetscInt j = 0; j < c->n; j++) {
     if (changed[c->rows[j]]) c->place[c->rows[j]] = -1;
     else from[n++] = j;
@@ -152,7 +153,6 @@ PetscErrorCode ComplianceForget(Compliance c, const PetscMPIInt changed[])
   c->n          = n;
   c->ramp_valid = PETSC_FALSE;
   c->state++;
-  PetscCall(PetscFree(from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -297,12 +297,13 @@ PetscErrorCode ConstrainedSolverForgetUnknown(ConstrainedSolver s)
 PetscErrorCode ConstrainedSolverApplyUnit(ConstrainedSolver s, PetscInt j, Vec x, PetscScalar w[])
 {
   const PetscScalar *row;
+  PetscScalar       *unit;
 
   PetscFunctionBegin;
-  PetscCall(VecZeroEntries(s->row));
-  if (j >= s->begin && j < s->begin + s->local) PetscCall(VecSetValue(s->row, j, 1.0, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(s->row));
-  PetscCall(VecAssemblyEnd(s->row));
+  PetscCall(VecGetArrayWrite(s->row, &unit));
+  PetscCall(PetscArrayzero(unit, s->local));
+  if (j >= s->begin && j < s->begin + s->local) unit[j - s->begin] = 1;
+  PetscCall(VecRestoreArrayWrite(s->row, &unit));
   PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, x));
   PetscCall(MatMult(s->B, x, s->row));

@@ -94,8 +94,9 @@ PETSC_EXTERN PetscErrorCode BodyRespond(Body);
 PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 
 /* Forces and impulses on rows that act at one end of a step, and corrections of the state there */
-PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyDropStartForce(Body);
+PETSC_EXTERN PetscErrorCode BodyGetLevelEnergy(Body, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);

@@ -116,6 +116,9 @@ typedef struct {
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
   PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
+  PetscBool  filled;      /* the matrices have been filled in this controller step */
+  PetscInt64 pattern;     /* counts how often they have got entries in other places */
+  PetscInt64 patterns[2]; /* that count for `interfaces` and `spares`, when they were filled; -1: they are made anew */
 } ContactRows;
 
 /* Which rows tie surfaces that lay on each other at the start, see src/contact/rows/ties.c */
@@ -140,6 +143,16 @@ typedef struct {
   PetscReal *gap;    /* [m] */
   PetscBool *active; /* it is in contact */
 } ContactState;
+
+/* Rows and their states at the start of the controller step, before any have changed, see src/contact/rows/saverows.c */
+typedef struct {
+  PetscReal   *normal, *initial_gap, *area, *gap_shift, *merged_gap;
+  PetscBool   *opposite, *tied, *dropped, *heir;
+  ContactState start, end;
+  PetscInt     rebuilds; /* counted then */
+  PetscInt64   pattern;  /* that of the matrices */
+  PetscBool    moved;    /* rows have changed since */
+} ContactSavedRows;
 
 /* Forces of rows that are let go in a controller step */
 typedef struct {
@@ -194,6 +207,8 @@ typedef struct {
   PetscReal      work;                    /* of all accepted steps [J] */
   PetscReal      step_work;               /* of the present step [J] */
   PetscReal     *room;                    /* per body: what contact may bring it [J] */
+  PetscReal     *change;                  /* per body: what its energy has changed by at the start, since this step has another size [J] */
+  PetscBool      stays_whole;             /* halves of the step would have more energy from the start than there is room for */
   PetscInt      *group;                   /* per body: the first body of the group that touches in this step */
   PetscReal     *group_work;              /* per group, by its first body: work of contact in the step [J] */
   PetscReal     *first_work;              /* the same in the step as made first, by the first bodies of the groups then [J] */
@@ -206,6 +221,7 @@ typedef struct {
   PetscReal     *accepted_force;          /* the same, also of rows that have been let go since, with their surfaces [N] */
   PetscReal     *last_stored;             /* per row: what springs had stored then [J] */
   PetscReal     *start_force;             /* per row: that with which the step begins instead [N] */
+  PetscReal     *rest;                    /* per row: the part that remains of what goes over from it as it was before it changed */
   PetscReal     *last, *now;              /* work space, per row */
   PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                  /* per group, by its first body */
@@ -219,7 +235,7 @@ typedef struct {
   PetscInt    level, accepted_level; /* how often the step is cut in halves; how often that was which was accepted last */
   PetscReal   whole_step;            /* the controller step before any cut [s] */
   PetscBool   moves_start;           /* the method changes the state that its steps start from, so that none can be made again */
-  PetscBool   again; /* the step before this one began at the same state, and has failed: rows and sides are those of this step already */
+  PetscBool   again; /* the step before this one began at the same state, and has failed: sides are those of this step already */
 } ContactAttempt;
 
 /* Work space */
@@ -254,6 +270,7 @@ struct _p_Contact {
   PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
   BodyTraces       *traces;     /* per body; the last ones are those of all obstacles, which do not move */
   Mat              *interfaces; /* per body: its part of all rows */
+  Mat              *spares;     /* the same of other steps, to be filled next */
   ContactNodes      nodes;
   ContactRows       rows;
   ContactTies       ties;
@@ -261,6 +278,7 @@ struct _p_Contact {
   SharedNodes       shared;
   ContactState      end;
   ContactState      start;
+  ContactSavedRows  saved;
   ContactRelease    release;
   ContactEnergy     energy;
   ContactRanks      ranks;
@@ -335,6 +353,10 @@ PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSavedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroySavedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
+PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
@@ -347,6 +369,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteRebuild(Contact);
 PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactNoteLevel(Contact);
 PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
 

@@ -154,6 +154,8 @@ static PetscErrorCode SetUpRows(Body body)
   for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
   PetscCall(PetscCalloc4(rows->local, &body->rows.conditions, rows->local, &body->rows.constrained, rows->local, &body->rows.flexibility,
                          rows->local, &body->rows.robin));
+  PetscCall(PetscMalloc1(rows->global, &rows->changed));
+  PetscCall(BodyHandoverCreate(rows->local, &rows->handover));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->rows.matrix, NULL, &body->work.rows[k]));
   body->rows.have_mass = (PetscBool)(rows->global > 0 && !body->mass.redistribute && !body->rows.tied_mass &&
                                      body->integrator->has_inertia);
@@ -308,6 +310,9 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->mass.matrix));
   PetscCall(MatDestroy(&b->rows.matrix));
   PetscCall(MatDestroy(&b->rows.free_matrix));
+  PetscCall(VecDestroy(&b->rows.free_dofs));
+  PetscCall(RowPatternDestroy(&b->rows.pattern));
+  PetscCall(PetscFree(b->rows.changed));
   PetscCall(BodyGramDestroy(&b->rows.gram));
   PetscCall(BodyHandoverDestroy(&b->rows.handover));
   PetscCall(TSDestroy(&b->time.ts));

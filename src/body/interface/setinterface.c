@@ -38,13 +38,14 @@ static PetscErrorCode RewriteStart(Body body)
   Level: developer
 
   Note:
-  No matrix of the body is factored again. Columns of the compliance that belong to rows which have changed are discarded.
+  No matrix of the body is factored again, and nothing is allocated where the rows have entries where they had them before. Columns of the
+compliance that belong to rows which have changed are discarded.
 
 .seealso: `Body`, `BodySetInterface()`
 @*/
 PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
 {
-  PetscMPIInt *all;
+  PetscMPIInt *all = body->rows.changed;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -52,14 +53,12 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
   PetscCall(MatDestroy(&body->rows.matrix));
   body->rows.matrix = B;
   PetscCall(BodySetUpFreeRows(body));
-  PetscCall(PetscMalloc1(body->rows.global, &all));
   PetscCall(GatherChanged(body, changed, all));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall((*body->integrator->ops.setrows)(body, all));
   PetscCall(BodySetRowsOfLevels(body, all));
   PetscCall(BodyNoteKnownRows(body));
   if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, all));
-  PetscCall(PetscFree(all));
   body->repeats = PETSC_FALSE;
   PetscCall(BodySetConstraints(body));
   PetscCall(RewriteStart(body));

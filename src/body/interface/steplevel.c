@@ -24,13 +24,11 @@ static PetscErrorCode FreeRows(Body body)
 /* Forgets all rows of the present compliance */
 static PetscErrorCode ForgetAll(Body body)
 {
-  PetscMPIInt *all;
+  PetscMPIInt *all = body->rows.changed;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(body->rows.global, &all));
   for (PetscInt i = 0; i < body->rows.global; i++) all[i] = 1;
   PetscCall(ComplianceForget(body->compliance->matrices, all));
-  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,6 +97,49 @@ PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
     PetscCall(ForgetAll(body));
   }
   PetscCall(BodyNoteKnownRows(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetLevelEnergy - by how much more energy the saved state counts in steps that are cut in halves so many times than in the last step
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, set up
+- level - k: of controller steps over 2^k
+
+  Output Parameter:
+. energy - [J]; 0 but for central differences
+
+  Level: developer
+
+  Note:
+  What central differences conserve depends on the step, see `BodyGetMeasures()`: where steps become shorter energy comes out of nothing,
+and goes where they become longer.
+
+.seealso: `Body`, `BodySetStepLevel()`, `BodyGetMeasures()`
+@*/
+PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
+{
+  const PetscReal    whole = body->time.whole_step / body->time.substeps;
+  const PetscReal    now = whole / PetscPowRealInt(2, level), last = whole / PetscPowRealInt(2, body->time.accepted_level);
+  const PetscScalar *a, *inertia;
+  PetscReal          sum = 0;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(energy, 3);
+  *energy = 0;
+  if (body->integrator->staggered == 0 || level == body->time.accepted_level) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyMultiplyMass(body, body->saved.a, body->work.nodes[0]));
+  PetscCall(VecGetArrayRead(body->saved.a, &a));
+  PetscCall(VecGetArrayRead(body->work.nodes[0], &inertia));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) sum += PetscRealPart(a[i] * inertia[i]);
+  PetscCall(VecRestoreArrayRead(body->work.nodes[0], &inertia));
+  PetscCall(VecRestoreArrayRead(body->saved.a, &a));
+  if (body->rows.size > 1) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *energy = 0.5 * body->integrator->staggered * (PetscSqr(last) - PetscSqr(now)) * sum;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

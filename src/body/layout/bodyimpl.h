@@ -94,15 +94,26 @@ typedef struct {
 typedef struct {
   Mat        matrix;       /* the rows of the last accepted step; NULL before the first */
   PetscReal *before, *now; /* per local row: force at the start of the step, along the row as it was and as it is [N] */
+  PetscReal *rest;         /* per local row: the part of it that remains, see BodySetStartForce() */
   PetscInt  *intervals;    /* per local row: of the waveform of its force */
   PetscReal  until;        /* position in the controller step from which on there is nothing of the old rows; 0: they are the same */
 } BodyHandover;
+
+/* Where the rows of this rank have entries, see src/body/rows/pattern.c */
+typedef struct {
+  PetscInt  n;                 /* rows */
+  PetscInt *offsets, *columns; /* of each row among the columns, n + 1; global numbers */
+} RowPattern;
 
 /* The rows of the interface: of this rank, and how to have all of them on every rank */
 typedef struct {
   Mat              matrix;      /* B: rows of all ranks x displacements */
   Mat              free_matrix; /* without held dofs; the same matrix where none is held */
-  PetscMPIInt      size;        /* ranks */
+  RowPattern       pattern;
+  PetscBool        same_pattern; /* the last new rows have entries where those before had them */
+  Vec              free_dofs;    /* 1, 0 on held dofs; NULL until needed */
+  PetscMPIInt     *changed;      /* work space, per row of all ranks */
+  PetscMPIInt      size;         /* ranks */
   PetscInt         local, global, begin;
   PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
   BodyGram         gram;             /* of prescribed rows that are not orthonormal */
@@ -239,8 +250,11 @@ PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyHandoverEnd(Body);
+PETSC_INTERN PetscErrorCode BodyHandoverCreate(PetscInt, BodyHandover *);
 PETSC_INTERN PetscErrorCode BodyHandoverDestroy(BodyHandover *);
 PETSC_INTERN PetscBool      BodyHandsOver(Body);
+PETSC_INTERN PetscErrorCode BodySetHandoverRest(Body, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyAddStoppedHandover(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
@@ -255,6 +269,8 @@ PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
+PETSC_INTERN PetscErrorCode RowPatternNote(RowPattern *, Mat, PetscBool *);
+PETSC_INTERN PetscErrorCode RowPatternDestroy(RowPattern *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
 PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);

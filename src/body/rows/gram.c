@@ -29,6 +29,9 @@ struct _n_BodyGram {
   PetscScalar *inverses;
   PetscBool   *dependent; /* of each of `rows`: on those before it in its block */
   PetscScalar *work;      /* room for a row vector, and for the eigenvalues of a block */
+  PetscInt     work_room, inverse_room;
+  PetscInt    *nodes, *order; /* work space, per row */
+  PetscReal   *all;           /* the same: directions of all rows */
 };
 
 PetscErrorCode BodyGramDestroy(BodyGram *gram)
@@ -36,8 +39,10 @@ PetscErrorCode BodyGramDestroy(BodyGram *gram)
   PetscFunctionBegin;
   if (!*gram) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3((*gram)->run_offsets, (*gram)->candidates, (*gram)->directions));
+  PetscCall(PetscFree4((*gram)->offsets, (*gram)->rows, (*gram)->dependent, (*gram)->starts));
+  PetscCall(PetscFree3((*gram)->nodes, (*gram)->order, (*gram)->all));
   PetscCall(PetscFree((*gram)->work));
-  PetscCall(PetscFree5((*gram)->offsets, (*gram)->rows, (*gram)->dependent, (*gram)->starts, (*gram)->inverses));
+  PetscCall(PetscFree((*gram)->inverses));
   PetscCall(PetscFree(*gram));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,32 +108,49 @@ static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Room for as many blocks and runs as there can be rows */
+static PetscErrorCode Create(PetscInt n, BodyGram *gram)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscNew(gram));
+  PetscCall(PetscCalloc3(n + 1, &(*gram)->run_offsets, n, &(*gram)->candidates, 3 * n, &(*gram)->directions));
+  PetscCall(PetscCalloc4(n + 1, &(*gram)->offsets, n, &(*gram)->rows, n, &(*gram)->dependent, n, &(*gram)->starts));
+  PetscCall(PetscMalloc3(n, &(*gram)->nodes, n, &(*gram)->order, 3 * n, &(*gram)->all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An array of at least so many numbers; what was in it is lost where it grows */
+static PetscErrorCode Grow(PetscInt n, PetscInt *room, PetscScalar *values[])
+{
+  PetscFunctionBegin;
+  if (n <= *room) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree(*values));
+  PetscCall(PetscCalloc1(n, values));
+  *room = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* With the rows as they are now; which of them are prescribed is for BodyUpdateGram() */
 PetscErrorCode BodySetUpGram(Body body)
 {
   const PetscInt n = body->rows.local;
-  PetscInt      *nodes, *order, size, most;
-  PetscReal     *directions;
+  PetscInt       size, most;
   BodyGram       gram;
 
   PetscFunctionBegin;
-  PetscCall(BodyGramDestroy(&body->rows.gram));
-  PetscCall(PetscNew(&gram));
-  body->rows.gram = gram;
-  PetscCall(PetscMalloc3(n, &nodes, n, &order, 3 * n, &directions));
+  if (!body->rows.gram) PetscCall(Create(n, &body->rows.gram));
+  gram           = body->rows.gram;
+  gram->n_blocks = gram->n_runs = 0;
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(GetRowNode(body, i, &nodes[i], directions + 3 * i));
-    order[i] = i;
+    PetscCall(GetRowNode(body, i, &gram->nodes[i], gram->all + 3 * i));
+    gram->order[i] = i;
   }
-  PetscCall(PetscSortIntWithArray(n, nodes, order));
-  PetscCall(PetscCalloc3(n + 1, &gram->run_offsets, n, &gram->candidates, 3 * n, &gram->directions));
-  PetscCall(FindCandidates(body, nodes, order, directions, &size, &most));
+  PetscCall(PetscSortIntWithArray(n, gram->nodes, gram->order));
+  PetscCall(FindCandidates(body, gram->nodes, gram->order, gram->all, &size, &most));
   body->rows.any_oblique = (PetscBool)(gram->n_runs > 0);
   PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
-  PetscCall(PetscMalloc1(most * (most + 5), &gram->work));
-  PetscCall(PetscFree3(nodes, order, directions));
-  PetscCall(PetscCalloc5(gram->n_runs + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, gram->n_runs, &gram->starts, size,
-                         &gram->inverses));
+  PetscCall(Grow(most * (most + 5), &gram->work_room, &gram->work));
+  PetscCall(Grow(size, &gram->inverse_room, &gram->inverses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

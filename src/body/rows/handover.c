@@ -14,11 +14,18 @@
 */
 #include <body/layout/bodyimpl.h>
 
+PetscErrorCode BodyHandoverCreate(PetscInt n, BodyHandover *handover)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(n, &handover->before, n, &handover->now, n, &handover->rest, n, &handover->intervals));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode BodyHandoverDestroy(BodyHandover *handover)
 {
   PetscFunctionBegin;
   PetscCall(MatDestroy(&handover->matrix));
-  PetscCall(PetscFree3(handover->before, handover->now, handover->intervals));
+  PetscCall(PetscFree4(handover->before, handover->now, handover->rest, handover->intervals));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,12 +72,22 @@ PetscErrorCode BodyHandOver(Body body, const PetscReal before[], const PetscReal
   PetscCheck(handover->matrix, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySave()");
   PetscCheck(fewest > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "A controller step has %" PetscInt_FMT " intervals, but must have 1 at least", fewest);
-  if (!handover->before)
-    PetscCall(PetscMalloc3(rows->local, &handover->before, rows->local, &handover->now, rows->local, &handover->intervals));
   PetscCall(PetscArraycpy(handover->before, before, rows->local));
   PetscCall(PetscArraycpy(handover->now, now, rows->local));
   PetscCall(PetscArraycpy(handover->intervals, intervals, rows->local));
   handover->until = 1.0 / fewest;
+  PetscCall(BodySetHandoverRest(body, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The part of what goes over that remains, for each row of this rank; NULL: all */
+PetscErrorCode BodySetHandoverRest(Body body, const PetscReal rest[])
+{
+  BodyHandover *handover = &body->rows.handover;
+
+  PetscFunctionBegin;
+  if (handover->until <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < body->rows.local; i++) handover->rest[i] = rest ? rest[i] : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,28 +97,42 @@ PetscBool BodyHandsOver(Body body)
   return (PetscBool)(body->rows.handover.until > 0 && !body->unloaded);
 }
 
-/* row = (1 - n s) force with the position s of the controller step, or zero behind the first interval */
-static void WeightForces(const BodyHandover *handover, PetscInt n, PetscReal position, PetscScalar scale, const PetscReal force[],
-                         PetscScalar row[])
-{
-  for (PetscInt i = 0; i < n; i++) row[i] = scale * PetscMax(1 - handover->intervals[i] * position, 0) * force[i];
-}
-
-/* f += scale (1 - n s) (B_0^T f_0 - B^T f_0) */
-PetscErrorCode BodyAddHandover(Body body, PetscReal position, PetscScalar scale, Vec f)
+/* f += B_0^T w f_0 - B^T w f_0 with weights w of the rows: 1 - n s at the position s of the controller step, or zero behind the first
+   interval, times the part that remains; or `stopped`: minus the part that does not */
+static PetscErrorCode AddWeighted(Body body, PetscReal position, PetscBool stopped, PetscScalar scale, Vec f)
 {
   const BodyHandover *handover = &body->rows.handover;
   PetscScalar        *row;
 
   PetscFunctionBegin;
-  if (!BodyHandsOver(body) || position >= handover->until) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  WeightForces(handover, body->rows.local, position, scale, handover->before, row);
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTransposeAdd(handover->matrix, body->work.rows[0], f, f));
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  WeightForces(handover, body->rows.local, position, -scale, handover->now, row);
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTransposeAdd(body->rows.matrix, body->work.rows[0], f, f));
+  for (PetscInt side = 0; side < 2; side++) {
+    const PetscReal *force = side ? handover->now : handover->before;
+
+    PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+    for (PetscInt i = 0; i < body->rows.local; i++) {
+      const PetscReal weight = stopped ? handover->rest[i] - 1 : handover->rest[i] * PetscMax(1 - handover->intervals[i] * position, 0);
+
+      row[i] = (side ? -scale : scale) * weight * force[i];
+    }
+    PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+    PetscCall(MatMultTransposeAdd(side ? body->rows.matrix : handover->matrix, body->work.rows[0], f, f));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f += scale (1 - n s) (B_0^T f_0 - B^T f_0) */
+PetscErrorCode BodyAddHandover(Body body, PetscReal position, PetscScalar scale, Vec f)
+{
+  PetscFunctionBegin;
+  if (!BodyHandsOver(body) || position >= body->rows.handover.until) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AddWeighted(body, position, PETSC_FALSE, scale, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f -= the part of B_0^T f_0 - B^T f_0 that does not remain, see BodySetHandoverRest() */
+PetscErrorCode BodyAddStoppedHandover(Body body, Vec f)
+{
+  PetscFunctionBegin;
+  if (BodyHandsOver(body)) PetscCall(AddWeighted(body, 0, PETSC_TRUE, 1, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

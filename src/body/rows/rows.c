@@ -36,23 +36,38 @@ PetscErrorCode BodySetInterface(Body body, Mat B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Values of a matrix without held dofs, in place where entries are where they were */
+static PetscErrorCode FillFreeRows(Body body)
+{
+  BodyRows *rows = &body->rows;
+
+  PetscFunctionBegin;
+  if (!rows->free_dofs) {
+    PetscCall(VecDuplicate(body->state.u, &rows->free_dofs));
+    PetscCall(VecSet(rows->free_dofs, 1));
+    PetscCall(BodyZeroHeld(body, rows->free_dofs));
+  }
+  if (rows->same_pattern && rows->free_matrix) PetscCall(MatCopy(rows->matrix, rows->free_matrix, SAME_NONZERO_PATTERN));
+  else {
+    PetscCall(MatDestroy(&rows->free_matrix));
+    PetscCall(MatDuplicate(rows->matrix, MAT_COPY_VALUES, &rows->free_matrix));
+  }
+  PetscCall(MatDiagonalScale(rows->free_matrix, NULL, rows->free_dofs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The rows of the interface without held dofs, which no contact force moves, and what prescribing them takes */
 PetscErrorCode BodySetUpFreeRows(Body body)
 {
-  Vec mask;
+  BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&body->rows.free_matrix));
-  if (body->held.any) {
-    PetscCall(MatDuplicate(body->rows.matrix, MAT_COPY_VALUES, &body->rows.free_matrix));
-    PetscCall(VecDuplicate(body->state.u, &mask));
-    PetscCall(VecSet(mask, 1));
-    PetscCall(BodyZeroHeld(body, mask));
-    PetscCall(MatDiagonalScale(body->rows.free_matrix, NULL, mask));
-    PetscCall(VecDestroy(&mask));
-  } else {
-    PetscCall(PetscObjectReference((PetscObject)body->rows.matrix));
-    body->rows.free_matrix = body->rows.matrix;
+  PetscCall(RowPatternNote(&rows->pattern, rows->matrix, &rows->same_pattern));
+  if (body->held.any) PetscCall(FillFreeRows(body));
+  else {
+    PetscCall(PetscObjectReference((PetscObject)rows->matrix));
+    PetscCall(MatDestroy(&rows->free_matrix));
+    rows->free_matrix = rows->matrix;
   }
   PetscCall(BodySetUpGram(body));
   PetscFunctionReturn(PETSC_SUCCESS);

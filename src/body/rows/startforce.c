@@ -6,7 +6,7 @@
 */
 #include <body/layout/bodyimpl.h>
 
-/* The acceleration that forces on the rows bring to the nodes that have mass */
+/* The acceleration that forces on the rows, and those that go over from the rows of the last step, bring to the nodes that have mass */
 static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec change)
 {
   Vec          f = body->work.nodes[0], du = body->work.nodes[1], pull = body->work.nodes[2];
@@ -18,6 +18,8 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   PetscCall(PetscArraycpy(row, force, body->rows.local));
   PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
   PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], f));
+  PetscCall(BodyAddStoppedHandover(body, f));
+  PetscCall(BodyZeroHeld(body, f));
   PetscCall(BodyAnyRank(body, &layer));
   if (layer) {
     PetscCall(BodySolveLayer(body, body->saved.u, f, du, pull));
@@ -38,7 +40,9 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
 
   Input Parameters:
 + body  - the `Body`, saved
-- force - by how much more than at the end of the last step acts along each row of this rank [N]
+. force - by how much more than at the end of the last step acts along each row of this rank [N]
+- rest  - for each row of this rank, the part that remains of what goes over from the rows of the last step, see `BodyHandOver()`; `NULL`:
+all
 
   Level: developer
 
@@ -49,7 +53,7 @@ is.
 
 .seealso: `Body`, `BodySave()`, `BodyIntegrate()`
 @*/
-PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[])
+PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const PetscReal rest[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -60,6 +64,7 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[])
   else PetscCall(VecCopy(body->saved.a, body->start.a));
   body->start.changed = PETSC_TRUE;
   PetscCall(BodyRestore(body));
+  PetscCall(BodySetHandoverRest(body, rest));
   PetscCall(ComputeChange(body, force, body->state.a));
   PetscCall(VecAXPY(body->saved.a, 1, body->state.a));
   PetscCall(BodyRestore(body));
@@ -84,6 +89,7 @@ PetscErrorCode BodyDropStartForce(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(body->start.a, body->saved.a));
+  PetscCall(BodySetHandoverRest(body, NULL));
   body->start.changed = PETSC_FALSE;
   PetscCall(BodyRestore(body));
   PetscFunctionReturn(PETSC_SUCCESS);

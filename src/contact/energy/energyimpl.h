@@ -7,3 +7,4 @@ PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscRe
 PETSC_INTERN void           ContactFindGroups(Contact);
 PETSC_INTERN PetscErrorCode ContactLeaveOutStatic(Contact);
 PETSC_INTERN PetscReal      ContactGroupRoom(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode ContactCanAffordHalves(Contact, PetscBool *);

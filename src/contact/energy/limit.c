@@ -39,7 +39,7 @@ static PetscErrorCode MakeStep(Contact contact)
 
       energy->now[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * (energy->start_force[i] - energy->last_force[i]);
     }
-    PetscCall(BodySetStartForce(contact->bodies[b], energy->now));
+    PetscCall(BodySetStartForce(contact->bodies[b], energy->now, energy->rest));
   }
   PetscCall(PetscArraycpy(contact->start.force, energy->start_force, contact->rows.n));
   energy->again = energy->changed = PETSC_TRUE;
@@ -85,7 +85,7 @@ static PetscErrorCode MarkLeaving(Contact contact, PetscInt g, PetscBool *any)
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (energy->leaves[i] || energy->group[contact->pairs[contact->rows.pair[i]].body[0]] != g) continue;
-    if (energy->last_force[i] > 0 && contact->end.force[i] <= 0) {
+    if ((energy->last_force[i] > 0 || energy->accepted_force[i] > 0) && contact->end.force[i] <= 0) {
       energy->leaves[i] = PETSC_TRUE;
       found             = 1;
     }
@@ -102,18 +102,25 @@ static void StartWithPart(Contact contact, PetscInt g, PetscReal part)
 
   energy->search[g].part = part;
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (energy->leaves[i] && energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g)
+    if (energy->leaves[i] && energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g) {
       energy->start_force[i] = part * energy->last_force[i];
+      energy->rest[i]        = part;
+    }
 }
 
-/* All rows of a group start half way from what they have started with to what they have ended with */
+/* All rows of a group start half way from what they have started with to what they have ended with, but for a pull on rows that are not
+   tied, and with half of what goes over from the rows as they were */
 static void StartHalfWay(Contact contact, PetscInt g)
 {
   ContactEnergy *energy = &contact->energy;
 
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g)
-      energy->start_force[i] += 0.5 * (contact->end.force[i] - energy->start_force[i]);
+    if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g) {
+      const PetscReal end = contact->rows.tied[i] ? contact->end.force[i] : PetscMax(contact->end.force[i], 0);
+
+      energy->start_force[i] += 0.5 * (end - energy->start_force[i]);
+      energy->rest[i] *= 0.5;
+    }
 }
 
 /* Where to look next: energies are nearly a parabola, so that a secant finds its way; well inside the bracket */
@@ -190,6 +197,7 @@ static PetscErrorCode Attempt(Contact contact)
   PetscCall(ContactComputeEnergies(contact, energy->first_energy, energy->first_springs));
   PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
   PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
   PetscCall(PetscArrayzero(energy->leaves, contact->rows.n));
   PetscCall(PetscArrayzero(energy->search, contact->n_bodies));
   while (going) {
@@ -251,9 +259,10 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   PetscBool      touch  = PETSC_FALSE;
 
   PetscFunctionBegin;
-  energy->known     = (PetscBool)!energy->unlimited;
-  energy->changed   = PETSC_FALSE;
-  energy->step_work = 0;
+  energy->known       = (PetscBool)!energy->unlimited;
+  energy->changed     = PETSC_FALSE;
+  energy->step_work   = 0;
+  energy->stays_whole = PETSC_FALSE;
   if (energy->unlimited) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(energy->last_force, contact->start.force, contact->rows.n));
   PetscCall(ContactComputeWork(contact));
@@ -267,9 +276,14 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   if (contact->attempt.may_cut) { /* what is cut in halves all the same need not be limited */
     PetscReal loss;
+    PetscBool can;
 
     PetscCall(ContactGetEnergyLoss(contact, &loss));
-    if (PetscAbsReal(loss) > contact->attempt.most_loss) PetscFunctionReturn(PETSC_SUCCESS);
+    if (PetscAbsReal(loss) > contact->attempt.most_loss) {
+      PetscCall(ContactCanAffordHalves(contact, &can));
+      if (can) PetscFunctionReturn(PETSC_SUCCESS);
+      energy->stays_whole = PETSC_TRUE;
+    }
   }
   if (!energy->limits || !AnyGainsTooMuch(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Attempt(contact));

@@ -92,7 +92,7 @@ PetscErrorCode ContactNoteRebuild(Contact contact)
 
   PetscFunctionBegin;
   /* in halves of a step the staggered energy of explicit bodies is another */
-  if (energy->start_known && contact->attempt.level == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (energy->start_known && contact->attempt.level == 0 && contact->attempt.accepted_level == 0) PetscFunctionReturn(PETSC_SUCCESS);
   energy->start_known = PETSC_FALSE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeEnergy(contact->bodies[b], &energy->start_energy[b]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -169,9 +169,10 @@ PetscErrorCode ContactStep(Contact contact)
   StepFailureClear(&contact->attempt.failure);
   contact->counts.sweeps = 0;
   PetscCall(ContactBeginEnergy(contact));
+  PetscCall(ContactNoteLevel(contact));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactBond(contact));
-  if (!contact->attempt.again) PetscCall(ContactUpdateRows(contact));
+  PetscCall(ContactUpdateRows(contact));
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) {
@@ -216,6 +217,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
   contact->attempt.accepted_level = contact->attempt.level;
   contact->attempt.again          = PETSC_FALSE;
+  contact->rows.filled            = PETSC_FALSE;
   contact->energy.start_known     = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -315,12 +317,14 @@ PetscErrorCode ContactDestroy(Contact *contact)
   for (PetscInt b = 0; b < c->n_bodies; b++) {
     PetscCall(BodyDestroy(&c->bodies[b]));
     if (c->interfaces) PetscCall(MatDestroy(&c->interfaces[b]));
+    if (c->spares) PetscCall(MatDestroy(&c->spares[b]));
     if (c->nodes.dofs) PetscCall(PetscFree(c->nodes.dofs[b]));
   }
   PetscCall(ContactDestroyRows(c));
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
+  PetscCall(PetscFree(c->spares));
   PetscCall(PetscFree(c->work.stabilized));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyEnergy(c));

@@ -73,7 +73,8 @@ PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt cuts)
   Level: developer
 
   Note:
-  As if the step had not been tried, but for the counts of work. The rows remain those that the step has begun with.
+  As if the step had not been tried, but for the counts of work. The rows of the bodies remain those that the step has begun with until the
+  next step begins, which starts from those before.
 
 .seealso: `Contact`, `ContactTryStep()`, `ContactSetStepLevel()`
 @*/

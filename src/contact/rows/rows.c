@@ -132,6 +132,7 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscCalloc5(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
                          &contact->rows.followed, n, &contact->work.moved));
+  PetscCall(ContactSetUpSavedRows(contact));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
@@ -226,23 +227,56 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the matrices of the rows, one for each body, anew */
-PetscErrorCode ContactFillMatrices(Contact contact)
+static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  Vec      positions;
+  PetscInt n;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Vec      positions;
-    PetscInt n;
+  PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
+  PetscCall(VecGetLocalSize(positions, &n));
+  PetscCall(MatDestroy(&contact->interfaces[b]));
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
+  PetscCall(MatSetSizes(contact->interfaces[b], contact->rows.n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
+  PetscCall(MatSetUp(contact->interfaces[b]));
+  PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
-    PetscCall(VecGetLocalSize(positions, &n));
-    PetscCall(MatDestroy(&contact->interfaces[b]));
-    PetscCall(MatCreate(comm, &contact->interfaces[b]));
-    PetscCall(MatSetSizes(contact->interfaces[b], contact->rows.n, n, PETSC_DETERMINE, PETSC_DETERMINE));
-    PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
-    PetscCall(MatSetUp(contact->interfaces[b]));
+/* Which of the two sets of matrices is filled. The bodies keep the rows of the last accepted step until this one is accepted, since contact
+   forces go over from them; the rows of a step that has failed are of no use any more. */
+static void ChooseMatrices(Contact contact)
+{
+  ContactRows     *rows    = &contact->rows;
+  const PetscInt64 pattern = rows->patterns[0];
+
+  if (rows->filled) return;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const Mat matrix = contact->interfaces[b];
+
+    contact->interfaces[b] = contact->spares[b];
+    contact->spares[b]     = matrix;
+  }
+  rows->patterns[0] = rows->patterns[1];
+  rows->patterns[1] = pattern;
+  rows->filled      = PETSC_TRUE;
+}
+
+/* Fills the matrices of the rows, one for each body: in place if they have entries where those that were filled last have them, which is so
+   until rows are built again. Rows that are merged or turned come from products of matrices, which are made anew. */
+PetscErrorCode ContactFillMatrices(Contact contact)
+{
+  const PetscBool product = (PetscBool)(contact->held.merger || (contact->options.law == CONTACT_LAW_BONDED && contact->dim > 1));
+  PetscBool       in_place;
+
+  PetscFunctionBegin;
+  ChooseMatrices(contact);
+  in_place                  = (PetscBool)(contact->rows.patterns[0] == contact->rows.pattern);
+  contact->rows.patterns[0] = product ? -1 : contact->rows.pattern;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    if (in_place) PetscCall(MatZeroEntries(contact->interfaces[b]));
+    else PetscCall(CreateMatrix(contact, b));
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
@@ -370,6 +404,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
+  contact->rows.filled = PETSC_FALSE;
   if (contact->options.tolerance == (PetscReal)PETSC_DEFAULT) contact->options.tolerance = PENETRATION_TOLERANCE * extent;
   PetscCheck(contact->options.tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_tolerance %g m must not be negative", (double)contact->options.tolerance);
@@ -423,6 +458,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
       PetscFree5(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed, contact->work.moved));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(PetscFree2(contact->ties.holds, contact->ties.distance));
+  PetscCall(ContactDestroySavedRows(contact));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

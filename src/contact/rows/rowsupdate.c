@@ -132,7 +132,7 @@ static PetscErrorCode GetReach(Contact contact, PetscReal *near)
     second = PetscMax(second, PetscMin(first, contact->work.speeds[b]));
     first  = PetscMax(first, contact->work.speeds[b]);
   }
-  *near = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->attempt.whole_step;
+  *near = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -272,10 +272,14 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
   PetscReal near = 0;
-  PetscBool any = PETSC_FALSE, built = PETSC_FALSE;
+  PetscBool any, built = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->attempt.again) PetscCall(ContactRestoreRows(contact));
+  else PetscCall(ContactSaveRows(contact));
+  any                  = (PetscBool)(contact->attempt.again && contact->saved.moved);
+  contact->saved.moved = PETSC_FALSE;
   PetscCall(GetReach(contact, &near));
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
@@ -296,8 +300,11 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     PetscCall(ContactDescribeRows(contact, pair));
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  if (built) contact->counts.rebuilds++;
-  contact->energy.rebuilt = PETSC_TRUE;
+  if (built) {
+    contact->counts.rebuilds++;
+    contact->rows.pattern++;
+  }
+  contact->energy.rebuilt = contact->saved.moved = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));

@@ -19,7 +19,7 @@ static void set_start_force(RowBody *b, PetscReal factor)
   PetscScalar mine[MOST_ROWS];
 
   for (PetscInt i = 0; i < b->rows.local; i++) mine[i] = factor * starts[b->rows.which[i]];
-  ok(BodySetStartForce(b->body, mine));
+  ok(BodySetStartForce(b->body, mine, NULL));
 }
 
 static BodyMeasures integrate(RowBody *b)

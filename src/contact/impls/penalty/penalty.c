@@ -158,7 +158,8 @@ PetscErrorCode PenaltySetUp(Contact contact)
              ContactConstraints[contact->options.constraint]);
   penalty->springs = (PetscBool)(contact->options.constraint != CONTACT_CONSTRAINT_GAP_RATE);
   PetscCall(ForcesGetStep(contact, &penalty->step));
-  PetscCall(PetscCalloc5(n, &penalty->multiplier, n, &penalty->pushing, n, &penalty->spring, n, &penalty->damper, n, &penalty->stiffness));
+  PetscCall(PetscCalloc6(n, &penalty->multiplier, n, &penalty->pushing, n, &penalty->spring, n, &penalty->damper, n, &penalty->stiffness,
+                         3 * n, &penalty->work));
   PetscCall(PenaltySetUpSprings(contact));
   PetscCall(OuterSolverCreate(contact, "penalty_", n, ComputeResidual, ComputeJacobian, &penalty->outer));
   PetscCall(OuterSolverSetNewton(contact, &penalty->outer, ComputeJacobian, ApplyNewton));
@@ -309,7 +310,7 @@ PetscErrorCode PenaltyDestroy(Contact contact)
   PetscCall(ForceProblemDestroy(&penalty->problem));
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(ForceProblemDestroy(&penalty->problems[k]));
   PetscCall(PetscFree(penalty->start));
-  PetscCall(PetscFree5(penalty->multiplier, penalty->pushing, penalty->spring, penalty->damper, penalty->stiffness));
+  PetscCall(PetscFree6(penalty->multiplier, penalty->pushing, penalty->spring, penalty->damper, penalty->stiffness, penalty->work));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

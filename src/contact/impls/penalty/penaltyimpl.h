@@ -14,6 +14,7 @@ typedef struct {
   PetscReal    *spring;     /* per row of this rank [N/m] */
   PetscReal    *damper;     /* per row of this rank [N s/m] */
   PetscReal    *stiffness;  /* of both over a controller step, per row of this rank [N/m] */
+  PetscReal    *work;       /* work space: three numbers per row */
   PetscReal     step;       /* the controller step [s] */
   PetscReal     atol, rtol; /* on the force [N], and relative to it */
   Forces        forces;

@@ -58,11 +58,11 @@ static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, P
    of springs over a substep, of dampers over the controller step as if it were one */
 static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
 {
-  const Penalty *penalty = (const Penalty *)contact->data;
-  PetscReal     *compliance[2], *bound;
+  const Penalty *penalty      = (const Penalty *)contact->data;
+  PetscReal     *compliance[] = {penalty->work, penalty->work + contact->rows.n}, *bound = penalty->work + 2 * contact->rows.n;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc3(contact->rows.n, &compliance[0], contact->rows.n, &compliance[1], contact->rows.n, &bound));
+  PetscCall(PetscArrayzero(penalty->work, 2 * contact->rows.n));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool is_explicit, massless;
     PetscInt  substeps;
@@ -82,7 +82,6 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
     worst[0] = PetscMax(worst[0], compliance[0][i] * penalty->spring[i]);
     worst[1] = PetscMax(worst[1], compliance[1][i] * penalty->damper[i]);
   }
-  PetscCall(PetscFree3(compliance[0], compliance[1], bound));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

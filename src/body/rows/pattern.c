@@ -1,0 +1,72 @@
+/*
+   Where the rows of the interface have entries. Rows that follow their surfaces have other values in the same places, so that what has been
+   made of their matrix (that without held dofs, that of the massless layer) gets new values too, and nothing is allocated.
+*/
+#include <body/layout/bodyimpl.h>
+
+PetscErrorCode RowPatternDestroy(RowPattern *pattern)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(pattern->offsets, pattern->columns));
+  pattern->n = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the rows of this rank have entries in the columns that were noted last */
+static PetscErrorCode Compare(const RowPattern *pattern, Mat matrix, PetscBool *same)
+{
+  PetscInt begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(matrix, &begin, &end));
+  *same = (PetscBool)(pattern->offsets && pattern->n == end - begin);
+  for (PetscInt i = 0; *same && i < pattern->n; i++) {
+    const PetscInt  first = pattern->offsets[i];
+    const PetscInt *columns;
+    PetscInt        n;
+
+    PetscCall(MatGetRow(matrix, begin + i, &n, &columns, NULL));
+    *same = (PetscBool)(n == pattern->offsets[i + 1] - first);
+    if (*same && n) PetscCall(PetscArraycmp(columns, pattern->columns + first, n, same));
+    PetscCall(MatRestoreRow(matrix, begin + i, &n, &columns, NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes where a matrix has entries. `same`: on every rank where the last one had them; then nothing is allocated. Collective. */
+PetscErrorCode RowPatternNote(RowPattern *pattern, Mat matrix, PetscBool *same)
+{
+  PetscInt    begin, end, count = 0;
+  int         differs;
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCall(Compare(pattern, matrix, same));
+  differs = *same ? 0 : 1;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)matrix), &size));
+  if (size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)matrix)));
+  *same = (PetscBool)!differs;
+  if (*same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RowPatternDestroy(pattern));
+  PetscCall(MatGetOwnershipRange(matrix, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
+    PetscInt n;
+
+    PetscCall(MatGetRow(matrix, row, &n, NULL, NULL));
+    count += n;
+    PetscCall(MatRestoreRow(matrix, row, &n, NULL, NULL));
+  }
+  pattern->n = end - begin;
+  PetscCall(PetscMalloc2(pattern->n + 1, &pattern->offsets, count, &pattern->columns));
+  pattern->offsets[0] = 0;
+  for (PetscInt i = 0; i < pattern->n; i++) {
+    const PetscInt *columns;
+    PetscInt        n;
+
+    PetscCall(MatGetRow(matrix, begin + i, &n, &columns, NULL));
+    if (n) PetscCall(PetscArraycpy(pattern->columns + pattern->offsets[i], columns, n));
+    pattern->offsets[i + 1] = pattern->offsets[i] + n;
+    PetscCall(MatRestoreRow(matrix, begin + i, &n, &columns, NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

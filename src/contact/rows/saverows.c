@@ -1,0 +1,101 @@
+/*
+   Rows as they are at the start of a controller step, before they are built again or follow the surfaces: where the step is made again in
+   halves, they do so anew, by what they expect of the shorter step. Gaps, shifts, merged rows and forces of rows that have been let go come
+   back with them.
+
+   The matrices of the bodies are not brought back: the halves have theirs filled anew. Bodies have forgotten the compliance of rows that
+   have changed, and find it again. That is the same to the last bit where the rows that change in the halves are those that did in the
+   whole step; where the whole step changes more of them, to the round-off of their compliance.
+*/
+#include <impakt/private/contactimpl.h>
+
+PetscErrorCode ContactSetUpSavedRows(Contact contact)
+{
+  const PetscInt    n     = contact->rows.n;
+  ContactSavedRows *saved = &contact->saved;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc5(3 * n, &saved->normal, n, &saved->initial_gap, n, &saved->area, n, &saved->gap_shift, n, &saved->merged_gap));
+  PetscCall(PetscMalloc4(n, &saved->opposite, n, &saved->tied, n, &saved->dropped, n, &saved->heir));
+  PetscCall(PetscMalloc6(n, &saved->start.force, n, &saved->start.gap, n, &saved->start.active, n, &saved->end.force, n, &saved->end.gap, n,
+                         &saved->end.active));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroySavedRows(Contact contact)
+{
+  ContactSavedRows *saved = &contact->saved;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree5(saved->normal, saved->initial_gap, saved->area, saved->gap_shift, saved->merged_gap));
+  PetscCall(PetscFree4(saved->opposite, saved->tied, saved->dropped, saved->heir));
+  PetscCall(PetscFree6(saved->start.force, saved->start.gap, saved->start.active, saved->end.force, saved->end.gap, saved->end.active));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopyReals(PetscBool back, PetscInt n, PetscReal now[], PetscReal aside[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(back ? now : aside, back ? aside : now, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopyBools(PetscBool back, PetscInt n, PetscBool now[], PetscBool aside[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(back ? now : aside, back ? aside : now, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopyState(PetscBool back, PetscInt n, ContactState *now, ContactState *aside)
+{
+  PetscFunctionBegin;
+  PetscCall(CopyReals(back, n, now->force, aside->force));
+  PetscCall(CopyReals(back, n, now->gap, aside->gap));
+  PetscCall(CopyBools(back, n, now->active, aside->active));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Copy(Contact contact, PetscBool back)
+{
+  const PetscInt    n     = contact->rows.n;
+  ContactSavedRows *saved = &contact->saved;
+
+  PetscFunctionBegin;
+  PetscCall(CopyReals(back, 3 * n, contact->rows.normal, saved->normal));
+  PetscCall(CopyReals(back, n, contact->rows.initial_gap, saved->initial_gap));
+  PetscCall(CopyReals(back, n, contact->rows.area, saved->area));
+  PetscCall(CopyReals(back, n, contact->rows.gap_shift, saved->gap_shift));
+  PetscCall(CopyReals(back, n, contact->held.merged_gap, saved->merged_gap));
+  PetscCall(CopyBools(back, n, contact->rows.opposite, saved->opposite));
+  PetscCall(CopyBools(back, n, contact->rows.tied, saved->tied));
+  PetscCall(CopyBools(back, n, contact->held.dropped, saved->dropped));
+  PetscCall(CopyBools(back, n, contact->held.heir, saved->heir));
+  PetscCall(CopyState(back, n, &contact->start, &saved->start));
+  PetscCall(CopyState(back, n, &contact->end, &saved->end));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a controller step that may have to be made again, before the rows change */
+PetscErrorCode ContactSaveRows(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(Copy(contact, PETSC_FALSE));
+  contact->saved.rebuilds = contact->counts.rebuilds;
+  contact->saved.pattern  = contact->rows.pattern;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].bonded) PetscCall(TransferSave(contact->pairs[p].transfer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of the step that is made again. The matrices of the bodies are filled anew with the rows that follow from here. */
+PetscErrorCode ContactRestoreRows(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(Copy(contact, PETSC_TRUE));
+  contact->counts.rebuilds = contact->saved.rebuilds;
+  if (contact->rows.pattern != contact->saved.pattern) contact->rows.pattern++;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].bonded) PetscCall(TransferRestore(contact->pairs[p].transfer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
