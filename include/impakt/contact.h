@@ -275,6 +275,8 @@ PETSC_EXTERN PetscErrorCode ContactSetAllowUnstable(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetAllowUnstable(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetSharedTimes(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetSharedTimes(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactSetBalancedStart(Contact, PetscBool);
+PETSC_EXTERN PetscErrorCode ContactGetBalancedStart(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactSetStartEnergies(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetEnergyCap(Contact, PetscBool, PetscReal);

@@ -82,6 +82,7 @@ typedef struct {
   PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
   PetscBool            allow_unstable;   /* what is known to gain energy runs all the same */
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
+  PetscBool            balanced_start;   /* massless nodes are brought into balance in the first state */
   PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
@@ -328,6 +329,7 @@ PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
+PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);

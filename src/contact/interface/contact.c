@@ -36,14 +36,15 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCall(
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
-  (*contact)->options.facing       = PETSC_TRUE;
-  (*contact)->options.shared_times = PETSC_TRUE;
-  (*contact)->options.slip_bound   = SLIP_BOUND;
-  (*contact)->energy.limits        = PETSC_TRUE;
-  (*contact)->energy.excess        = ENERGY_EXCESS;
-  (*contact)->options.angle_bound  = ANGLE_BOUND;
-  (*contact)->options.tolerance    = PETSC_DEFAULT;
-  (*contact)->options.tie_distance = TIE_DISTANCE;
+  (*contact)->options.facing         = PETSC_TRUE;
+  (*contact)->options.shared_times   = PETSC_TRUE;
+  (*contact)->options.balanced_start = PETSC_TRUE;
+  (*contact)->options.slip_bound     = SLIP_BOUND;
+  (*contact)->energy.limits          = PETSC_TRUE;
+  (*contact)->energy.excess          = ENERGY_EXCESS;
+  (*contact)->options.angle_bound    = ANGLE_BOUND;
+  (*contact)->options.tolerance      = PETSC_DEFAULT;
+  (*contact)->options.tie_distance   = TIE_DISTANCE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
