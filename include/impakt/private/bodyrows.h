@@ -104,6 +104,7 @@ PETSC_EXTERN PetscErrorCode BodyStartUnderForces(Body, const PetscScalar[]);
 /* Forces and impulses on rows that act at one end of a step, and corrections of the state there */
 PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyDropStartForce(Body);
+PETSC_EXTERN PetscErrorCode BodySetMeanForces(Body, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);

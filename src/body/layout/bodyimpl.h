@@ -107,6 +107,8 @@ typedef struct {
   PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
   BodyGram         gram;             /* of prescribed rows that are not orthonormal */
   PetscBool        any_oblique;      /* on any rank there are rows of one node that are not orthonormal */
+  PetscBool       *by_mean;          /* per local row: see BodySetMeanForces(); NULL: none */
+  PetscBool        any_by_mean;      /* on any rank */
   const PetscReal *weights;          /* of rows that depend on each other; borrowed, NULL: they are equal */
   BodyTractionType traction;
   PetscBool        have_mass; /* prescribed nodes carry mass, and take velocity and acceleration from their partner */
@@ -150,6 +152,7 @@ struct _p_Body {
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
     Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */
+    Vec       change;  /* work space of BodyTurnToMeanForce() [m/s^2]; NULL until BodySetMeanForces() */
     PetscBool changed; /* the saved acceleration is not that of the last step's end */
   } start;
   /* interface */
@@ -245,6 +248,7 @@ PETSC_INTERN PetscErrorCode BodyHandoverEnd(Body);
 PETSC_INTERN PetscErrorCode BodyHandoverDestroy(BodyHandover *);
 PETSC_INTERN PetscBool      BodyHandsOver(Body);
 PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
+PETSC_INTERN PetscErrorCode BodyTurnToMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);

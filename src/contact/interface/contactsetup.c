@@ -176,6 +176,7 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   }
+  PetscCall(ContactSetMeanForces(contact));
   PetscCall(ContactBalanceStart(contact));
   PetscCall(ContactStartTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

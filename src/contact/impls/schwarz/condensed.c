@@ -62,8 +62,11 @@ static PetscErrorCode CondensationPrevented(Contact contact, PetscBool mass, con
   else if (schwarz->convergence == SCHWARZ_CONVERGENCE_POSITION) *reason = "-schwarz_convergence position wants all nodes after each sweep";
   for (PetscInt b = 0; b < contact->n_bodies && !*reason; b++) {
     PetscBool exact;
+    PetscInt  substeps;
 
     PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    if (substeps > 1 && ContactTiesByMean(contact)) *reason = "ties act by their mean force over the substeps of a body";
     if (!exact) *reason = "a body is nonlinear, or its integrator is not Newmark's";
   }
   PetscFunctionReturn(PETSC_SUCCESS);
