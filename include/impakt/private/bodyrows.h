@@ -105,6 +105,7 @@ PETSC_EXTERN PetscErrorCode BodyStartUnderForces(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyDropStartForce(Body);
 PETSC_EXTERN PetscErrorCode BodySetMeanForces(Body, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodyGetMeanForces(Body, const PetscBool *[]);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);

@@ -123,6 +123,7 @@ typedef struct {
 typedef struct {
   PetscBool *holds;    /* per row: its node was within the tie distance, whether the user holds it or not */
   PetscReal *distance; /* per row: the gap of its node along the normal then [m] */
+  PetscBool  by_mean;  /* over the substeps of a body ties with massless nodes act by their mean force, see BodySetMeanForces() */
 } ContactTies;
 
 /* Rows whose node is held, and their heirs, see src/contact/rows/heldrows.c */
@@ -329,7 +330,6 @@ PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
-PETSC_INTERN PetscBool      ContactTiesByMean(Contact);
 PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
 PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);

@@ -133,6 +133,30 @@ PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BodyGetMeanForces - on which rows forces act by their mean over the controller step
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. rows - for each row of this rank, owned by the body; `NULL` where none do
+
+  Level: developer
+
+.seealso: `Body`, `BodySetMeanForces()`
+@*/
+PetscErrorCode BodyGetMeanForces(Body body, const PetscBool *rows[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(rows, 2);
+  *rows = body->rows.by_mean;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* At the start of a substep, whose acceleration belongs to the forces at the end of the one before: to the forces that have the mean of the
    controller step in this one, see BodySetMeanForces() */
 PetscErrorCode BodyTurnToMeanForce(Body body)

@@ -99,20 +99,13 @@ PetscErrorCode ContactChooseTiedMass(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the forces of ties over the substeps of a body act by their mean, see BodySetMeanForces(): where ties hold at the ends of all
-   parts of the controller step, and forces go linearly between these */
-PetscBool ContactTiesByMean(Contact contact)
-{
-  return (PetscBool)(contact->options.law == CONTACT_LAW_TIED && contact->prescribes && contact->options.shared_times);
-}
-
-/* Tells the bodies so, with the ties as they are now */
+/* Tells the bodies which rows act by their mean force, see BodySetMeanForces(), with the ties as they are now */
 PetscErrorCode ContactSetMeanForces(Contact contact)
 {
   PetscBool *by_mean;
 
   PetscFunctionBegin;
-  if (!ContactTiesByMean(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->ties.by_mean) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(contact->rows.n, &by_mean));
   for (PetscInt i = 0; i < contact->rows.n; i++)
     by_mean[i] = (PetscBool)(contact->rows.tied[i] && !contact->pairs[contact->rows.pair[i]].keeps_mass);
