@@ -275,6 +275,7 @@ PETSC_EXTERN PetscErrorCode ContactSetAllowUnstable(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetAllowUnstable(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetSharedTimes(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetSharedTimes(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactGetUnlimitedReason(Contact, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode ContactSetBalancedStart(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetBalancedStart(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);

@@ -184,6 +184,7 @@ typedef struct {
 typedef struct {
   PetscBool      limits;                  /* steps must not gain more than there is room for */
   const char    *unlimited;               /* why the method cannot have that, or NULL */
+  const char    *not_always;              /* why it cannot in every step, or NULL */
   PetscReal      excess;                  /* part of the energy that contact may bring out of nothing in the whole run */
   PetscReal      scale;                   /* that energy [J] */
   PetscBool      begun;                   /* it is known */

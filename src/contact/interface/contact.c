@@ -259,7 +259,9 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->options.stabilization]));
   if (contact->energy.unlimited) PetscCall(PetscViewerASCIIPrintf(viewer, "  energy not limited: %s\n", contact->energy.unlimited));
   else if (contact->energy.limits)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  energy limited: contact may gain %g of it in all\n", (double)contact->energy.excess));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  energy limited: contact may gain %g of it in all%s%s\n", (double)contact->energy.excess,
+                                     contact->energy.not_always ? "; not in every step, since " : "",
+                                     contact->energy.not_always ? contact->energy.not_always : ""));
   PetscTryTypeMethod(contact, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

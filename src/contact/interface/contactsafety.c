@@ -110,6 +110,31 @@ PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
 }
 
 /*@
+  ContactGetUnlimitedReason - why steps may gain energy at contact in spite of `ContactSetEnergyCap()`
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameters:
++ always - the reason why no step is kept from it, or `NULL`
+- some   - the reason why some steps are not, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetEnergyCap()`, `ContactView()`
+@*/
+PetscErrorCode ContactGetUnlimitedReason(Contact contact, const char *always[], const char *some[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (always) *always = contact->energy.unlimited;
+  if (some) *some = contact->energy.not_always;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSetBalancedStart - whether massless nodes are brought into balance in the first state
 
   Logically Collective
