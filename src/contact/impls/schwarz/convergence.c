@@ -150,12 +150,12 @@ static PetscErrorCode AdviseRelaxation(Contact contact, char advice[], size_t si
   PetscCall(SNESLineSearchGetDamping(line_search, &damping));
   ratio = (1 + schwarz->growth) / damping - 1;
   if (!(schwarz->growth > 1 - damping) || !(ratio > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(
-      advice, size,
-      "The change becomes %.3g times as large in each sweep, since the Neumann side gives way %.3g times as much as the "
-      "Dirichlet side: -schwarz_snes_linesearch_damping, now %g, converges below %.2g, best near %.2g; "
-      "-schwarz_relaxation aitken and -schwarz_transmission robin need no such number. ",
-      (double)schwarz->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)), (double)(2 / (2 + ratio + 1 / ratio))));
+  PetscCall(PetscSNPrintf(advice, size,
+                          "The change becomes %.3g times as large in each sweep, since a sweep answers an error with %.3g times as much: "
+                          "-schwarz_snes_linesearch_damping, now %g, converges below %.2g, best near %.2g; "
+                          "-schwarz_relaxation aitken and -schwarz_transmission robin need no such number. ",
+                          (double)schwarz->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)),
+                          (double)(2 / (2 + ratio + 1 / ratio))));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
