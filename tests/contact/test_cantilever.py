@@ -246,7 +246,7 @@ def test_plain_alternation(case, pairs, shared_run):
 @pytest.mark.parametrize("pairs", PAIRS, ids=["free-first", "clamped-first"])
 @pytest.mark.parametrize("damping", [0.6, 1.0])
 def test_relaxation_that_fails_is_told_what_converges(damping, pairs, impakt):
-    """Massless layers of hexahedra that mirror each other answer an error with 2.73 times as much, for normal and tangential forces have opposite signs: 2 / 3.73
-    and 2 / (2 + 2.73 + 1 / 2.73) follow, whatever relaxation has failed; the second of these is the quickest of test_plain_alternation()."""
+    """Massless layers of hexahedra that mirror each other answer an error with up to 3 times as much, since normal and tangential forces have opposite signs. After
+    51 sweeps it is 2.73: 2 / 3.73 and 2 / (2 + 2.73 + 1 / 2.73) follow, whatever relaxation has failed. The second is that of test_plain_alternation()."""
     run = impakt(f"{TIED} {PLAIN} {MASSLESS} -contact_pairs {pairs} -schwarz_snes_linesearch_damping {damping} -controller_step_cuts 0", expect_failure=True)
-    assert "with 2.73 times as much" in run.stderr and "converges below 0.54, best near 0.39" in run.stderr
+    assert "with 2.73 times as much, or more" in run.stderr and "converges below 0.54, or less, best near 0.39" in run.stderr

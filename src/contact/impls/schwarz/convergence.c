@@ -134,7 +134,7 @@ PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 /* What a user who has chosen a fixed relaxation t should know when it has failed. A sweep takes the error e to -m e, m being ratios of the
    compliance of both sides, and the relaxed iteration takes it to (1 - t (1 + m)) e. What changes by a factor of r > 1 - t in each sweep is
    the error with the largest m, 1 + m = (1 + r) / t. Relaxations below 2 / (1 + m) converge, and 2 / (2 + m + 1 / m) is the best where 1 /
-   m is the smallest ratio, as between two sides that mirror each other. */
+   m is the smallest ratio, as between two sides that mirror each other. The error with the largest m may not have come up yet. */
 static PetscErrorCode AdviseRelaxation(Contact contact, char advice[], size_t size)
 {
   Schwarz       *schwarz = (Schwarz *)contact->data;
@@ -150,12 +150,12 @@ static PetscErrorCode AdviseRelaxation(Contact contact, char advice[], size_t si
   PetscCall(SNESLineSearchGetDamping(line_search, &damping));
   ratio = (1 + schwarz->growth) / damping - 1;
   if (!(schwarz->growth > 1 - damping) || !(ratio > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(advice, size,
-                          "The change becomes %.3g times as large in each sweep, since a sweep answers an error with %.3g times as much: "
-                          "-schwarz_snes_linesearch_damping, now %g, converges below %.2g, best near %.2g; "
-                          "-schwarz_relaxation aitken and -schwarz_transmission robin need no such number. ",
-                          (double)schwarz->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)),
-                          (double)(2 / (2 + ratio + 1 / ratio))));
+  PetscCall(PetscSNPrintf(
+      advice, size,
+      "The change becomes %.3g times as large in each sweep, since a sweep answers an error with %.3g times as much, or more: "
+      "-schwarz_snes_linesearch_damping, now %g, converges below %.2g, or less, best near %.2g; -schwarz_relaxation aitken and "
+      "-schwarz_transmission robin need no such number. ",
+      (double)schwarz->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)), (double)(2 / (2 + ratio + 1 / ratio))));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
