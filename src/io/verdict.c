@@ -7,6 +7,8 @@
 
 /* An energy error from which on a run says so */
 #define ENERGY_ERROR 0.05
+/* The same of the momentum, where it is known to be lost */
+#define MOMENTUM_ERROR 1e-3
 
 /* Adds a sentence while there is room */
 static PetscErrorCode Add(Verdict *verdict, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
@@ -24,7 +26,8 @@ static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
 
 static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const StatisticsResults *results, Verdict *verdict)
 {
-  const PetscReal worst = -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
+  const PetscReal worst  = -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
+  const char     *reason = NULL;
   ContactCounts   counts;
   ControllerCuts  cuts;
 
@@ -34,6 +37,13 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   if (!(PetscAbsReal(worst) <= ENERGY_ERROR))
     PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst; a smaller -time_step, or -time_step auto, makes it less",
                   (double)(100 * worst)));
+  PetscCall(ContactGetUnlimitedReason(contact, NULL, &reason));
+  if (reason && results->momentum_error_max > MOMENTUM_ERROR)
+    PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or -schwarz_transmission dirichlet_neumann",
+                  (double)(100 * results->momentum_error_max), reason));
+  if (counts.unlimited_steps)
+    PetscCall(Add(verdict, "%" PetscInt_FMT " step%s gained more energy at contact than -contact_energy_excess allows%s%s",
+                  counts.unlimited_steps, counts.unlimited_steps == 1 ? "" : "s", reason ? ", since " : "", reason ? reason : ""));
   if (counts.unconverged_steps)
     PetscCall(Add(verdict, "%" PetscInt_FMT " step%s accepted without having converged (-schwarz_unconverged accept)",
                   counts.unconverged_steps, counts.unconverged_steps == 1 ? " was" : "s were"));

@@ -118,6 +118,8 @@ static const KnownOption options[] = {
      "whether choices that are known to gain energy run all the same, default false"},
     {"contact", OPTION_OF_RUN, "contact_shared_times", "true|false",
      "whether contact holds at all times that all bodies have in common, default true, or at the ends of controller steps alone"},
+    {"contact", OPTION_OF_RUN, "contact_balanced_start", "true|false",
+     "whether massless nodes are brought into balance in the first state, default true"},
     {"contact", OPTION_OF_RUN, "contact_energy_cap", "true|false",
      "whether steps in which contact would gain energy are made again with less force at their start, default true"},
     {"contact", OPTION_OF_RUN, "contact_energy_excess", "e",

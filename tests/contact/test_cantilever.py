@@ -104,12 +104,94 @@ def test_other_meshes(kind, step, faces, pairs, shared_run):
     assert worst_energy_error(run.summary) <= 1e-12
 
 
-@pytest.mark.parametrize("kind, step", [("II", 1e-6), ("EE", 5e-7)])
-@pytest.mark.long
-def test_for_long(kind, step, shared_run):
-    """10 ms: published runs fail after 3 to 5 ms. Measured: 7e-13 (II), 4e-15 (EE)."""
-    run = shared_run(f"{TIED} {each(ALIKE[kind])} -time_step {step} -time_end 1e-2")
-    assert worst_energy_error(run.summary) <= 1e-11
+# Pairings of free and clamped half, and the controller step in 10 ms. Equal bodies keep the mass of tied nodes; mixed ones have massless nodes there.
+PAIRINGS = {"II": "", "EE": each(EXPLICIT), "IE": EXPLICIT.format(b="clamped"), "EI": EXPLICIT.format(b="free")}
+MASSLESS = "-free_mass_redistribute true -clamped_mass_redistribute true"
+
+
+def energy_changes(run):
+    """Energy of both bodies at each record, relative to that at the start, less one."""
+    bodies = run.history["body"]
+    energy = sum(bodies[name]["kinetic"][()] + bodies[name]["potential"][()] for name in bodies)
+    return energy / energy[0] - 1
+
+
+def momentum_gap(run):
+    """What the momentum of the free half has changed by beyond the impulse of the ties, which are all that acts on it, relative to its largest."""
+    momentum = run.history["body/free/momentum"][()]
+    impulse = run.history["contact/free.xmin:clamped.xmax/impulse"][()]
+    return np.abs(momentum - momentum[0] + impulse).max() / np.abs(momentum).max()
+
+
+@pytest.mark.parametrize("pairs", PAIRS, ids=["free-first", "clamped-first"])
+@pytest.mark.parametrize("faces", ["20,4,2", "25,5,3"])
+@pytest.mark.parametrize("kind", PAIRINGS)
+def test_massless_ties_start_in_balance(kind, faces, pairs, shared_run):
+    """The first record has the forces of the ties, and no step after it loses anything. From the displacements as they are 0.4 % are lost in the first
+    step. Measured: 3e-14 of energy; second differences of the force of 5e-3,
+    as in the steps after it."""
+    run = shared_run(f"{TIED} {PAIRINGS[kind]} {MASSLESS} -clamped_dm_plex_box_faces {faces} -contact_pairs {pairs} -time_step 5e-7 -time_end 2.5e-5")
+    assert np.abs(energy_changes(run)).max() <= 1e-12
+    pair = run.history[f"contact/{pairs}"]
+    shear = pair["force_vector"][:, 1]
+    assert abs(shear[0] - 2 * shear[1] + shear[2]) <= 1e-2 * abs(shear[0])
+    assert pair["active"][0] in (15, 24)  # nodes of the first side
+    assert np.abs(pair["gap"][:]).max() <= 1e-11
+
+
+def test_start_as_told(shared_run):
+    loss = energy_changes(shared_run(f"{TIED} {MASSLESS} -contact_balanced_start false -time_end 1e-5"))
+    assert loss[1] == pytest.approx(-3.7e-3, rel=0.1) and np.abs(loss[1:] - loss[1]).max() <= 1e-12
+
+
+# Substeps of one half where the other makes the controller step of 1e-6 s; bound on the energy in 50 steps. Measured: 2e-12 (implicit), 1.1e-6, 1.3e-6 and
+# 4e-7 (explicit), whose staggered energy is not that of the force's mean
+UNEQUAL = {
+    "II-clamped-2": ("-clamped_ts_time_step 5e-7", 1e-10),
+    "II-clamped-4": ("-clamped_ts_time_step 2.5e-7", 1e-10),
+    "II-free-3": ("-free_ts_time_step 3.3333333333333335e-7", 1e-10),
+    "IE-clamped-2": (f"{PAIRINGS['IE']} -clamped_ts_time_step 5e-7", 1e-5),
+    "EI-clamped-2": (f"{PAIRINGS['EI']} -clamped_ts_time_step 5e-7", 1e-10),
+    "EE-clamped-2": (f"{PAIRINGS['EE']} -clamped_ts_time_step 5e-7", 1e-5),
+    "EI-free-2": (f"{PAIRINGS['EI']} -free_ts_time_step 5e-7", 1e-5),
+}
+
+
+@pytest.mark.parametrize("pairs", PAIRS, ids=["free-first", "clamped-first"])
+@pytest.mark.parametrize("case", UNEQUAL)
+def test_unequal_steps(case, pairs, shared_run):
+    """Ties act on the nodes with mass by their mean force over the substeps of a body, which does the partner's work."""
+    options, bound = UNEQUAL[case]
+    run = shared_run(f"{TIED} {options} -contact_pairs {pairs} -time_end 5e-5")
+    change = energy_changes(run)
+    assert np.abs(change).max() <= bound and change.max() <= 1e-7
+    if pairs == PAIRS[0]:
+        assert momentum_gap(run) <= 1e-11
+    assert run.summary["schwarz"]["max"] <= 6
+
+
+# 10 ms, in which published runs fail after 3 to 5 ms. Measured: in README.md
+LONG = [(kind, faces) for faces in ("20,4,2", "25,5,3", "40,8,4") for kind in PAIRINGS]
+
+
+@pytest.mark.parametrize("kind, faces", long(*LONG))
+def test_for_long(kind, faces, impakt):
+    run = impakt(f"{TIED} {PAIRINGS[kind]} -clamped_dm_plex_box_faces {faces} -time_end 1e-2", timeout=1800)
+    assert np.abs(energy_changes(run)).max() <= 5e-12
+
+
+@pytest.mark.parametrize("kind, step", long(("EE", 2.5e-7), ("IE", 2.5e-7), ("II", 1e-6)))
+def test_finest_mesh(kind, step, impakt):
+    """100 x 20 x 10 elements in the clamped half, 1 ms. Measured: 6e-15 (EE), 4e-13 (IE)."""
+    run = impakt(f"{TIED} {PAIRINGS[kind]} -clamped_dm_plex_box_faces 100,20,10 -time_step {step} -time_end 1e-3", timeout=3600)
+    assert np.abs(energy_changes(run)).max() <= 5e-12
+
+
+# Measured: 7e-11 in 10 ms (II); what explicit substeps take, 8e-4 in 10 ms, never anything that they bring
+@pytest.mark.parametrize("case, end, bound", long(("II-clamped-2", 2e-3, 1e-9), ("EE-clamped-2", 1e-2, 1e-3), ("EI-free-2", 1e-2, 1e-3)))
+def test_unequal_steps_for_long(case, end, bound, impakt):
+    change = energy_changes(impakt(f"{TIED} {UNEQUAL[case][0]} -time_end {end}", timeout=1800))
+    assert np.abs(change).max() <= bound and change.max() <= 1e-6
 
 
 def test_first_state(shared_run):
@@ -127,9 +209,15 @@ def test_first_state(shared_run):
 
 # The plain alternation: options, most sweeps; measured 7 to 17 (robin), 6, 21 (fixed), 6, 10 (aitken), 6 (impedance, with 26 by its default)
 PLAIN = "-schwarz_snes_type nrichardson -time_end 1e-5"
-MASSLESS = "-free_mass_redistribute true -clamped_mass_redistribute true"
 FINER = "-clamped_dm_plex_box_faces 25,5,3"
 SWEEPS = {
+    "fixed-massless": (f"-schwarz_snes_linesearch_damping 0.39 {MASSLESS}", 33),
+    "fixed-massless-finer": (f"-schwarz_snes_linesearch_damping 0.39 {MASSLESS} {FINER}", 36),
+    "aitken-massless": (f"-schwarz_relaxation aitken {MASSLESS}", 20),
+    "aitken-massless-finer": (f"-schwarz_relaxation aitken {MASSLESS} {FINER}", 24),
+    "aitken-unequal": ("-schwarz_relaxation aitken -clamped_ts_time_step 5e-7", 30),
+    "aitken-unequal-mixed": (f"-schwarz_relaxation aitken {PAIRINGS['IE']} -clamped_ts_time_step 5e-7", 30),
+    "robin-unequal": ("-schwarz_transmission robin -clamped_ts_time_step 5e-7", 12),
     "robin": ("-schwarz_transmission robin", 8),
     "robin-finer": (f"-schwarz_transmission robin {FINER}", 13),
     "robin-massless": (f"-schwarz_transmission robin {MASSLESS}", 13),
@@ -153,3 +241,12 @@ def test_plain_alternation(case, pairs, shared_run):
     run = shared_run(f"{TIED} {PLAIN} -contact_pairs {pairs} {more}")
     assert run.summary["schwarz"]["max"] <= sweeps
     assert run.summary["schwarz"]["unconverged_steps"] == 0
+
+
+@pytest.mark.parametrize("pairs", PAIRS, ids=["free-first", "clamped-first"])
+@pytest.mark.parametrize("damping", [0.6, 1.0])
+def test_relaxation_that_fails_is_told_what_converges(damping, pairs, impakt):
+    """Massless layers of hexahedra that mirror each other answer an error with up to 3 times as much, since normal and tangential forces have opposite signs. After
+    51 sweeps it is 2.73: 2 / 3.73 and 2 / (2 + 2.73 + 1 / 2.73) follow, whatever relaxation has failed. The second is that of test_plain_alternation()."""
+    run = impakt(f"{TIED} {PLAIN} {MASSLESS} -contact_pairs {pairs} -schwarz_snes_linesearch_damping {damping} -controller_step_cuts 0", expect_failure=True)
+    assert "with 2.73 times as much, or more" in run.stderr and "converges below 0.54, or less, best near 0.39" in run.stderr

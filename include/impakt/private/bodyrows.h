@@ -93,10 +93,20 @@ PETSC_EXTERN PetscErrorCode BodySetRoles(Body, const BodyCondition[]);
 PETSC_EXTERN PetscErrorCode BodyRespond(Body);
 PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 
+/* The balance of the massless layer in the first state */
+PETSC_EXTERN PetscErrorCode BodyIsOutOfBalance(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyMarkRows(Body, PetscBool[], PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodyRelaxLayer(Body, PetscScalar[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyMultiplyLayerCompliance(Body, const PetscScalar[], PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyMoveLayer(Body, const PetscScalar[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyStartUnderForces(Body, const PetscScalar[]);
+
 /* Forces and impulses on rows that act at one end of a step, and corrections of the state there */
 PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyDropStartForce(Body);
 PETSC_EXTERN PetscErrorCode BodyGetLevelEnergy(Body, PetscInt, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodySetMeanForces(Body, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodyGetMeanForces(Body, const PetscBool *[]);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);

@@ -82,6 +82,7 @@ typedef struct {
   PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
   PetscBool            allow_unstable;   /* what is known to gain energy runs all the same */
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
+  PetscBool            balanced_start;   /* massless nodes are brought into balance in the first state */
   PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
@@ -125,6 +126,7 @@ typedef struct {
 typedef struct {
   PetscBool *holds;    /* per row: its node was within the tie distance, whether the user holds it or not */
   PetscReal *distance; /* per row: the gap of its node along the normal then [m] */
+  PetscBool  by_mean;  /* over the substeps of a body ties with massless nodes act by their mean force, see BodySetMeanForces() */
 } ContactTies;
 
 /* Rows whose node is held, and their heirs, see src/contact/rows/heldrows.c */
@@ -195,6 +197,7 @@ typedef struct {
 typedef struct {
   PetscBool      limits;                  /* steps must not gain more than there is room for */
   const char    *unlimited;               /* why the method cannot have that, or NULL */
+  const char    *not_always;              /* why it cannot in every step, or NULL */
   PetscReal      excess;                  /* part of the energy that contact may bring out of nothing in the whole run */
   PetscReal      scale;                   /* that energy [J] */
   PetscBool      begun;                   /* it is known */
@@ -346,6 +349,8 @@ PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
+PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
+PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);

@@ -31,6 +31,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
+    if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyTurnToMeanForce(body));
     PetscCall(TSStep(body->time.ts));
     body->state.step++;
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;

@@ -291,7 +291,7 @@ PetscErrorCode BodyDestroy(Body *body)
   {
     Vec       *vecs[]   = {&b->start.a,       &b->iterate.u,    &b->mesh.positions, &b->mass.row_sum,  &b->mass.orphans,
                            &b->mass.diagonal, &b->mass.inverse, &b->work.nodes[0],  &b->work.nodes[1], &b->work.nodes[2],
-                           &b->work.rows[0],  &b->work.rows[1], &b->work.rows[2]};
+                           &b->work.rows[0],  &b->work.rows[1], &b->work.rows[2],   &b->start.change};
     BodyState *states[] = {&b->state, &b->saved, &b->kept, &b->substep_start};
     Trace     *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
                            &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
@@ -324,6 +324,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MaterialDestroy(&b->model.linearized_material));
   PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
   PetscCall(PetscFree(b->rows.kept_traces));
+  PetscCall(PetscFree(b->rows.by_mean));
   PetscCall(PetscFree4(b->rows.conditions, b->rows.constrained, b->rows.flexibility, b->rows.robin));
   PetscCall(PetscFree(b->mass.factor));
   PetscCall(PetscFree(b->layer.dofs));

@@ -129,24 +129,6 @@ PetscErrorCode BodySetFromOptions(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* M a = forces, where there are any */
-static PetscErrorCode ComputeInitialAcceleration(Body body)
-{
-  Vec       force = body->work.nodes[0];
-  PetscReal norm;
-
-  PetscFunctionBegin;
-  PetscCall(VecZeroEntries(force));
-  PetscCall(VecAXPY(force, -1, body->state.internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
-  PetscCall(BodyAddExternalForce(body, body->state.time, 1, force));
-  PetscCall(VecNorm(force, NORM_INFINITY, &norm));
-  PetscCall(VecZeroEntries(body->state.a));
-  PetscCall(BodySubtractHeldInertia(body, body->state.time, force, body->state.a));
-  if (norm > 0 || body->held.any) PetscCall(BodySolveMass(body, force, body->state.a));
-  if (body->integrator->has_inertia) PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, NULL, body->state.a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@C
   BodySetInitialState - sets displacement and velocity at the start, and the acceleration that belongs to them
 
@@ -188,7 +170,7 @@ PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscIn
   StepFailureClear(&body->failure);
   if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyNoteInverted(body));
   PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
-  PetscCall(ComputeInitialAcceleration(body));
+  PetscCall(BodyComputeStartAcceleration(body, NULL));
   PetscCall(BodyWriteTraces(body, 0));
   PetscCall(BodySetUpWork(body));
   PetscCall(BodySave(body));

@@ -118,6 +118,8 @@ typedef struct {
   PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
   BodyGram         gram;             /* of prescribed rows that are not orthonormal */
   PetscBool        any_oblique;      /* on any rank there are rows of one node that are not orthonormal */
+  PetscBool       *by_mean;          /* per local row: see BodySetMeanForces(); NULL: none */
+  PetscBool        any_by_mean;      /* on any rank */
   const PetscReal *weights;          /* of rows that depend on each other; borrowed, NULL: they are equal */
   BodyTractionType traction;
   PetscBool        have_mass; /* prescribed nodes carry mass, and take velocity and acceleration from their partner */
@@ -161,6 +163,7 @@ struct _p_Body {
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
     Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */
+    Vec       change;  /* work space of BodyTurnToMeanForce() [m/s^2]; NULL until BodySetMeanForces() */
     PetscBool changed; /* the saved acceleration is not that of the last step's end */
   } start;
   /* interface */
@@ -222,6 +225,7 @@ PETSC_INTERN PetscErrorCode BodyCopyHeld(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribeHeld(Body, PetscReal, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddExternalForce(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
+PETSC_INTERN PetscErrorCode BodyComputeStartAcceleration(Body, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyAddWork(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
 PETSC_INTERN PetscErrorCode BodyFindOrphans(Body);
@@ -240,6 +244,8 @@ PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyPrepareLayer(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyApplyLayerCompliance(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveLayer(Body, Vec, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMultiplyLayerTangent(Body, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerSolverDestroy(LayerSolver *);
@@ -256,6 +262,7 @@ PETSC_INTERN PetscBool      BodyHandsOver(Body);
 PETSC_INTERN PetscErrorCode BodySetHandoverRest(Body, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyAddStoppedHandover(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
+PETSC_INTERN PetscErrorCode BodyTurnToMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);

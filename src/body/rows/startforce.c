@@ -94,3 +94,91 @@ PetscErrorCode BodyDropStartForce(Body body)
   PetscCall(BodyRestore(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodySetMeanForces - forces on some rows act on nodes with mass by their mean over the controller step
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`, set up, with massless nodes on these rows
+- rows - for each row of this rank, whether its force does, where it is a forced row
+
+  Level: developer
+
+  Notes:
+  For forces that go linearly, from l_0 to l_1, over a controller step of m substeps. The massless layer is in balance with the force at the
+  end of each substep. The trapezoidal rule would have the force l_k do the work (l_{k-1} + l_k) / 2 dw_k in substep k, and the sum of these
+  is not that of a partner with other substeps, (l_0 + l_1) / 2 dw: a row that stays closed would bring energy or take it. Here each substep
+  starts with the force x_k = l_0 + l_1 - l_k on the nodes with mass, so that their mean is (l_0 + l_1) / 2 in all substeps. By the identity
+  of src/contact/energy/limit.c the energy changes by
+
+    dE = (l_0 + l_1) / 2 dw - 1/2 sum_k (x_k - l_{k-1}) C (l_k - l_{k-1}),
+
+  and that sum is zero. So both partners take and give the same, and the same impulse: exact for implicit bodies; the staggered energy of
+  explicit ones changes by terms that are smaller by the substep times a frequency.
+
+  Does nothing in nonlinear bodies, whose layers would have to be factored in each substep, and where there is one substep.
+
+.seealso: `Body`, `BodySetStartForce()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
+  if (!body->model.linear || !body->integrator->has_inertia || body->time.substeps == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->rows.by_mean) PetscCall(PetscCalloc1(body->rows.local, &body->rows.by_mean));
+  if (!body->start.change) PetscCall(BodyCreateVec(body, &body->start.change));
+  body->rows.any_by_mean = PETSC_FALSE;
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    body->rows.by_mean[i]  = rows[i];
+    body->rows.any_by_mean = (PetscBool)(body->rows.any_by_mean || rows[i]);
+  }
+  PetscCall(BodyAnyRank(body, &body->rows.any_by_mean));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetMeanForces - on which rows forces act by their mean over the controller step
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. rows - for each row of this rank, owned by the body; `NULL` where none do
+
+  Level: developer
+
+.seealso: `Body`, `BodySetMeanForces()`
+@*/
+PetscErrorCode BodyGetMeanForces(Body body, const PetscBool *rows[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(rows, 2);
+  *rows = body->rows.by_mean;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a substep, whose acceleration belongs to the forces at the end of the one before: to the forces that have the mean of the
+   controller step in this one, see BodySetMeanForces() */
+PetscErrorCode BodyTurnToMeanForce(Body body)
+{
+  const PetscInt  m    = body->time.substeps;
+  const PetscReal part = 1 - (PetscReal)(2 * body->time.substep + 1) / m;
+  PetscScalar    *start, *end, *more;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(body->traces.force_in, 0, &start));
+  PetscCall(TraceGetLevel(body->traces.force_in, m, &end));
+  PetscCall(VecGetArrayWrite(body->work.rows[1], &more));
+  for (PetscInt i = 0; i < body->rows.local; i++)
+    more[i] = body->rows.by_mean[i] && body->rows.conditions[i] == BODY_FORCED ? part * (end[i] - start[i]) : 0;
+  PetscCall(ComputeChange(body, more, body->start.change));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[1], &more));
+  PetscCall(VecAXPY(body->state.a, 1, body->start.change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -58,21 +58,30 @@ static PetscErrorCode CreateLayerSolver(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* du = K_LL^{-1} f_L on the layer, zero elsewhere, and the pull -K du on all nodes, of which those of the layer do not matter: both with
-   the tangent at displacement u, so that the pull amounts to the force on the layer. All are laid out as displacements; f is left alone. */
-PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du, Vec pull)
+/* Takes the tangent of the layer at displacement u for the solutions that follow; of a linear body it is always the same. Collective; for a
+   body with massless nodes on some rank. */
+PetscErrorCode BodyPrepareLayer(Body body, Vec u)
+{
+  LayerSolver layer = body->layer.solver;
+
+  PetscFunctionBegin;
+  if (!layer) PetscCall(CreateLayerSolver(body));
+  layer = body->layer.solver;
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGatherLayer(body, u, layer->point));
+  PetscCall(BodyAssembleLayer(body, layer->point, layer->K));
+  PetscCall(ConstrainedSolverRefactor(layer->own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* du = K_LL^{-1} f_L on the layer, zero elsewhere, with the tangent of the last BodyPrepareLayer(). Both are laid out as displacements; f
+   is left alone, and may be du. */
+PetscErrorCode BodyApplyLayerCompliance(Body body, Vec f, Vec du)
 {
   LayerSolver layer = body->layer.solver;
   KSP         ksp;
 
   PetscFunctionBegin;
-  if (!layer) PetscCall(CreateLayerSolver(body));
-  layer = body->layer.solver;
-  if (!body->model.linear) {
-    PetscCall(BodyGatherLayer(body, u, layer->point));
-    PetscCall(BodyAssembleLayer(body, layer->point, layer->K));
-    PetscCall(ConstrainedSolverRefactor(layer->own));
-  }
   PetscCall(VecScatterBegin(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(ConstrainedSolverGetKSP(layer->own ? layer->own : body->solver, &ksp));
@@ -80,8 +89,18 @@ PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du, Vec pull)
   PetscCall(VecZeroEntries(du));
   PetscCall(VecScatterBegin(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* du = K_LL^{-1} f_L on the layer, zero elsewhere, and the pull -K du on all nodes, of which those of the layer do not matter: both with
+   the tangent at displacement u, so that the pull amounts to the force on the layer. All are laid out as displacements; f is left alone. */
+PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du, Vec pull)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyPrepareLayer(body, u));
+  PetscCall(BodyApplyLayerCompliance(body, f, du));
   if (body->model.linear) PetscCall(BodyComputeInternalForce(body, du, pull));
-  else PetscCall(BodyMultiplyLayerTangent(body, layer->point, du, pull));
+  else PetscCall(BodyMultiplyLayerTangent(body, body->layer.solver->point, du, pull));
   PetscCall(VecScale(pull, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

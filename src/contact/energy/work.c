@@ -19,10 +19,14 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   ContactEnergy    *energy = &contact->energy;
   const BodyTraces *traces = &contact->traces[b];
   PetscReal        *last = energy->last, *now = energy->now;
+  const PetscBool  *by_mean;
+  PetscScalar      *first;
   PetscInt          substeps;
 
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+  PetscCall(BodyGetMeanForces(contact->bodies[b], &by_mean));
+  PetscCall(TraceGetLevel(traces->displacement, 0, &first));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
@@ -35,6 +39,11 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
     PetscCall(TraceGetLevel(traces->displacement, level, &after));
     PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
     for (PetscInt i = 0; i < contact->rows.n; i++) {
+      if (by_mean && by_mean[i]) { /* one force in all substeps */
+        if (level == substeps)
+          energy->pair_sums[2 * contact->rows.pair[i]] += 0.5 * (last[i] + now[i]) * PetscRealPart(after[i] - first[i]);
+        continue;
+      }
       energy->pair_sums[2 * contact->rows.pair[i]] += 0.5 * (last[i] + now[i]) * PetscRealPart(after[i] - before[i]);
       last[i] = now[i];
     }

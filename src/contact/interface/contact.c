@@ -36,14 +36,15 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCall(
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
-  (*contact)->options.facing       = PETSC_TRUE;
-  (*contact)->options.shared_times = PETSC_TRUE;
-  (*contact)->options.slip_bound   = SLIP_BOUND;
-  (*contact)->energy.limits        = PETSC_TRUE;
-  (*contact)->energy.excess        = ENERGY_EXCESS;
-  (*contact)->options.angle_bound  = ANGLE_BOUND;
-  (*contact)->options.tolerance    = PETSC_DEFAULT;
-  (*contact)->options.tie_distance = TIE_DISTANCE;
+  (*contact)->options.facing         = PETSC_TRUE;
+  (*contact)->options.shared_times   = PETSC_TRUE;
+  (*contact)->options.balanced_start = PETSC_TRUE;
+  (*contact)->options.slip_bound     = SLIP_BOUND;
+  (*contact)->energy.limits          = PETSC_TRUE;
+  (*contact)->energy.excess          = ENERGY_EXCESS;
+  (*contact)->options.angle_bound    = ANGLE_BOUND;
+  (*contact)->options.tolerance      = PETSC_DEFAULT;
+  (*contact)->options.tie_distance   = TIE_DISTANCE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -260,7 +261,9 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->options.stabilization]));
   if (contact->energy.unlimited) PetscCall(PetscViewerASCIIPrintf(viewer, "  energy not limited: %s\n", contact->energy.unlimited));
   else if (contact->energy.limits)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  energy limited: contact may gain %g of it in all\n", (double)contact->energy.excess));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  energy limited: contact may gain %g of it in all%s%s\n", (double)contact->energy.excess,
+                                     contact->energy.not_always ? "; not in every step, since " : "",
+                                     contact->energy.not_always ? contact->energy.not_always : ""));
   PetscTryTypeMethod(contact, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -32,6 +32,8 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.allow_unstable, &contact->options.allow_unstable, NULL));
   PetscCall(PetscOptionsBool("-contact_shared_times", "Contact holds at all times that all bodies have", "ContactSetSharedTimes",
                              contact->options.shared_times, &contact->options.shared_times, NULL));
+  PetscCall(PetscOptionsBool("-contact_balanced_start", "Massless nodes are brought into balance in the first state",
+                             "ContactSetBalancedStart", contact->options.balanced_start, &contact->options.balanced_start, NULL));
   PetscCall(PetscOptionsBool("-contact_energy_cap", "Steps that would gain energy at contact are made again", "ContactSetEnergyCap",
                              contact->energy.limits, &contact->energy.limits, NULL));
   PetscCall(PetscOptionsReal("-contact_energy_excess", "Part of the energy that contact may gain in the whole run", "ContactSetEnergyCap",
@@ -117,6 +119,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_allow_unstable (true|false)                          - whether choices that are known to gain energy run all the same
 . -contact_shared_times (true|false)                            - whether contact holds at all times that all bodies have in common, or
                                                                  at the ends of controller steps alone
+. -contact_balanced_start (true|false)                          - whether massless nodes are brought into balance in the first state
 . -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
 . -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
 - -contact_energy_tolerance t                                   - energy that contact may take or bring in a step, 1e-3

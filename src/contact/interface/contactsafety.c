@@ -110,6 +110,88 @@ PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
 }
 
 /*@
+  ContactGetUnlimitedReason - why steps may gain energy at contact in spite of `ContactSetEnergyCap()`
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameters:
++ always - the reason why no step is kept from it, or `NULL`
+- some   - the reason why some steps are not, or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetEnergyCap()`, `ContactView()`
+@*/
+PetscErrorCode ContactGetUnlimitedReason(Contact contact, const char *always[], const char *some[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (always) *always = contact->energy.unlimited;
+  if (some) *some = contact->energy.not_always;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetBalancedStart - whether massless nodes are brought into balance in the first state
+
+  Logically Collective
+
+  Input Parameters:
++ contact  - the `Contact`, not yet set up
+- balanced - true by default
+
+  Options Database Key:
+. -contact_balanced_start (true|false) - whether they are
+
+  Level: intermediate
+
+  Notes:
+  Initial displacements and loads need not leave massless nodes in balance. These have no inertia: at the end of the first step they would
+  be in balance all the same, at a loss of energy. So they are moved there before the run starts, under the forces of ties and closed
+  contacts, and what is compared with later is that state. All other nodes start as they have been told.
+
+  Where a body has no inertia, all bodies start as they have been told.
+
+.seealso: `Contact`, `ContactGetBalancedStart()`, `ContactCheckInitialGap()`, `BodySetMassRedistribute()`
+@*/
+PetscErrorCode ContactSetBalancedStart(Contact contact, PetscBool balanced)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, balanced, 2);
+  ContactCheckNotSetUp(contact);
+  contact->options.balanced_start = balanced;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetBalancedStart - whether massless nodes are brought into balance in the first state
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. balanced - whether they are
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetBalancedStart()`
+@*/
+PetscErrorCode ContactGetBalancedStart(Contact contact, PetscBool *balanced)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(balanced, 2);
+  *balanced = contact->options.balanced_start;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
 
   Logically Collective

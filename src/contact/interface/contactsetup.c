@@ -141,7 +141,8 @@ PetscErrorCode ContactSetUp(Contact contact)
 }
 
 /*@
-  ContactCheckInitialGap - takes the present states as the start: ties what lies on each other, and refuses bodies that overlap
+  ContactCheckInitialGap - takes the present states as the start: ties what lies on each other, refuses bodies that overlap, and brings
+  massless nodes into balance
 
   Collective
 
@@ -154,7 +155,9 @@ PetscErrorCode ContactSetUp(Contact contact)
   To be called again when the initial states have been changed after `ContactSetUp()`. Under `CONTACT_LAW_TIED` nodes within the tie
   distance of their partner are tied as they lie there; a pair that ties nothing, a gap above that distance or an overlap is an error.
 
-.seealso: `Contact`, `BodySetInitialState()`, `ContactSetTieDistance()`
+  Massless nodes go where loads, strains, ties and closed rows have them in balance, unless `ContactSetBalancedStart()` has said otherwise.
+
+.seealso: `Contact`, `BodySetInitialState()`, `ContactSetTieDistance()`, `ContactSetBalancedStart()`
 @*/
 PetscErrorCode ContactCheckInitialGap(Contact contact)
 {
@@ -175,6 +178,9 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   }
+  PetscCall(ContactSetMeanForces(contact));
+  PetscCall(ContactBalanceStart(contact));
+  PetscCall(ContactStartTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -99,6 +99,21 @@ PetscErrorCode ContactChooseTiedMass(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tells the bodies which rows act by their mean force, see BodySetMeanForces(), with the ties as they are now */
+PetscErrorCode ContactSetMeanForces(Contact contact)
+{
+  PetscBool *by_mean;
+
+  PetscFunctionBegin;
+  if (!contact->ties.by_mean) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(contact->rows.n, &by_mean));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    by_mean[i] = (PetscBool)(contact->rows.tied[i] && !contact->pairs[contact->rows.pair[i]].keeps_mass);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetMeanForces(contact->bodies[b], by_mean));
+  PetscCall(PetscFree(by_mean));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Gap rates of the first or second order in time at the start, from the bodies' traces */
 static PetscErrorCode GetStartRates(Contact contact, PetscInt order, PetscScalar rates[])
 {

@@ -294,6 +294,5 @@ PetscErrorCode ContactTie(Contact contact)
   }
   PetscCall(ContactDropDependentTies(contact));
   PetscTryTypeMethod(contact, rowschanged);
-  PetscCall(ContactStartTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

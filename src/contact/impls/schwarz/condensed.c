@@ -62,8 +62,11 @@ static PetscErrorCode CondensationPrevented(Contact contact, PetscBool mass, con
   else if (schwarz->convergence == SCHWARZ_CONVERGENCE_POSITION) *reason = "-schwarz_convergence position wants all nodes after each sweep";
   for (PetscInt b = 0; b < contact->n_bodies && !*reason; b++) {
     PetscBool exact;
+    PetscInt  substeps;
 
     PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    if (substeps > 1 && contact->ties.by_mean) *reason = "ties act by their mean force over the substeps of a body";
     if (!exact) *reason = "a body is nonlinear, or its integrator is not Newmark's";
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -97,6 +100,9 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
   PetscBool   prescribes, has;
 
   PetscFunctionBegin;
+  contact->ties.by_mean = (PetscBool)(contact->options.law == CONTACT_LAW_TIED && contact->options.shared_times &&
+                                      schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN &&
+                                      schwarz->waveform == SCHWARZ_WAVEFORM_LINEAR);
   PetscCall(PrescribesMass(contact, &prescribes));
   PetscCall(CondensationPrevented(contact, prescribes, &reason));
   PetscCheck(schwarz->condense != SCHWARZ_CONDENSE_ALWAYS || !reason, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,

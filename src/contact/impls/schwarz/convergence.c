@@ -103,9 +103,10 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
     if (!(change <= schwarz->atol || change <= schwarz->rtol * position)) schwarz->converged = PETSC_FALSE;
     if (change <= worst) continue;
     worst             = change;
-    schwarz->change   = change;
     schwarz->position = position;
   }
+  schwarz->growth = schwarz->change > 0 && !PetscIsInfOrNanReal(worst) ? worst / schwarz->change : 0;
+  schwarz->change = worst;
   /* what is left of the gap of a tie with mass becomes a force of 4 / dt^2 times that mass: Newton's method closes it to round-off, where
      the predictor alone would be near enough for positions */
   if (schwarz->tied.any && schwarz->newton && !schwarz->swept && worst > 0) schwarz->converged = PETSC_FALSE;
@@ -130,6 +131,34 @@ PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What a user who has chosen a fixed relaxation t should know when it has failed. A sweep takes the error e to -m e, m being ratios of the
+   compliance of both sides, and the relaxed iteration takes it to (1 - t (1 + m)) e. What changes by a factor of r > 1 - t in each sweep is
+   the error with the largest m, 1 + m = (1 + r) / t. Relaxations below 2 / (1 + m) converge, and 2 / (2 + m + 1 / m) is the best where 1 /
+   m is the smallest ratio, as between two sides that mirror each other. The error with the largest m may not have come up yet. */
+static PetscErrorCode AdviseRelaxation(Contact contact, char advice[], size_t size)
+{
+  Schwarz       *schwarz = (Schwarz *)contact->data;
+  SNESLineSearch line_search;
+  PetscReal      damping, ratio;
+  PetscBool      richardson;
+
+  PetscFunctionBegin;
+  advice[0] = 0;
+  PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
+  if (!richardson || schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
+  PetscCall(SNESLineSearchGetDamping(line_search, &damping));
+  ratio = (1 + schwarz->growth) / damping - 1;
+  if (!(schwarz->growth > 1 - damping) || !(ratio > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(
+      advice, size,
+      "The change becomes %.3g times as large in each sweep, since a sweep answers an error with %.3g times as much, or more: "
+      "-schwarz_snes_linesearch_damping, now %g, converges below %.2g, or less, best near %.2g; -schwarz_relaxation aitken and "
+      "-schwarz_transmission robin need no such number. ",
+      (double)schwarz->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)), (double)(2 / (2 + ratio + 1 / ratio))));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Where the iteration did not converge, the step has failed, or is counted */
 PetscErrorCode SchwarzCheckConverged(Contact contact)
 {
@@ -137,6 +166,7 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
   SNESConvergedReason reason;
   PetscReal           time;
   TS                  ts;
+  char                advice[512];
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(schwarz->outer.snes, &reason));
@@ -147,12 +177,13 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
   }
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTime(ts, &time));
+  PetscCall(AdviseRelaxation(contact, advice, sizeof(advice)));
   PetscCall(StepFailureSet(
       &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
       "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-      " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). Raise -schwarz_snes_max_it, loosen "
+      " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). %sRaise -schwarz_snes_max_it, loosen "
       "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
       (double)time, contact->counts.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
-      (double)schwarz->rtol));
+      (double)schwarz->rtol, advice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -116,6 +116,7 @@ typedef struct {
   PetscBool  *solved_active;    /* per row: the active set that the Jacobian belongs to */
   PetscBool   swept;            /* `previous` is of this step */
   PetscReal   change, position; /* of the last sweep: the body with the worst ratio */
+  PetscReal   growth;           /* of the change over that of the sweep before */
   PetscBool   converged;
   /* work space */
   PetscScalar *previous;     /* displacements of the rows of both bodies of each pair in the last sweep */

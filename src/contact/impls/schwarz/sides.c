@@ -64,6 +64,31 @@ static PetscErrorCode CheckSwappable(Contact contact, Vec row, Vec displacement)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reactions of prescribed nodes with mass at the ends of several substeps. Two plane blocks, lumped mass, the first 100 times as stiff:
+   with 2 substeps of it to a step of 1e-6 s the iteration diverges after 29 steps and, where that is accepted, the energy grows to 1e10 of
+   itself; with 3 and 4 the blocks gain 6.4 and 4.8 %, with one 3.6 %. Bars gain 1 % at most, with up to 50 substeps. */
+static PetscErrorCode CheckReactionSubsteps(Contact contact, Body dirichlet)
+{
+  const char *name = ((PetscObject)dirichlet)->name;
+  PetscBool   is_explicit;
+  PetscInt    substeps;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetSubsteps(dirichlet, &substeps));
+  if (substeps == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIsExplicit(dirichlet, &is_explicit));
+  PetscCheck(
+      !is_explicit, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-schwarz_traction reaction: body '%s' is explicit, takes displacements, and its contact nodes have mass: what they feel at the "
+      "end of a substep moves nothing in it; choose -schwarz_traction internal, or -%s_mass_redistribute true",
+      name, name);
+  PetscCall(
+      ContactRefuseUnstable(contact, (PetscBool)(contact->dim > 1),
+                            "-schwarz_traction reaction diverges or gains energy where contact nodes with mass take displacements over "
+                            "several substeps; choose -schwarz_traction internal, one substep, or -<body>_mass_redistribute true"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* With the inertia of prescribed nodes in the traction, their acceleration takes part in the iteration. It follows from their
    displacement where the Neumann side is implicit and makes one substep. */
 static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscInt side)
@@ -85,6 +110,7 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
              "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the "
              "controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true",
              ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
+  PetscCall(CheckReactionSubsteps(contact, dirichlet));
   schwarz->kinematic[2 * p + side] = PETSC_TRUE;
   for (PetscInt k = 0; k < 2; k++)
     if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->rows.n, 1, &schwarz->rate[k]));

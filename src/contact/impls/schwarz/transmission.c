@@ -102,6 +102,21 @@ static PetscErrorCode CheckBodies(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Robin conditions have a mixture of force and displacement go linearly between the times that both sides share. Where one side has more
+   substeps, its force does not: it brings another impulse and other work than the partner's. */
+static PetscErrorCode FindUnshared(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscInt substeps[2];
+
+    for (PetscInt side = 0; side < 2; side++) PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[side]], &substeps[side]));
+    if (substeps[0] != substeps[1])
+      contact->energy.not_always = "Robin and impedance conditions over unequal substeps keep neither momentum nor energy";
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Masses for the inelastic predictor; weights, and springs of the bodies, for Robin conditions */
 PetscErrorCode SchwarzSetUpTransmission(Contact contact)
 {
@@ -114,6 +129,7 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc3(contact->rows.n, &schwarz->weight, contact->rows.n, &schwarz->mass[0], contact->rows.n, &schwarz->mass[1]));
   if (robin) PetscCall(CheckBodies(contact));
+  if (robin) PetscCall(FindUnshared(contact));
   PetscCall(PetscCalloc1(contact->rows.n, &stiffness));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal impedance;

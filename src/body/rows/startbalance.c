@@ -1,0 +1,344 @@
+/*
+   The massless layer at the start of the simulation. Displacements of the user, strains and loads need not leave the layer in balance; the
+   first step would bring it there, at the cost of energy that belongs to no motion. So the layer is moved into the balance
+
+     internal force(u)_L = (forces from outside + B^T force)_L
+
+   before that, with the rest of the body where it is. The forces on the rows are sought by those who know what the rows have to do: here
+   are the answers of one body, with the tangent of its layer at the present displacement.
+*/
+#include <body/layout/bodyimpl.h>
+
+/* Changes of the layer below this part of positions and displacements of the nodes are round-off */
+#define ROUND_OFF (16 * PETSC_MACHINE_EPSILON)
+
+/* f = forces from outside and on the rows (NULL: none) less the internal force at the present displacement, which must have been computed
+ */
+static PetscErrorCode ComputeImbalance(Body body, const PetscScalar force[], Vec f)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(f));
+  PetscCall(VecAXPY(f, -1, body->state.internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
+  PetscCall(BodyAddExternalForce(body, body->state.time, 1, f));
+  if (!force) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(PetscArraycpy(row, force, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTransposeAdd(body->rows.free_matrix, body->work.rows[0], f, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* M a = forces, those on the rows (NULL: none) too, where there are any: the acceleration of the first state, whose internal force must
+   have been computed */
+PetscErrorCode BodyComputeStartAcceleration(Body body, const PetscScalar force[])
+{
+  Vec       f = body->work.nodes[0];
+  PetscReal norm;
+
+  PetscFunctionBegin;
+  PetscCall(ComputeImbalance(body, force, f));
+  PetscCall(VecNorm(f, NORM_INFINITY, &norm));
+  PetscCall(VecZeroEntries(body->state.a));
+  PetscCall(BodySubtractHeldInertia(body, body->state.time, f, body->state.a));
+  if (norm > 0 || body->held.any) PetscCall(BodySolveMass(body, f, body->state.a));
+  if (body->integrator->has_inertia) PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, NULL, body->state.a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the body has massless nodes on any rank, whose balance means anything; collective */
+static PetscErrorCode HasLayer(Body body, PetscBool *has)
+{
+  PetscFunctionBegin;
+  *has = (PetscBool)(body->layer.n_dofs > 0 && body->integrator->has_inertia);
+  PetscCall(BodyAnyRank(body, has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsOutOfBalance - whether forces from outside and internal forces of the massless layer differ at all
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up, before its first step
+
+  Output Parameter:
+. out - false also where no node is massless, and for a body without inertia
+
+  Level: developer
+
+.seealso: `Body`, `BodyRelaxLayer()`
+@*/
+PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
+{
+  Vec                f = body->work.nodes[0];
+  const PetscScalar *values;
+  PetscBool          has;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(out, 2);
+  *out = PETSC_FALSE;
+  PetscCall(HasLayer(body, &has));
+  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComputeImbalance(body, NULL, f));
+  PetscCall(VecGetArrayRead(f, &values));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++)
+    if (values[body->layer.dofs[i]] != 0) *out = PETSC_TRUE;
+  PetscCall(VecRestoreArrayRead(f, &values));
+  PetscCall(BodyAnyRank(body, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether each row has entries on dofs with a positive mark */
+static PetscErrorCode FindEntries(Body body, Vec marks, PetscBool found[])
+{
+  const PetscScalar *sums;
+  Mat                marked;
+
+  PetscFunctionBegin;
+  PetscCall(MatDuplicate(body->rows.free_matrix, MAT_COPY_VALUES, &marked));
+  PetscCall(MatDiagonalScale(marked, NULL, marks));
+  PetscCall(MatGetRowSumAbs(marked, body->work.rows[0]));
+  PetscCall(VecGetArrayRead(body->work.rows[0], &sums));
+  for (PetscInt i = 0; i < body->rows.local; i++) found[i] = (PetscBool)(PetscRealPart(sums[i]) > 0);
+  PetscCall(VecRestoreArrayRead(body->work.rows[0], &sums));
+  PetscCall(MatDestroy(&marked));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyMarkRows - which rows are of massless nodes of the body, and which of nodes with mass
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ massless - for each row of this rank, whether forces on it move the massless layer
+- mass     - for each row of this rank, whether forces on it act on nodes with mass, those of a body without inertia too
+
+  Level: developer
+
+.seealso: `Body`, `BodyMultiplyLayerCompliance()`
+@*/
+PetscErrorCode BodyMarkRows(Body body, PetscBool massless[], PetscBool mass[])
+{
+  Vec          marks = body->work.nodes[0];
+  PetscScalar *mark;
+  PetscBool    has;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(HasLayer(body, &has));
+  for (PetscInt massive = 0; massive < 2; massive++) {
+    PetscCall(VecSet(marks, massive));
+    PetscCall(VecGetArray(marks, &mark));
+    for (PetscInt i = 0; i < body->layer.n_dofs && has; i++) mark[body->layer.dofs[i]] = 1 - massive;
+    PetscCall(VecRestoreArray(marks, &mark));
+    PetscCall(FindEntries(body, marks, massive ? mass : massless));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest component of a vector's change, or zero where that is round-off */
+static PetscErrorCode MeasureChange(Body body, Vec du, PetscReal *change)
+{
+  PetscReal u, x;
+
+  PetscFunctionBegin;
+  PetscCall(VecNorm(du, NORM_INFINITY, change));
+  PetscCall(VecNorm(body->state.u, NORM_INFINITY, &u));
+  PetscCall(VecNorm(body->mesh.positions, NORM_INFINITY, &x));
+  if (*change <= ROUND_OFF * (u + x)) *change = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows of a vector */
+static PetscErrorCode GetRows(Body body, Vec vec, PetscScalar rows[])
+{
+  const PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(body->rows.free_matrix, vec, body->work.rows[0]));
+  PetscCall(VecGetArrayRead(body->work.rows[0], &values));
+  PetscCall(PetscArraycpy(rows, values, body->rows.local));
+  PetscCall(VecRestoreArrayRead(body->work.rows[0], &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyRelaxLayer - how far the rows would move if the massless layer went into balance without contact forces
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up, before its first step
+
+  Output Parameters:
++ displacement - of this rank's rows, beside what they have now; from the tangent of the layer at the present displacement, which the next
+                 calls of `BodyMultiplyLayerCompliance()` and `BodyMoveLayer()` use too [m]
+- change       - largest displacement of the layer, 0 where that is round-off [m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyIsOutOfBalance()`, `BodyMultiplyLayerCompliance()`, `BodyMoveLayer()`
+@*/
+PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *change)
+{
+  Vec       f = body->work.nodes[0], du = body->work.nodes[1];
+  PetscBool has;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(change, 3);
+  *change = 0;
+  PetscCall(PetscArrayzero(displacement, body->rows.local));
+  PetscCall(HasLayer(body, &has));
+  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyPrepareLayer(body, body->state.u));
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(ComputeImbalance(body, NULL, f));
+  PetscCall(BodyApplyLayerCompliance(body, f, du));
+  PetscCall(GetRows(body, du, displacement));
+  PetscCall(MeasureChange(body, du, change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyMultiplyLayerCompliance - displacement of the rows under forces on them, of the massless layer alone
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, after `BodyRelaxLayer()`
+- force - one for each row of this rank [N]
+
+  Output Parameter:
+. displacement - B K_LL^{-1} B^T force, one for each row of this rank [m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyRelaxLayer()`
+@*/
+PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[], PetscScalar displacement[])
+{
+  Vec          f = body->work.nodes[0], du = body->work.nodes[1];
+  PetscScalar *row;
+  PetscBool    has;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(HasLayer(body, &has));
+  if (!has) {
+    PetscCall(PetscArrayzero(displacement, body->rows.local));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(PetscArraycpy(row, force, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], f));
+  PetscCall(BodyApplyLayerCompliance(body, f, du));
+  PetscCall(GetRows(body, du, displacement));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyMoveLayer - moves the massless layer towards its balance under forces on the rows, into it if the body is linear
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, after `BodyRelaxLayer()`
+- force - one for each row of this rank [N]
+
+  Output Parameter:
+. change - largest displacement of the layer, 0 where that is round-off [m]
+
+  Level: developer
+
+  Note:
+  Displacements and their traces at the start change; `BodyStartUnderForces()` completes the state.
+
+.seealso: `Body`, `BodyRelaxLayer()`, `BodyStartUnderForces()`
+@*/
+PetscErrorCode BodyMoveLayer(Body body, const PetscScalar force[], PetscReal *change)
+{
+  Vec       f = body->work.nodes[0], du = body->work.nodes[1];
+  PetscBool has;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(change, 3);
+  PetscCheck(!body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before the first step");
+  *change = 0;
+  PetscCall(HasLayer(body, &has));
+  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComputeImbalance(body, force, f));
+  PetscCall(BodyApplyLayerCompliance(body, f, du));
+  PetscCall(MeasureChange(body, du, change));
+  PetscCall(VecAXPY(body->state.u, 1, du));
+  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.u, body->traces.displacement, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reactions of held dofs do no work against contact forces, which come from the partner */
+static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[])
+{
+  Vec                on_nodes = body->work.nodes[0];
+  const PetscScalar *contact;
+  PetscScalar       *row, *applied;
+
+  PetscFunctionBegin;
+  if (!body->loads || !body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(PetscArraycpy(row, force, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], on_nodes));
+  PetscCall(VecGetArrayRead(on_nodes, &contact));
+  PetscCall(VecGetArray(body->state.applied, &applied));
+  for (PetscInt i = 0; i < body->held.n; i++) applied[body->held.dofs[i]] -= contact[body->held.dofs[i]];
+  PetscCall(VecRestoreArray(body->state.applied, &applied));
+  PetscCall(VecRestoreArrayRead(on_nodes, &contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyStartUnderForces - takes the present displacement and velocity as the first state, in which forces act on the rows
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, before its first step
+- force - one for each row of this rank [N]
+
+  Level: developer
+
+  Note:
+  Acceleration, traces and work follow; the forces are the reactions at the start.
+
+.seealso: `Body`, `BodyMoveLayer()`, `BodySetInitialState()`
+@*/
+PetscErrorCode BodyStartUnderForces(Body body, const PetscScalar force[])
+{
+  PetscScalar *reaction;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->setup && !body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Call after BodySetUp(), before the first step");
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(BodyComputeStartAcceleration(body, force));
+  PetscCall(BodyWriteTraces(body, 0));
+  if (body->rows.global) {
+    PetscCall(TraceGetLevel(body->traces.reaction, 0, &reaction));
+    PetscCall(PetscArraycpy(reaction, force, body->rows.local));
+  }
+  PetscCall(BodySetUpWork(body));
+  PetscCall(SubtractFromReactions(body, force));
+  PetscCall(BodySave(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
