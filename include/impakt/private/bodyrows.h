@@ -36,6 +36,23 @@ typedef struct {
   Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
 } BodyTraces;
 
+/*S
+   BodySpringState - how the artificial springs of a floating body are stretched at the end of a controller step
+
+   Level: developer
+
+.seealso: `BodyMeasureSprings()`
+S*/
+typedef struct {
+  PetscReal stretch;      /* the largest [m] */
+  PetscReal displacement; /* the largest of the dofs that they pull at [m] */
+  PetscReal way;          /* the largest of these less that in the saved state [m] */
+  PetscReal size;         /* of the body: the longest edge of its box [m] */
+  PetscReal square;       /* of the stretch of all springs [m^2] */
+  PetscReal last_square;  /* the same when measured last, 0 the first time [m^2] */
+  PetscReal product;      /* of both [m^2] */
+} BodySpringState;
+
 /* Mesh and material, as contact methods scale by them */
 PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetContactElementSize(Body, PetscReal *);
@@ -77,6 +94,13 @@ PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeFreeRows(Body, PetscScalar[]);
+
+/* Static bodies that contact or ties alone hold */
+PETSC_EXTERN PetscErrorCode BodyIsFloating(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyResetSprings(Body);
+PETSC_EXTERN PetscErrorCode BodyMeasureSprings(Body, BodySpringState *);
+PETSC_EXTERN PetscErrorCode BodyMoveSprings(Body, PetscReal);
+PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);

@@ -222,6 +222,23 @@ typedef struct {
   PetscBool   again; /* the step before this one began at the same state, and has failed: rows and sides are those of this step already */
 } ContactAttempt;
 
+/* How the artificial springs of a body are moved in a controller step */
+typedef struct {
+  PetscInt  body;   /* its number */
+  PetscReal factor; /* by which they have been moved the last time, of their stretch */
+  PetscInt  waits;  /* times in which the factor could have been larger */
+  PetscInt  leaps;  /* times in which they have been moved as far as they may */
+} ContactSprings;
+
+/* Static bodies that contact or ties alone hold, see src/contact/interface/floating.c */
+typedef struct {
+  PetscInt        n;
+  ContactSprings *springs;      /* of each */
+  PetscReal      *start_force;  /* per row: at the start of the step [N] */
+  PetscBool      *start_active; /* the same, in contact */
+  PetscReal       time;         /* at which the step begins [s] */
+} ContactFloating;
+
 /* Work space */
 typedef struct {
   PetscReal     *speeds;     /* per body */
@@ -267,6 +284,7 @@ struct _p_Contact {
   ContactResultants resultants;
   ContactCounts     counts;
   ContactAttempt    attempt;
+  ContactFloating   floating;
   ContactWork       work;
   PetscBool         surfaces_known; /* ContactSetUpSurfaces() has been called */
   PetscBool         setup;          /* ContactSetUp() has been called */
@@ -349,6 +367,10 @@ PETSC_INTERN PetscErrorCode ContactNoteRebuild(Contact);
 PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpFloating(Contact);
+PETSC_INTERN PetscErrorCode ContactMakeStep(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyFloating(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
