@@ -36,6 +36,8 @@ typedef struct {
   Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
 } BodyTraces;
 
+#define BODY_MAX_SPRINGS 6 /* as many as a body has motions as if it were rigid */
+
 /*S
    BodySpringState - how the artificial springs of a floating body are stretched at the end of a controller step
 
@@ -44,13 +46,14 @@ typedef struct {
 .seealso: `BodyMeasureSprings()`
 S*/
 typedef struct {
-  PetscReal stretch;      /* the largest [m] */
-  PetscReal displacement; /* the largest of the dofs that they pull at [m] */
-  PetscReal way;          /* the largest of these less that in the saved state [m] */
-  PetscReal size;         /* of the body: the longest edge of its box [m] */
-  PetscReal square;       /* of the stretch of all springs [m^2] */
-  PetscReal last_square;  /* the same when measured last, 0 the first time [m^2] */
-  PetscReal product;      /* of both [m^2] */
+  PetscInt  n;
+  PetscReal stretch[BODY_MAX_SPRINGS]; /* [m] */
+  PetscReal stiffness;                 /* of each [N/m] */
+  PetscReal part;                      /* the same, in parts of that of the body */
+  PetscBool linear;                    /* the body is */
+  PetscReal displacement;              /* the largest of the dofs that they pull at [m] */
+  PetscReal way;                       /* the largest of these less that in the saved state [m] */
+  PetscReal size;                      /* of the body: the longest edge of its box [m] */
 } BodySpringState;
 
 /* Mesh and material, as contact methods scale by them */
@@ -99,7 +102,7 @@ PETSC_EXTERN PetscErrorCode BodyComputeFreeRows(Body, PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyIsFloating(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyResetSprings(Body);
 PETSC_EXTERN PetscErrorCode BodyMeasureSprings(Body, BodySpringState *);
-PETSC_EXTERN PetscErrorCode BodyMoveSprings(Body, PetscReal);
+PETSC_EXTERN PetscErrorCode BodyMoveSprings(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 
 /* Displacements of rows under contact forces: the interface compliance */

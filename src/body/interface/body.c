@@ -3,10 +3,6 @@
 #include <sys/citations.h>
 #include "bodysetup.h"
 
-/* Of the springs of static bodies that contact or ties alone hold, in parts of the body's own stiffness: stiff enough that round-off in
-   forces does not show in displacements, 1e-12 of them, and soft beside most of what holds a body */
-#define ARTIFICIAL_STIFFNESS 1e-2
-
 /*@
   BodyCreate - creates a body, whose mesh, material and integrator come from the program or from options that begin with its name
 
@@ -39,7 +35,7 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   (*body)->mass.type         = (BodyMassType)PETSC_DECIDE;
   (*body)->mass.redistribute = PETSC_TRUE;
   (*body)->mass.moments      = BODY_MASS_INERTIA;
-  (*body)->springs.part      = ARTIFICIAL_STIFFNESS;
+  (*body)->springs.part      = PETSC_DECIDE;
   PetscCall(ElementCreate(comm, &(*body)->model.element));
   PetscCall(ElementSetOptionsPrefix((*body)->model.element, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);

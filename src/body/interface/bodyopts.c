@@ -79,16 +79,15 @@ static PetscErrorCode ReadMass(Body body)
 static PetscErrorCode ReadStatic(Body body)
 {
   PetscReal part = body->springs.part;
+  PetscBool set;
 
   PetscFunctionBegin;
   if (body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)body);
   PetscCall(PetscOptionsReal("-artificial_stiffness", "Stiffness of springs where contact or ties alone hold the body, in parts of its own",
-                             "BodySetArtificialStiffness", part, &part, NULL));
+                             "BodySetArtificialStiffness", part, &part, &set));
   PetscOptionsEnd();
-  PetscCheck(part > 0 && part < PETSC_INFINITY, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-%sartificial_stiffness %g must be positive", ((PetscObject)body)->prefix, (double)part);
-  PetscCall(BodySetArtificialStiffness(body, part));
+  if (set) PetscCall(BodySetArtificialStiffness(body, part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,7 +108,7 @@ static PetscErrorCode ReadStatic(Body body)
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
 . -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
-. -<body>_artificial_stiffness part                  - of a static body that contact or ties alone hold, default 1e-4
+. -<body>_artificial_stiffness part                  - of a static body that contact or ties alone hold, default 1e-2, nonlinear 1
 . -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
 - -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
 

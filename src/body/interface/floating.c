@@ -10,20 +10,20 @@
 
   Input Parameters:
 + body - the `Body`, not yet set up
-- part - of the force that the body sets against a uniform stretch along its longest edge, by the elongation; positive
+- part - of the least that the body sets against being stretched along its longest edge and bent, by force over displacement; positive
 
   Options Database Key:
-. -<body>_artificial_stiffness part - the part, 1e-4
+. -<body>_artificial_stiffness part - the part, 1e-2, of a nonlinear body 1
 
   Level: advanced
 
   Notes:
-  Springs hold the body while the contact forces are found. They are moved after it, and the step is solved again, until they do not pull
+  Springs hold the body while the contact forces are found. They are moved then, and the step is solved again, until they do not pull
   any more: so results do not depend on them, but for round-off, which the displacement of the body as a whole has by the inverse of the
-part more of.
+  part more of.
 
-  Each time the pull falls to part / (part + c), c being what contact sets against motions of the body as a whole, in the same unit. Choose
-  a larger part where a nonlinear body is moved so far at first that Newton's method fails.
+  The softer the springs, the fewer times that takes where contact is soft, and where the active set changes much. In a nonlinear body they
+  have to hold against what Newton's method leaves.
 
 .seealso: `Body`, `BodyGetArtificialStiffness()`, `BodyIsFloating()`, `BodyAddDisplacement()`
 @*/
@@ -48,7 +48,7 @@ PetscErrorCode BodySetArtificialStiffness(Body body, PetscReal part)
 . body - the `Body`
 
   Output Parameter:
-. part - see `BodySetArtificialStiffness()`
+. part - see `BodySetArtificialStiffness()`; `PETSC_DECIDE` where the default has not been chosen yet
 
   Level: advanced
 
@@ -122,13 +122,12 @@ PetscErrorCode BodyResetSprings(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(GatherDisplacements(body, body->saved.u, body->springs.start));
   PetscCall(PetscArraycpy(body->springs.place, body->springs.start, BODY_MAX_RIGID));
-  PetscCall(PetscArrayzero(body->springs.stretch, BODY_MAX_RIGID));
   body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  BodyMeasureSprings - how the artificial springs of a floating body are stretched by the step that has been made
+  BodyMeasureSprings - how the artificial springs of a floating body are stretched at the end of the step that has been made
 
   Collective
 
@@ -136,7 +135,7 @@ PetscErrorCode BodyResetSprings(Body body)
 . body - the `Body`, integrated
 
   Output Parameter:
-. state - at the end of the step, and how it has changed since the last call
+. state - the same on every rank
 
   Level: developer
 
@@ -145,48 +144,44 @@ PetscErrorCode BodyResetSprings(Body body)
 PetscErrorCode BodyMeasureSprings(Body body, BodySpringState *state)
 {
   BodySprings *springs = &body->springs;
-  PetscReal    reached[BODY_MAX_RIGID];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(state, 2);
   PetscCall(PetscMemzero(state, sizeof(*state)));
-  state->size = springs->size;
-  PetscCall(GatherDisplacements(body, body->state.u, reached));
+  state->n         = springs->n;
+  state->stiffness = springs->stiffness;
+  state->part      = springs->part;
+  state->linear    = body->model.linear;
+  state->size      = springs->size;
+  PetscCall(GatherDisplacements(body, body->state.u, springs->reached));
   for (PetscInt k = 0; k < springs->n; k++) {
-    const PetscReal last = springs->stretch[k];
-
-    springs->stretch[k] = reached[k] - springs->place[k];
-    state->stretch      = PetscMax(state->stretch, PetscAbsReal(springs->stretch[k]));
-    state->displacement = PetscMax(state->displacement, PetscAbsReal(reached[k]));
-    state->way          = PetscMax(state->way, PetscAbsReal(reached[k] - springs->start[k]));
-    state->square += PetscSqr(springs->stretch[k]);
-    state->last_square += PetscSqr(last);
-    state->product += springs->stretch[k] * last;
+    state->stretch[k]   = springs->reached[k] - springs->place[k];
+    state->displacement = PetscMax(state->displacement, PetscAbsReal(springs->reached[k]));
+    state->way          = PetscMax(state->way, PetscAbsReal(springs->reached[k] - springs->start[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  BodyMoveSprings - moves the places at which the artificial springs of a floating body are at rest to where the body has come
+  BodyMoveSprings - moves the places at which the artificial springs of a floating body are at rest
 
   Logically Collective
 
   Input Parameters:
-+ body   - the `Body`, after `BodyMeasureSprings()`
-- factor - 1, or more to go on in the same direction
++ body - the `Body`
+- move - of each spring [m]; by its stretch: to where the body has come
 
   Level: developer
 
 .seealso: `Body`, `BodyMeasureSprings()`, `BodyResetSprings()`
 @*/
-PetscErrorCode BodyMoveSprings(Body body, PetscReal factor)
+PetscErrorCode BodyMoveSprings(Body body, const PetscReal move[])
 {
-  BodySprings *springs = &body->springs;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  for (PetscInt k = 0; k < springs->n; k++) springs->place[k] += factor * springs->stretch[k];
+  if (body->springs.n) PetscAssertPointer(move, 2);
+  for (PetscInt k = 0; k < body->springs.n; k++) body->springs.place[k] += move[k];
   body->repeats = PETSC_FALSE; /* the end state was found with the springs where they have been */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -218,7 +213,7 @@ PetscErrorCode BodyDescribeDrift(Body body, size_t size, char text[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(text, 3);
   PetscCall(PetscArraycpy(matrix, springs->at_springs, springs->n * springs->n));
-  for (PetscInt k = 0; k < springs->n; k++) amounts[k] = springs->place[k] + springs->stretch[k] - springs->start[k];
+  for (PetscInt k = 0; k < springs->n; k++) amounts[k] = springs->reached[k] - springs->start[k];
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&order, &one, matrix, &order, pivots, amounts, &order, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv info %d", (int)info);
   for (PetscInt k = 0; k < springs->n; k++)

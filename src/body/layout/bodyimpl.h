@@ -148,7 +148,7 @@ typedef struct {
   PetscReal at_springs[BODY_MAX_RIGID * BODY_MAX_RIGID]; /* the free motions at the springs, free motions x springs */
   PetscReal start[BODY_MAX_RIGID];                       /* per spring, on every rank: displacement in the saved state [m] */
   PetscReal place[BODY_MAX_RIGID];                       /* per spring, on every rank: displacement at which it is at rest [m] */
-  PetscReal stretch[BODY_MAX_RIGID]; /* per spring: displacement at the end of the step, when measured last, less the place then [m] */
+  PetscReal reached[BODY_MAX_RIGID]; /* per spring, on every rank: displacement at the end of the step that was measured last [m] */
 } BodySprings;
 
 struct _p_Body {

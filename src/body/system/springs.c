@@ -11,6 +11,11 @@
 */
 #include "held.h"
 
+/* Of the springs, in parts of the body's own stiffness, by default: soft beside what holds a body, and stiff enough that round-off in
+   forces does not show in displacements, which is 1e-14 of them over the part with linear bodies, and what Newton's method leaves with
+   others */
+#define LINEAR_PART    1e-2
+#define NONLINEAR_PART 1
 /* The strain of the displacements by which a body's stiffness is measured: small, since the material may be nonlinear */
 #define STRAIN 1e-6
 
@@ -124,6 +129,7 @@ PetscErrorCode BodySetUpSprings(Body body, PetscInt n_free, const PetscReal free
   if (!n_free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetRigidFrame(body, &frame));
   PetscCall(GetStiffness(body, &frame, &springs->stiffness));
+  if (springs->part == PETSC_DECIDE) springs->part = body->model.linear ? LINEAR_PART : NONLINEAR_PART;
   springs->stiffness *= springs->part;
   springs->size = frame.size;
   PetscCall(PetscArraycpy(springs->motions, free, n_free * frame.n));

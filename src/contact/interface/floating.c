@@ -2,61 +2,61 @@
    Controller steps of static bodies that contact or ties alone hold. Such a body has artificial springs (src/body/system/springs.c), with
    which the method makes its step as with any other body. The step is made again with the springs at rest where the body has come to, until
    they do not pull: that is the step without springs. Whatever the method, and whatever it does in a step, is the same each time.
-
-   Where the stretch of a body does not fall much from one time to the next, and keeps its direction, its springs go on farther that way: to
-   the limit of a stretch that falls by a constant ratio. Where that is far, as for a body that falls freely until it comes to what it lands
-   on, they leap by its size, then by GROWTH times that, and so on. A body that has gone FAR times its size is held by nothing.
+   src/contact/interface/springmoves.c has by how much the springs are moved.
 */
-#include <impakt/private/contactimpl.h>
+#include "floating.h"
 
-/* Times that a step is made; 2 to 4 are enough where contact is not much softer than the bodies */
+/* Times that a step is made: 3 to 12 are enough for most */
 #define MAX_TIMES 200
-/* Springs do not pull where their stretch is below this part of the displacements that they pull at; what is left of it in the
-   displacements is smaller by the ratio of the stiffnesses, some 1e-3 */
-#define STRETCH_RTOL 1e-10
-/* or, where it does not get smaller any more, below so many times the tolerance on positions */
+/* Springs do not pull where their stretch is below this part of the displacements that they pull at */
+#define STRETCH_RTOL 1e-12
+/* or, where it has not fallen for so many times, below so many times the tolerance on positions: that is the round-off of contact forces */
 #define STRETCH_ATOL 10
-/* A stretch that is above this part of the last one does not fall */
-#define FALLS  0.5
-#define GROWTH 8.0
-#define FAR    100
-/* Factors up to NEAR are taken at once. For larger ones MAX_WAITS times pass first, unless the factor is above FREE, for parts of the
-   stretch that fall fast to be gone: they would grow by the factor. A stretch whose limit is then still above STEADY times what it is does
-   not fall: what it changes by is round-off. */
-#define NEAR      20
-#define FREE      1e6
-#define STEADY    1e3
-#define MAX_WAITS 6
-/* Cosine from which on two stretches have one direction */
-#define ALONG 0.9
+#define MAX_STALLS   3
+/* A stretch above this part of the last one does not fall */
+#define FALLS 0.5
+/* One that changes by less than this part of it is steady */
+#define STEADY 1e-3
+/* Way of a body, in parts of its size, after which nothing is thought to hold it */
+#define FAR           100
+#define FAR_NONLINEAR 3
 
+/* After the bodies and the rows */
 PetscErrorCode ContactSetUpFloating(Contact contact)
 {
+  ContactFloating *f = &contact->floating;
+  const PetscInt   n = contact->n_bodies;
+
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+  PetscCall(PetscCalloc2(n, &f->bodies, n, &f->states));
+  for (PetscInt b = 0; b < n; b++) {
     PetscBool floating;
 
     PetscCall(BodyIsFloating(contact->bodies[b], &floating));
-    if (floating) contact->floating.n++;
+    if (!floating) continue;
+    PetscCall(BodyMeasureSprings(contact->bodies[b], &f->states[f->n]));
+    f->bodies[f->n] = (ContactSprings){.body = b, .begin = f->n_springs};
+    f->n_springs += f->states[f->n++].n;
   }
-  if (!contact->floating.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(contact->floating.n, &contact->floating.springs));
-  PetscCall(PetscCalloc2(contact->rows.n, &contact->floating.start_force, contact->rows.n, &contact->floating.start_active));
-  contact->floating.n = 0;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool floating;
-
-    PetscCall(BodyIsFloating(contact->bodies[b], &floating));
-    if (floating) contact->floating.springs[contact->floating.n++].body = b;
-  }
+  if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc4(f->n_springs, &f->root, f->n_springs, &f->stretch, f->n_springs, &f->last, f->n_springs, &f->move));
+  PetscCall(PetscCalloc4((SPRINGS_HISTORY + 1) * f->n_springs, &f->moves, (SPRINGS_HISTORY + 1) * f->n_springs, &f->changes,
+                         SPRINGS_HISTORY * f->n_springs, &f->basis, SPRINGS_HISTORY * f->n_springs, &f->directions));
+  PetscCall(PetscCalloc2(contact->rows.n, &f->start_force, contact->rows.n, &f->start_active));
+  for (PetscInt k = 0; k < f->n; k++)
+    for (PetscInt i = 0; i < f->states[k].n; i++) f->root[f->bodies[k].begin + i] = PetscSqrtReal(f->states[k].stiffness);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ContactDestroyFloating(Contact contact)
 {
+  ContactFloating *f = &contact->floating;
+
   PetscFunctionBegin;
-  PetscCall(PetscFree(contact->floating.springs));
-  PetscCall(PetscFree2(contact->floating.start_force, contact->floating.start_active));
+  PetscCall(PetscFree2(f->bodies, f->states));
+  PetscCall(PetscFree4(f->root, f->stretch, f->last, f->move));
+  PetscCall(PetscFree4(f->moves, f->changes, f->basis, f->directions));
+  PetscCall(PetscFree2(f->start_force, f->start_active));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,56 +75,44 @@ static PetscErrorCode RefuseUnheld(Contact contact, Body body)
       name, (double)contact->floating.time, motion, name);
 }
 
-/* How the springs of a body are moved next, from how they are stretched now */
-static void ChooseFactor(const BodySpringState *state, ContactSprings *springs)
+/* How the springs of all bodies are stretched; whether they have come to rest */
+static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
 {
-  const PetscReal norm = PetscSqrtReal(state->square), last_norm = PetscSqrtReal(state->last_square);
-  const PetscReal change = PetscSqrtReal(PetscMax(state->square - 2 * state->product + state->last_square, 0));
-  const PetscReal limit  = change > 0 ? springs->factor * last_norm / change : PETSC_MAX_REAL;
-  const PetscReal leap   = state->size * PetscPowRealInt(GROWTH, springs->leaps) / norm;
-
-  springs->factor = 1;
-  if (last_norm == 0 || norm < FALLS * last_norm || state->product < ALONG * norm * last_norm) {
-    springs->waits = 0;
-    return;
-  }
-  if (limit > NEAR && limit < FREE && springs->waits < MAX_WAITS) {
-    springs->waits++;
-    return;
-  }
-  springs->waits  = 0;
-  springs->factor = PetscMax(1, limit > STEADY ? leap : PetscMin(limit, leap));
-  if (limit > PetscMin(leap, STEADY)) springs->leaps++;
-}
-
-/* Whether the springs of all bodies have come to rest; else they are moved */
-static PetscErrorCode Move(Contact contact, PetscInt times, PetscBool *rest)
-{
-  const PetscReal atol = STRETCH_ATOL * CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  const PetscReal  atol = STRETCH_ATOL * CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  ContactFloating *f    = &contact->floating;
 
   PetscFunctionBegin;
   *rest = PETSC_TRUE;
-  for (PetscInt k = 0; k < contact->floating.n; k++) {
-    const Body      body    = contact->bodies[contact->floating.springs[k].body];
-    ContactSprings *springs = &contact->floating.springs[k];
-    BodySpringState state;
-    PetscBool       falls;
+  PetscCall(PetscArraycpy(f->last, f->stretch, f->n_springs));
+  for (PetscInt k = 0; k < f->n; k++) {
+    ContactSprings  *springs = &f->bodies[k];
+    BodySpringState *state   = &f->states[k];
+    const Body       body    = contact->bodies[springs->body];
+    PetscReal        most = 0, square = 0, last = 0, change = 0;
 
-    PetscCall(BodyMeasureSprings(body, &state));
-    falls = (PetscBool)(times == 0 || state.square <= PetscSqr(FALLS) * state.last_square);
-    if (state.stretch > STRETCH_RTOL * state.displacement && (falls || state.stretch > atol)) *rest = PETSC_FALSE;
-    if (!falls && state.way > FAR * state.size && state.stretch > atol) PetscCall(RefuseUnheld(contact, body));
-    ChooseFactor(&state, springs);
-    PetscCall(PetscInfo(contact, "body '%s': springs stretched by %g m after %g m, made %" PetscInt_FMT " times, moved by %g of it next\n",
-                        ((PetscObject)body)->name, (double)state.stretch, (double)state.way, times + 1, (double)springs->factor));
+    PetscCall(BodyMeasureSprings(body, state));
+    for (PetscInt i = 0; i < state->n; i++) {
+      const PetscInt at = springs->begin + i;
+
+      f->stretch[at] = f->root[at] * state->stretch[i];
+      most           = PetscMax(most, PetscAbsReal(state->stretch[i]));
+      square += PetscSqr(f->stretch[at]);
+      last += PetscSqr(f->last[at]);
+      change += PetscSqr(f->stretch[at] - f->last[at]);
+    }
+    springs->stalls = times && square > PetscSqr(FALLS) * last ? springs->stalls + 1 : 0;
+    springs->steady = times && most > atol && change < PetscSqr(STEADY) * last ? springs->steady + 1 : 0;
+    if (most > STRETCH_RTOL * state->displacement && (springs->stalls < MAX_STALLS || most > atol)) *rest = PETSC_FALSE;
+    if (springs->stalls && state->way > (state->linear ? FAR : FAR_NONLINEAR) * state->size && most > atol)
+      PetscCall(RefuseUnheld(contact, body));
+    PetscCall(PetscInfo(contact, "body '%s': springs stretched by %g m after a way of %g m, step made %" PetscInt_FMT " times\n",
+                        ((PetscObject)body)->name, (double)most, (double)state->way, times + 1));
   }
-  for (PetscInt k = 0; k < contact->floating.n && !*rest; k++)
-    PetscCall(BodyMoveSprings(contact->bodies[contact->floating.springs[k].body], contact->floating.springs[k].factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step of the method, from where contact has been the last time; not its released rows, whose forces fade from where they were at the
-   start */
+/* The step of the method, from where contact has been the last time; but not where rows that are let go have forces that fade from what
+   they were at the start */
 static PetscErrorCode MakeStep(Contact contact, PetscBool first)
 {
   const PetscBool again = contact->energy.again;
@@ -140,39 +128,51 @@ static PetscErrorCode MakeStep(Contact contact, PetscBool first)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The method's step, as often as floating bodies need it */
-PetscErrorCode ContactMakeStep(Contact contact)
+/* The step from the saved states with springs at rest there; then as often as they pull */
+static PetscErrorCode MakeStepOfFloating(Contact contact)
 {
-  ContactFloating *floating = &contact->floating;
-  PetscBool        rest     = (PetscBool)!floating->n;
-  PetscInt         times    = 0;
+  ContactFloating *f    = &contact->floating;
+  PetscBool        rest = PETSC_FALSE;
   TS               ts;
 
   PetscFunctionBegin;
-  if (rest) {
+  PetscCall(BodyGetTS(contact->bodies[f->bodies[0].body], &ts));
+  PetscCall(TSGetTime(ts, &f->time));
+  f->n_history = f->plain = 0;
+  f->patience             = 2;
+  f->leapt                = PETSC_FALSE;
+  for (PetscInt k = 0; k < f->n; k++) {
+    f->bodies[k].leaps = f->bodies[k].steady = f->bodies[k].stalls = 0;
+    PetscCall(BodyResetSprings(contact->bodies[f->bodies[k].body]));
+  }
+  for (PetscInt times = 0; times < MAX_TIMES && !rest; times++) {
+    PetscCall(MakeStep(contact, (PetscBool)(times == 0)));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(Measure(contact, times, &rest));
+    if (!rest) PetscCall(SpringsMove(contact, (PetscBool)(times > 0)));
+  }
+  if (!rest)
+    PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                             "Static bodies that contact or ties alone hold have not come to rest in the step from time %.9g s, which has "
+                             "been made %d times: -info tells of their springs. Choose a smaller -time_step, or prescribe displacements",
+                             (double)f->time, MAX_TIMES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The method's step, as often as floating bodies need it */
+PetscErrorCode ContactMakeStep(Contact contact)
+{
+  ContactFloating *f = &contact->floating;
+
+  PetscFunctionBegin;
+  if (!f->n) {
     PetscUseTypeMethod(contact, step);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodyGetTS(contact->bodies[floating->springs[0].body], &ts));
-  PetscCall(TSGetTime(ts, &floating->time));
-  for (PetscInt k = 0; k < floating->n; k++) {
-    floating->springs[k] = (ContactSprings){.body = floating->springs[k].body, .factor = 1};
-    PetscCall(BodyResetSprings(contact->bodies[floating->springs[k].body]));
-  }
-  PetscCall(PetscArraycpy(floating->start_force, contact->start.force, contact->rows.n));
-  PetscCall(PetscArraycpy(floating->start_active, contact->start.active, contact->rows.n));
-  while (!rest && times < MAX_TIMES) {
-    PetscCall(MakeStep(contact, (PetscBool)(times == 0)));
-    if (ContactFailed(contact)) break;
-    PetscCall(Move(contact, times++, &rest));
-  }
-  PetscCall(PetscArraycpy(contact->start.force, floating->start_force, contact->rows.n));
-  PetscCall(PetscArraycpy(contact->start.active, floating->start_active, contact->rows.n));
-  if (!rest && !ContactFailed(contact))
-    PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
-                             "Static bodies that contact or ties alone hold have not come to rest in the step from time %.9g s, which has "
-                             "been made %d times; are their contact stiffnesses, or their shapes, far apart? A smaller "
-                             "-<body>_artificial_stiffness makes fewer times do",
-                             (double)floating->time, MAX_TIMES));
+  PetscCall(PetscArraycpy(f->start_force, contact->start.force, contact->rows.n));
+  PetscCall(PetscArraycpy(f->start_active, contact->start.active, contact->rows.n));
+  PetscCall(MakeStepOfFloating(contact));
+  PetscCall(PetscArraycpy(contact->start.force, f->start_force, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->start.active, f->start_active, contact->rows.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
