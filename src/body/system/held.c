@@ -120,7 +120,7 @@ static PetscErrorCode RefuseLoose(Body body, PetscInt n_free, const PetscReal fr
    that too few nodes with mass hold. */
 PetscErrorCode BodyCheckHeld(Body body)
 {
-  PetscReal free[BODY_MAX_RIGID * BODY_MAX_RIGID];
+  PetscReal free[BODY_MAX_RIGID * BODY_MAX_RIGID], rows;
   PetscInt  n_free;
   PetscBool layer = (PetscBool)(body->layer.n_dofs > 0);
 
@@ -128,7 +128,8 @@ PetscErrorCode BodyCheckHeld(Body body)
   PetscCall(BodyAnyRank(body, &layer));
   if (!body->integrator->has_inertia) {
     PetscCall(FindFreeMotions(body, body->held.n, body->held.dofs, PETSC_FALSE, &n_free, free));
-    if (n_free && !body->rows.global) PetscCall(RefuseLoose(body, n_free, free));
+    PetscCall(MatNorm(body->rows.matrix, NORM_FROBENIUS, &rows)); /* the rows of all pairs are there, those of others empty */
+    if (n_free && rows == 0) PetscCall(RefuseLoose(body, n_free, free));
     PetscCall(BodySetUpSprings(body, n_free, free));
   }
   if (layer) {

@@ -18,6 +18,12 @@
 #define NONLINEAR_PART 1
 /* The strain of the displacements by which a body's stiffness is measured: small, since the material may be nonlinear */
 #define STRAIN 1e-6
+/* Squares of free motions: all of a translation is 1. One of the node in the middle counts as MIDDLE_FIRST more if it is above DIFFERS. */
+#define DIFFERS      0.1
+#define MIDDLE_FIRST 1e3
+/* A dof counts less the farther its node lies from the middle along its own axis, by this part at the size of the body: it moves where the
+   body as a whole widens, and would take it along in a direction in which nothing holds it */
+#define SPREAD 1.8
 
 /* Force by displacement that the body sets against being stretched along an axis (`across` is the same), or bent: its axis to a parabola
    in the plane of both [N/m] */
@@ -65,9 +71,38 @@ static PetscErrorCode GetStiffness(Body body, const RigidFrame *frame, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The owned node nearest to the middle of the body's box, on the rank that has it; -1 on others */
+static PetscErrorCode FindMiddle(Body body, const RigidFrame *frame, PetscInt *middle)
+{
+  struct {
+    double value;
+    int    rank;
+  } nearest = {PETSC_MAX_REAL, 0};
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)body), &rank));
+  nearest.rank = rank;
+  *middle      = -1;
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
+    PetscReal square = 0;
+
+    for (PetscInt d = 0; d < body->mesh.dim; d++) square += PetscSqr(body->mesh.coordinates[node * body->mesh.dim + d] - frame->centre[d]);
+    if ((double)square >= nearest.value) continue;
+    nearest.value = (double)square;
+    *middle       = node;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPI_DOUBLE_INT, MPI_MINLOC, PetscObjectComm((PetscObject)body)));
+  if (nearest.rank != rank) *middle = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The dof at which the free motions differ most from those that the springs so far hold, by Gram and Schmidt; -1 on ranks that do not own
-   it. `held`: what the free motions are at the dofs of these springs, orthonormal. */
-static PetscErrorCode PlaceSpring(Body body, const RigidFrame *frame, PetscInt n_free, const PetscReal free[], PetscReal held[], PetscInt n)
+   it. Dofs of the node in the middle come first, where they differ at all: so a body that may slide stays where its middle is, and one that
+   may turn turns about it. `held`: what
+   the free motions are at the dofs of these springs, orthonormal. */
+static PetscErrorCode PlaceSpring(Body body, const RigidFrame *frame, PetscInt middle, PetscInt n_free, const PetscReal free[],
+                                  PetscReal held[], PetscInt n)
 {
   PetscReal row[BODY_MAX_RIGID], motion[BODY_MAX_RIGID], both[2 * BODY_MAX_RIGID] = {0}, norm;
   PetscInt  next = 0;
@@ -100,6 +135,8 @@ static PetscErrorCode PlaceSpring(Body body, const RigidFrame *frame, PetscInt n
       for (PetscInt k = 0; k < n_free; k++) row[k] -= dot * held[m * n_free + k];
     }
     for (PetscInt k = 0; k < n_free; k++) square += PetscSqr(row[k]);
+    square *= 1 - SPREAD * PetscAbsReal(body->mesh.coordinates[dof] - frame->centre[dof % body->mesh.dim]) / frame->size;
+    if (dof / body->mesh.dim == middle && square > DIFFERS) square += MIDDLE_FIRST;
     if ((double)square <= best.value) continue;
     best.value           = (double)square;
     body->springs.dof[n] = dof;
@@ -109,7 +146,9 @@ static PetscErrorCode PlaceSpring(Body body, const RigidFrame *frame, PetscInt n
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, PetscObjectComm((PetscObject)body)));
   if (best.rank != rank) body->springs.dof[n] = -1;
   PetscCallMPI(MPI_Bcast(both, (PetscMPIInt)(2 * n_free), MPIU_REAL, best.rank, PetscObjectComm((PetscObject)body)));
-  norm = PetscSqrtReal((PetscReal)best.value);
+  norm = 0;
+  for (PetscInt k = 0; k < n_free; k++) norm += PetscSqr(both[k]);
+  norm = PetscSqrtReal(norm);
   for (PetscInt k = 0; k < n_free; k++) {
     held[n * n_free + k]                     = both[k] / norm;
     body->springs.at_springs[k * n_free + n] = both[n_free + k];
@@ -122,6 +161,7 @@ PetscErrorCode BodySetUpSprings(Body body, PetscInt n_free, const PetscReal free
 {
   BodySprings *springs = &body->springs;
   PetscReal    held[BODY_MAX_RIGID * BODY_MAX_RIGID];
+  PetscInt     middle = -1;
   RigidFrame   frame;
 
   PetscFunctionBegin;
@@ -133,7 +173,8 @@ PetscErrorCode BodySetUpSprings(Body body, PetscInt n_free, const PetscReal free
   springs->stiffness *= springs->part;
   springs->size = frame.size;
   PetscCall(PetscArraycpy(springs->motions, free, n_free * frame.n));
-  for (PetscInt n = 0; n < n_free; n++) PetscCall(PlaceSpring(body, &frame, n_free, free, held, n));
+  PetscCall(FindMiddle(body, &frame, &middle));
+  for (PetscInt n = 0; n < n_free; n++) PetscCall(PlaceSpring(body, &frame, middle, n_free, free, held, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

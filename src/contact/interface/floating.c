@@ -19,7 +19,7 @@
 #define STEADY 1e-3
 /* Way of a body, in parts of its size, after which nothing is thought to hold it */
 #define FAR           100
-#define FAR_NONLINEAR 3
+#define FAR_NONLINEAR 0.5
 
 /* After the bodies and the rows */
 PetscErrorCode ContactSetUpFloating(Contact contact)

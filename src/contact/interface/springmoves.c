@@ -151,7 +151,7 @@ PetscErrorCode SpringsMove(Contact contact, PetscBool moved)
     if (grown && f->n_history) {
       f->n_history = 0;
       f->plain     = f->patience;
-      f->patience = PetscMin(2 * f->patience, MOST_PATIENCE);
+      f->patience  = PetscMin(2 * f->patience, MOST_PATIENCE);
     } else PetscCall(Remember(f));
   }
   f->leapt = PETSC_FALSE;
