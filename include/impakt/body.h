@@ -127,6 +127,8 @@ PETSC_EXTERN PetscErrorCode BodyGetMassRedistributeNear(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetForceOnMass(Body, const PetscReal[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetMassMoments(Body, BodyMassMoments);
 PETSC_EXTERN PetscErrorCode BodyGetMassMoments(Body, BodyMassMoments *);
+PETSC_EXTERN PetscErrorCode BodySetArtificialStiffness(Body, PetscReal);
+PETSC_EXTERN PetscErrorCode BodyGetArtificialStiffness(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetMassRedistribution(Body, PetscReal *, PetscReal *, PetscReal[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetSolution(Body, Vec *, Vec *, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);

@@ -81,6 +81,9 @@ static const KnownOption options[] = {
      "controller step, at whose ends all bodies are at the same time [s]; auto: the largest that resolves contact"},
     {"time", OPTION_OF_BODY, "ts_type", "alpha2|centraldifference|static",
      "integrator: implicit, explicit, or none (no inertia); default alpha2"},
+    {"time", OPTION_OF_BODY, "artificial_stiffness", "part",
+     "of the springs that hold a static body, where contact or ties alone do, while contact forces are found, in parts of its own; default "
+     "1e-2, of a nonlinear one 1"},
     {"time", OPTION_OF_RUN, "controller_step_cuts", "n",
      "how often a controller step that does not converge, inverts an element, or loses or gains energy at contact, is cut in halves, "
      "default 4; 0: it "

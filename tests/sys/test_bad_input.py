@@ -59,7 +59,7 @@ CASES = {
     ),
     "augmented-rate": (f"{BASE} -contact_type augmented_lagrangian -contact_constraint gap_rate", ["-contact_constraint gap_rate", "augmented_lagrangian"]),
     "constraint": (f"{BASE} -contact_constraint speed", ["-contact_constraint", "speed"]),
-    "static-held-by-contact": ("-options_file options/blocks.opts -left_ts_type static", ["'left'", "static", "-left_boundary_displacement", "contact"]),
+    "static-unheld": ("-options_file options/blocks.opts -left_ts_type static -contact_pairs none", ["'left'", "static", "-left_boundary_displacement", "contact", "move along x, y and turn about z"]),
     "obstacle-body": (f"{BASE} -obstacles left", ["-obstacles", "'left'", "body"]),
     "both-massless": (f"{BASE} -contact_type lagrange -contact_constraint both", ["-contact_constraint both", "left", "right", "-left_mass_redistribute false"]),
     "damping-missing": (f"{PENALTY} -contact_constraint both", ["-contact_penalty_damping"]),
@@ -72,7 +72,7 @@ CASES = {
     "time-end": (f"{BASE} -time_end -1", ["-time_end", "-time_start"]),
     "components": (f"{BASE} -left_initial_velocity 1,2", ["-left_initial_velocity", "2", "left"]),
 }
-ON_TWO_RANKS = ["nothing", "options-file", "misspelt-of-body", "contact-type", "lagrange-substeps", "stabilized-schwarz", "missing-body", "indivisible", "unstable", "negative-density", "overlapping", "pair-surface", "static-held-by-contact"]
+ON_TWO_RANKS = ["nothing", "options-file", "misspelt-of-body", "contact-type", "lagrange-substeps", "stabilized-schwarz", "missing-body", "indivisible", "unstable", "negative-density", "overlapping", "pair-surface", "static-unheld"]
 
 
 def check_message(run, words):

@@ -36,6 +36,26 @@ typedef struct {
   Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
 } BodyTraces;
 
+#define BODY_MAX_SPRINGS 6 /* as many as a body has motions as if it were rigid */
+
+/*S
+   BodySpringState - how the artificial springs of a floating body are stretched at the end of a controller step
+
+   Level: developer
+
+.seealso: `BodyMeasureSprings()`
+S*/
+typedef struct {
+  PetscInt  n;
+  PetscReal stretch[BODY_MAX_SPRINGS]; /* [m] */
+  PetscReal stiffness;                 /* of each [N/m] */
+  PetscReal part;                      /* the same, in parts of that of the body */
+  PetscBool linear;                    /* the body is */
+  PetscReal displacement;              /* the largest of the dofs that they pull at [m] */
+  PetscReal way;                       /* the largest of these less that in the saved state [m] */
+  PetscReal size;                      /* of the body: the longest edge of its box [m] */
+} BodySpringState;
+
 /* Mesh and material, as contact methods scale by them */
 PETSC_EXTERN PetscErrorCode BodyGetElementSize(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetContactElementSize(Body, PetscReal *);
@@ -77,6 +97,13 @@ PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeFreeRows(Body, PetscScalar[]);
+
+/* Static bodies that contact or ties alone hold */
+PETSC_EXTERN PetscErrorCode BodyIsFloating(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyResetSprings(Body);
+PETSC_EXTERN PetscErrorCode BodyMeasureSprings(Body, BodySpringState *);
+PETSC_EXTERN PetscErrorCode BodyMoveSprings(Body, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);

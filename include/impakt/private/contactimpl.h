@@ -241,6 +241,36 @@ typedef struct {
   PetscBool   again; /* the step before this one began at the same state, and has failed: sides are those of this step already */
 } ContactAttempt;
 
+/* The artificial springs of a body in a controller step */
+typedef struct {
+  PetscInt body;   /* its number */
+  PetscInt begin;  /* number of its first spring among all */
+  PetscInt steady; /* times in a row that their stretch has stayed as it is */
+  PetscInt stalls; /* times in a row that it has not fallen much */
+  PetscInt leaps;  /* times that they have been moved far, since nothing resisted */
+} ContactSprings;
+
+/* Static bodies that contact or ties alone hold, see src/contact/interface/floating.c */
+typedef struct {
+  PetscInt         n;
+  ContactSprings  *bodies;
+  BodySpringState *states;             /* per body: as the step has left it when made last */
+  PetscInt         n_springs;          /* of all bodies; the following have a number for each, times the square root of its stiffness */
+  PetscReal       *root;               /* that root [sqrt(N/m)] */
+  PetscReal       *stretch;            /* [sqrt(J)] */
+  PetscReal       *last;               /* the same, of the time before */
+  PetscReal       *move;               /* by which they have been moved last, then the next move */
+  PetscInt         n_history;          /* times that are remembered, the last one at the end, and room for one more */
+  PetscInt         plain;              /* times that are made without them, since the stretch has grown */
+  PetscInt         patience;           /* how many that will be when it grows again */
+  PetscBool        leapt;              /* a body has leapt the last time */
+  PetscReal       *moves, *changes;    /* by which they have been moved then; by how much that has changed the stretch */
+  PetscReal       *basis, *directions; /* work space */
+  PetscReal       *start_force;        /* per row: at the start of the step [N] */
+  PetscBool       *start_active;       /* the same, in contact */
+  PetscReal        time;               /* at which the step begins [s] */
+} ContactFloating;
+
 /* Work space */
 typedef struct {
   PetscReal     *speeds;     /* per body */
@@ -288,6 +318,7 @@ struct _p_Contact {
   ContactResultants resultants;
   ContactCounts     counts;
   ContactAttempt    attempt;
+  ContactFloating   floating;
   ContactWork       work;
   PetscBool         surfaces_known; /* ContactSetUpSurfaces() has been called */
   PetscBool         setup;          /* ContactSetUp() has been called */
@@ -377,6 +408,10 @@ PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteLevel(Contact);
 PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpFloating(Contact);
+PETSC_INTERN PetscErrorCode ContactMakeStep(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyFloating(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);

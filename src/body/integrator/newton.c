@@ -124,7 +124,7 @@ PetscErrorCode BodyImplicitPrescribe(Body body, Vec U)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The effective matrix K + shift M, its held dofs eliminated */
+/* The effective matrix K + shift M, with the artificial springs of a body that contact alone holds; its held dofs eliminated */
 static PetscErrorCode AssembleMatrix(Body body, Vec u)
 {
   const BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
@@ -136,6 +136,7 @@ static PetscErrorCode AssembleMatrix(Body body, Vec u)
     PetscCall(VecScale(body->work.nodes[0], implicit->shift));
     PetscCall(MatDiagonalSet(implicit->matrix, body->work.nodes[0], ADD_VALUES));
   } else if (implicit->shift > 0) PetscCall(MatAXPY(implicit->matrix, implicit->shift, body->mass.matrix, SAME_NONZERO_PATTERN));
+  PetscCall(BodyAddSpringStiffness(body, implicit->matrix));
   PetscCall(BodyEliminateHeld(body, implicit->matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

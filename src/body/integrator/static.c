@@ -1,6 +1,7 @@
 /* A body under TSSTATIC: static balance at the end of each substep. It has a velocity, by the change of its displacement, for contact to
    see, but neither mass nor acceleration. */
 #include "implicitimpl.h"
+#include <impakt/private/bodyrows.h>
 
 /* F = internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */
 static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
@@ -13,6 +14,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   (void)A;
   PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   PetscCall(VecZeroEntries(F));
+  PetscCall(BodyAddSpringForce(body, U, F));
   PetscCall(BodyImplicitAddForces(body, t, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -46,6 +48,10 @@ static PetscErrorCode GetParameters(Body body)
 static PetscErrorCode SetUp(Body body)
 {
   PetscFunctionBegin;
+  PetscCheck(!body->springs.n || body->time.substeps == 1, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "Body '%s' is static, and contact or ties alone hold it: they do at the ends of steps that all bodies share, and not in the "
+             "course of %" PetscInt_FMT " substeps; set -%sts_time_step to -time_step, or prescribe displacements",
+             body->hdr.name, body->time.substeps, ((PetscObject)body)->prefix);
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,6 +85,14 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The springs of a floating body are at rest where it starts from */
+static PetscErrorCode Save(Body body, BodySlot slot)
+{
+  PetscFunctionBegin;
+  if (slot == BODY_SLOT_SAVED) PetscCall(BodyResetSprings(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
 {
   PetscFunctionBegin;
@@ -108,6 +122,7 @@ PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator integrator)
   integrator->ops.setup            = SetUp;
   integrator->ops.finishsubstep    = FinishSubstep;
   integrator->ops.repeat           = Repeat;
+  integrator->ops.save             = Save;
   integrator->ops.compliancecolumn = ComputeComplianceColumn;
   integrator->ops.rates            = GetRates;
   PetscFunctionReturn(PETSC_SUCCESS);

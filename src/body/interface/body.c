@@ -35,6 +35,7 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   (*body)->mass.type         = (BodyMassType)PETSC_DECIDE;
   (*body)->mass.redistribute = PETSC_TRUE;
   (*body)->mass.moments      = BODY_MASS_INERTIA;
+  (*body)->springs.part      = PETSC_DECIDE;
   PetscCall(ElementCreate(comm, &(*body)->model.element));
   PetscCall(ElementSetOptionsPrefix((*body)->model.element, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);

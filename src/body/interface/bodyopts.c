@@ -75,6 +75,22 @@ static PetscErrorCode ReadMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads what only static bodies have, so that it is an unused option of others */
+static PetscErrorCode ReadStatic(Body body)
+{
+  PetscReal part = body->springs.part;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  if (body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscObjectOptionsBegin((PetscObject)body);
+  PetscCall(PetscOptionsReal("-artificial_stiffness", "Stiffness of springs where contact or ties alone hold the body, in parts of its own",
+                             "BodySetArtificialStiffness", part, &part, &set));
+  PetscOptionsEnd();
+  if (set) PetscCall(BodySetArtificialStiffness(body, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodySetFromOptions - mesh, material, mass, integrator and initial state from the options that begin with the body's name
 
@@ -92,6 +108,7 @@ static PetscErrorCode ReadMass(Body body)
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
 . -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
+. -<body>_artificial_stiffness part                  - of a static body that contact or ties alone hold, default 1e-2, nonlinear 1
 . -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
 - -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
 
@@ -124,6 +141,7 @@ PetscErrorCode BodySetFromOptions(Body body)
   PetscCall(BodySetUpMesh(body));
   PetscCall(BodySetTimeFromOptions(body));
   PetscCall(ReadMass(body));
+  PetscCall(ReadStatic(body));
   PetscCall(BodyLoadsSetFromOptions(body));
   PetscCall(BodyNoteHeld(body));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -10,10 +10,6 @@
       "that look at the mesh",                                                                                                             \
       (body)->hdr.name, PETSC_FUNCTION_NAME)
 
-#define CheckNotSetUp(body)                                                                                                                \
-  PetscCheck(!(body)->setup, PetscObjectComm((PetscObject)(body)), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call %s() before BodySetUp()",    \
-             (body)->hdr.name, PETSC_FUNCTION_NAME)
-
 /*@
   BodySetDM - sets the mesh of a body
 
@@ -195,7 +191,7 @@ PetscErrorCode BodySetMassType(Body body, BodyMassType type)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(body, type, 2);
-  CheckNotSetUp(body);
+  BodyCheckNotSetUp(body);
   PetscCheck((int)type >= BODY_MASS_LUMPED && (int)type <= BODY_MASS_AVERAGED, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "Body '%s': there is no mass type %d", body->hdr.name, (int)type);
   body->mass.type = type;
@@ -252,7 +248,7 @@ PetscErrorCode BodySetMassRedistribute(Body body, PetscBool redistribute)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscValidLogicalCollectiveBool(body, redistribute, 2);
-  CheckNotSetUp(body);
+  BodyCheckNotSetUp(body);
   body->mass.redistribute = redistribute;
   body->mass.chosen       = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -284,7 +280,7 @@ PetscErrorCode BodySetMassRedistributeNear(Body body, PetscBool near)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscValidLogicalCollectiveBool(body, near, 2);
-  CheckNotSetUp(body);
+  BodyCheckNotSetUp(body);
   body->mass.near = near;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -339,7 +335,7 @@ PetscErrorCode BodySetMassMoments(Body body, BodyMassMoments moments)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscValidLogicalCollectiveEnum(body, moments, 2);
-  CheckNotSetUp(body);
+  BodyCheckNotSetUp(body);
   PetscCheck(moments == BODY_MASS_TOTAL || moments == BODY_MASS_CENTRE || moments == BODY_MASS_INERTIA, PetscObjectComm((PetscObject)body),
              PETSC_ERR_ARG_OUTOFRANGE, "Body '%s': there are no moments %d", body->hdr.name, (int)moments);
   body->mass.moments = moments;

@@ -67,6 +67,11 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
       type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscCall(ViewLayer(body, viewer));
+  if (body->springs.n)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "  floating, held by contact or ties alone: artificial springs of %g N/m on %" PetscInt_FMT
+                                     " displacement%s, moved until they do not pull; motions that nothing drives stay as they are\n",
+                                     (double)body->springs.stiffness, body->springs.n, body->springs.n == 1 ? "" : "s"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

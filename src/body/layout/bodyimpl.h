@@ -147,6 +147,23 @@ typedef struct {
   const PetscInt *dofs; /* owned ones, rank numbering, ascending; owned by the loads */
 } BodyHeld;
 
+/* Motions of a body as if it were rigid: as many as space has translations and rotations */
+#define BODY_MAX_RIGID 6
+
+/* Artificial springs of a static body that contact or ties alone hold, see src/body/system/springs.c */
+typedef struct {
+  PetscReal part;                /* stiffness in parts of what the body sets against a stretch as large as itself */
+  PetscInt  n;                   /* their number: as many as the body has free motions as a whole; 0: it is held */
+  PetscInt  dof[BODY_MAX_RIGID]; /* per spring: the owned displacement that it pulls at (rank numbering); -1 on all other ranks */
+  PetscReal stiffness;           /* of each [N/m] */
+  PetscReal size;                /* of the body: the longest edge of its box [m] */
+  PetscReal motions[BODY_MAX_RIGID * BODY_MAX_RIGID];    /* the free motions, springs x all rigid motions, orthonormal */
+  PetscReal at_springs[BODY_MAX_RIGID * BODY_MAX_RIGID]; /* the free motions at the springs, free motions x springs */
+  PetscReal start[BODY_MAX_RIGID];                       /* per spring, on every rank: displacement in the saved state [m] */
+  PetscReal place[BODY_MAX_RIGID];                       /* per spring, on every rank: displacement at which it is at rest [m] */
+  PetscReal reached[BODY_MAX_RIGID]; /* per spring, on every rank: displacement at the end of the step that was measured last [m] */
+} BodySprings;
+
 struct _p_Body {
   PETSCHEADER(int);
   PetscBool         setup;
@@ -178,6 +195,7 @@ struct _p_Body {
   /* loads */
   struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
   BodyHeld           held;
+  BodySprings        springs;
   PetscBool          unloaded; /* while its compliance is probed: no forces from outside, held dofs at zero */
   /* what BodyGetPositionChange() compares with */
   struct {
@@ -195,6 +213,11 @@ struct _p_Body {
     PetscLogDouble seconds;  /* in BodyIntegrate() */
   } statistics;
 };
+
+/* For setters */
+#define BodyCheckNotSetUp(body)                                                                                                            \
+  PetscCheck(!(body)->setup, PetscObjectComm((PetscObject)(body)), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call %s() before BodySetUp()",    \
+             (body)->hdr.name, PETSC_FUNCTION_NAME)
 
 PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
 
@@ -220,6 +243,10 @@ PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyNoteInverted(Body);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
+PETSC_INTERN PetscErrorCode BodyDescribeMotions(PetscInt, const PetscReal[], size_t, char[]);
+PETSC_INTERN PetscErrorCode BodySetUpSprings(Body, PetscInt, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyAddSpringForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyAddSpringStiffness(Body, Mat);
 PETSC_INTERN PetscErrorCode BodyZeroHeld(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyCopyHeld(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribeHeld(Body, PetscReal, Vec, Vec, Vec);

@@ -1,86 +1,143 @@
-/* Whether the displacements that are held, or the nodes with mass, keep a body from moving as if it were rigid. */
-#include <body/layout/bodyimpl.h>
+/* Whether the displacements that are held, or the nodes with mass, keep a body from moving as if it were rigid, and what it is free to do.
+ */
+#include "held.h"
 #include <petscblaslapack.h>
 
-#define MAX_RIGID 6 /* rigid motions in three dimensions */
-/* A rigid motion is free if the smallest eigenvalue of the Gram matrix of all rigid motions on the fixed dofs is below this part of the
+/* A rigid motion is free if its eigenvalue of the Gram matrix of all rigid motions on the fixed dofs is below this part of the
    largest one. Round-off makes 1e-15 of it; two held nodes hold the body if they are more
    than some 1e-5 of its size apart, the square root of this. */
 #define FREE 1e-10
+/* Rigid motions that are named, of those that a free one is made of: from this part of the largest on */
+#define NAMED 0.1
 
-/* Rigid motions of a node at r: translations, then rotations about the axes (in two dimensions: about the third) */
-static PetscReal RigidMotion(PetscInt dim, PetscInt motion, const PetscReal r[3], PetscInt component)
+PetscErrorCode BodyGetRigidFrame(Body body, RigidFrame *frame)
 {
-  const PetscInt axis = dim == 2 ? 2 : motion - dim;
+  PetscReal box[6] = {0};
+
+  PetscFunctionBegin;
+  PetscCall(DMGetBoundingBox(body->mesh.dm, box, box + 3));
+  frame->size = 0;
+  for (PetscInt d = 0; d < 3; d++) frame->centre[d] = d < body->mesh.dim ? 0.5 * (box[d] + box[3 + d]) : 0;
+  for (PetscInt d = 0; d < body->mesh.dim; d++) frame->size = PetscMax(frame->size, box[3 + d] - box[d]);
+  frame->n = body->mesh.dim == 1 ? 1 : 3 * (body->mesh.dim - 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What a rigid motion is at an owned dof */
+PetscReal BodyRigidMotion(Body body, const RigidFrame *frame, PetscInt motion, PetscInt dof)
+{
+  const PetscInt dim = body->mesh.dim, component = dof % dim, axis = dim == 2 ? 2 : motion - dim;
+  PetscReal      r[3] = {0};
 
   if (motion < dim) return motion == component ? 1 : 0;
+  for (PetscInt d = 0; d < dim; d++) r[d] = (body->mesh.coordinates[dof - component + d] - frame->centre[d]) / frame->size;
   if (component == (axis + 1) % 3) return -r[(axis + 2) % 3];
   if (component == (axis + 2) % 3) return r[(axis + 1) % 3];
   return 0;
 }
 
-/* Adds to the Gram matrix of the rigid motions what they are at a fixed dof; positions relative to the body's size, for it to have no unit
- */
-static void AddFixed(Body body, PetscInt dof, const PetscReal box[6], PetscReal size, PetscInt n, PetscReal gram[])
+/* The rigid motions that leave all fixed dofs in place: those of the list, which is of owned dofs, ascending, or all others; of all ranks
+   together. `n_free` rows of `free`, each of as many numbers as there are rigid motions, orthonormal. */
+static PetscErrorCode FindFreeMotions(Body body, PetscInt n_fixed, const PetscInt fixed[], PetscBool others, PetscInt *n_free,
+                                      PetscReal free[])
 {
-  const PetscInt dim = body->mesh.dim, component = dof % dim;
-  PetscReal      r[3] = {0};
-
-  for (PetscInt d = 0; d < dim; d++) r[d] = (body->mesh.coordinates[dof - component + d] - 0.5 * (box[d] + box[3 + d])) / size;
-  for (PetscInt a = 0; a < n; a++)
-    for (PetscInt b = 0; b < n; b++) gram[a * n + b] += RigidMotion(dim, a, r, component) * RigidMotion(dim, b, r, component);
-}
-
-/* Whether some rigid motion leaves all fixed dofs in place: those of the list, which is of owned dofs, ascending, or all others; of all
-   ranks together */
-static PetscErrorCode IsLoose(Body body, PetscInt n_fixed, const PetscInt fixed[], PetscBool others, PetscBool *loose)
-{
-  MPI_Comm       comm = PetscObjectComm((PetscObject)body);
-  const PetscInt dim = body->mesh.dim, n = dim == 1 ? 1 : 3 * (dim - 1);
-  PetscReal      gram[MAX_RIGID * MAX_RIGID] = {0}, eigenvalues[MAX_RIGID], work[4 * MAX_RIGID], box[6] = {0}, size = 0;
-  PetscBLASInt   order = (PetscBLASInt)n, lwork = 4 * MAX_RIGID, info;
-  PetscInt       next = 0;
+  MPI_Comm     comm                                  = PetscObjectComm((PetscObject)body);
+  PetscReal    gram[BODY_MAX_RIGID * BODY_MAX_RIGID] = {0}, eigenvalues[BODY_MAX_RIGID], work[4 * BODY_MAX_RIGID];
+  PetscBLASInt order, lwork = 4 * BODY_MAX_RIGID, info;
+  PetscInt     next = 0, n;
+  RigidFrame   frame;
 
   PetscFunctionBegin;
-  PetscCall(DMGetBoundingBox(body->mesh.dm, box, box + 3));
-  for (PetscInt d = 0; d < dim; d++) size = PetscMax(size, box[3 + d] - box[d]);
-  for (PetscInt dof = 0; dof < body->mesh.owned_nodes * dim; dof++) {
+  PetscCall(BodyGetRigidFrame(body, &frame));
+  n     = frame.n;
+  order = (PetscBLASInt)n;
+  for (PetscInt dof = 0; dof < body->mesh.owned_nodes * body->mesh.dim; dof++) {
     const PetscBool listed = (PetscBool)(next < n_fixed && fixed[next] == dof);
 
     if (listed) next++;
-    if (listed != others) AddFixed(body, dof, box, size, n, gram);
+    if (listed == others) continue;
+    for (PetscInt a = 0; a < n; a++)
+      for (PetscInt b = 0; b < n; b++) gram[a * n + b] += BodyRigidMotion(body, &frame, a, dof) * BodyRigidMotion(body, &frame, b, dof);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, (PetscMPIInt)(n * n), MPIU_REAL, MPIU_SUM, comm));
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("N", "L", &order, gram, &order, eigenvalues, work, &lwork, &info));
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &order, gram, &order, eigenvalues, work, &lwork, &info));
   PetscCheck(info == 0, comm, PETSC_ERR_LIB, "LAPACK syev info %d", (int)info);
-  *loose = (PetscBool) !(eigenvalues[0] > FREE * eigenvalues[n - 1]);
+  *n_free = 0;
+  while (*n_free < n && !(eigenvalues[*n_free] > FREE * eigenvalues[n - 1])) (*n_free)++;
+  PetscCall(PetscArraycpy(free, gram, *n_free * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error where a body can move as if it were rigid and its matrix is singular for that: a static body with too few held displacements
-   (contact does not count, because contact forces are found with the matrix of the body alone), or a massless layer that too few nodes with
-   mass hold. Factors of a singular matrix need not show that it is. */
+/* Names a motion by how much it has of each rigid motion: "move along x and turn about z" */
+PetscErrorCode BodyDescribeMotions(PetscInt dim, const PetscReal parts[], size_t size, char text[])
+{
+  const PetscInt n       = dim == 1 ? 1 : 3 * (dim - 1);
+  PetscReal      largest = 0;
+  PetscInt       kind    = -1; /* of the last motion named: 0 translation, 1 rotation */
+
+  PetscFunctionBegin;
+  text[0] = 0;
+  for (PetscInt i = 0; i < n; i++) largest = PetscMax(largest, PetscAbsReal(parts[i]));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt turns = i >= dim;
+    const char    *verb = turns ? "turn about" : "move along", axis = "xyz"[turns ? (dim == 2 ? 2 : i - dim) : i];
+    char           piece[32];
+
+    if (PetscAbsReal(parts[i]) < NAMED * largest || largest == 0) continue;
+    PetscCall(PetscSNPrintf(piece, sizeof(piece), "%s%s %c",
+                            kind < 0        ? ""
+                            : kind == turns ? ","
+                                            : " and ",
+                            kind == turns ? "" : verb, axis));
+    PetscCall(PetscStrlcat(text, piece, size));
+    kind = turns;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A static body that nothing holds at all */
+static PetscErrorCode RefuseLoose(Body body, PetscInt n_free, const PetscReal free[])
+{
+  PetscReal  parts[BODY_MAX_RIGID] = {0};
+  RigidFrame frame;
+  char       text[128];
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetRigidFrame(body, &frame));
+  for (PetscInt i = 0; i < frame.n; i++) {
+    for (PetscInt k = 0; k < n_free; k++) parts[i] += PetscSqr(free[k * frame.n + i]);
+    parts[i] = PetscSqrtReal(parts[i]);
+  }
+  PetscCall(BodyDescribeMotions(body->mesh.dim, parts, sizeof(text), text));
+  SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+          "Body '%s' is static, but nothing holds it, or not in all directions: it can %s as a whole; prescribe more displacements with "
+          "-%sboundary_displacement, or let contact or ties hold it",
+          body->hdr.name, text, ((PetscObject)body)->prefix);
+}
+
+/* A body that can move as if it were rigid has a matrix that is singular for that, and factors of it need not show that it is. A static
+   body with too few held displacements gets artificial springs if it has contact rows, else that is an error, and so is a massless layer
+   that too few nodes with mass hold. */
 PetscErrorCode BodyCheckHeld(Body body)
 {
-  MPI_Comm    comm   = PetscObjectComm((PetscObject)body);
-  const char *prefix = ((PetscObject)body)->prefix;
-  PetscBool   loose, layer = (PetscBool)(body->layer.n_dofs > 0);
+  PetscReal free[BODY_MAX_RIGID * BODY_MAX_RIGID], rows;
+  PetscInt  n_free;
+  PetscBool layer = (PetscBool)(body->layer.n_dofs > 0);
 
   PetscFunctionBegin;
   PetscCall(BodyAnyRank(body, &layer));
   if (!body->integrator->has_inertia) {
-    PetscCall(IsLoose(body, body->held.n, body->held.dofs, PETSC_FALSE, &loose));
-    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT,
-               "Body '%s' is static, but nothing holds it, or not in all directions: it can move or turn as a whole; prescribe more "
-               "displacements with -%sboundary_displacement%s",
-               body->hdr.name, prefix, body->rows.global ? ", since contact cannot hold what has no stiffness of its own" : "");
+    PetscCall(FindFreeMotions(body, body->held.n, body->held.dofs, PETSC_FALSE, &n_free, free));
+    PetscCall(MatNorm(body->rows.matrix, NORM_FROBENIUS, &rows)); /* the rows of all pairs are there, those of others empty */
+    if (n_free && rows == 0) PetscCall(RefuseLoose(body, n_free, free));
+    PetscCall(BodySetUpSprings(body, n_free, free));
   }
   if (layer) {
-    PetscCall(IsLoose(body, body->layer.n_dofs, body->layer.dofs, PETSC_TRUE, &loose));
-    PetscCheck(!loose, comm, PETSC_ERR_USER_INPUT,
+    PetscCall(FindFreeMotions(body, body->layer.n_dofs, body->layer.dofs, PETSC_TRUE, &n_free, free));
+    PetscCheck(!n_free, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "Body '%s' has too few nodes with mass to hold its massless contact nodes, which can turn about them; refine the mesh, or "
                "set -%smass_redistribute false",
-               body->hdr.name, prefix);
+               body->hdr.name, ((PetscObject)body)->prefix);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

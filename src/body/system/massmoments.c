@@ -12,11 +12,9 @@
    m p^2 of all functions that satisfy the conditions, and its coefficients are the multipliers of the conditions. The conditions are linear
    but for the bounds; Newton's method solves them for the coefficients.
 */
-#include <body/layout/bodyimpl.h>
+#include "massmoments.h"
 #include <petscblaslapack.h>
 
-/* The factor stays above this, since lighter nodes would need shorter explicit steps */
-#define LEAST_FACTOR 0.3
 /* Where moments of inertia cannot be kept anyhow, the factor stays below this: on the coarse ball of options/hertz-impact.opts a factor of
    up to 66 would bring them no nearer than 34.5 % instead of 34.9 % */
 #define MOST_FACTOR (1 / LEAST_FACTOR)
@@ -24,175 +22,13 @@
    together with half the sum of m p^2. The centre of mass is given up after the moments of inertia. */
 #define SOFT_INERTIA 0.03
 #define SOFT_CENTRE  1e-6
-/* Newton's method has converged where all moments are right within this, in units of the total mass and of the radii of gyration; sums over
-   10^5 nodes lose some 1e-15. Newton's method ends where no step makes what is missing smaller by 1 %, or after so many iterations and
-   halvings of a step. */
-#define TOLERANCE  1e-13
-#define ITERATIONS 60
-#define HALVINGS   6
-#define PROGRESS   0.99
-/* Where that fails, stiffnesses of the springs that hold the coefficients near those before, from 1 down */
-#define LEAST_HOLD     1e-4
-#define HOLD_REDUCTION 0.3
 /* A centre of mass counts as kept if it is off by less than this part of the radii of gyration, a moment of inertia if it differs by less
    than this part of it */
 #define KEPT 1e-11
-/* As many as a quadratic polynomial in three dimensions has coefficients; two dimensions need 7 conditions at most */
-#define MAX_MOMENTS 10
-
-typedef struct {
-  Body      body;
-  PetscInt  n_fields, n_moments;                 /* moments: phi_a' M phi_b for a <= b */
-  PetscInt  pair[MAX_MOMENTS][2];                /* a and b of a moment */
-  PetscReal axes[3][3];                          /* of the fields of first order, axis . (x - centre) / size */
-  PetscReal centre[3], size[3];                  /* [m] */
-  PetscReal target[MAX_MOMENTS];                 /* of the full mass, over the total mass */
-  PetscReal total;                               /* the full mass [kg] */
-  PetscInt  n;                                   /* conditions */
-  PetscReal condition[MAX_MOMENTS][MAX_MOMENTS]; /* weights of the moments in each condition */
-  PetscReal softness[MAX_MOMENTS];
-  PetscReal most; /* the largest factor */
-  PetscReal
-      *weights; /* per local node, ghosts too: what this rank's elements and the orphans' mass at it add to each moment, over the total */
-} Problem;
-
-static void GetFields(const Problem *problem, PetscInt node, PetscReal phi[4])
-{
-  const PetscInt dim = problem->body->mesh.dim;
-
-  phi[0] = 1;
-  for (PetscInt a = 0; a < dim; a++) {
-    phi[1 + a] = 0;
-    for (PetscInt d = 0; d < dim; d++)
-      phi[1 + a] += problem->axes[a][d] * (problem->body->mesh.coordinates[node * dim + d] - problem->centre[d]) / problem->size[a];
-  }
-}
-
-/* The polynomials that the conditions come with, at a node */
-static void GetPolynomials(const Problem *problem, PetscInt node, PetscReal psi[MAX_MOMENTS])
-{
-  PetscReal phi[4];
-
-  GetFields(problem, node, phi);
-  for (PetscInt k = 0; k < problem->n; k++) {
-    psi[k] = 0;
-    for (PetscInt m = 0; m < problem->n_moments; m++)
-      psi[k] += problem->condition[k][m] * phi[problem->pair[m][0]] * phi[problem->pair[m][1]];
-  }
-}
-
-/* 1 + p; the factor is this or its bound, whichever is larger */
-static PetscReal GetPolynomial(const Problem *problem, const PetscReal coefficients[], const PetscReal psi[])
-{
-  PetscReal value = 1;
-
-  for (PetscInt k = 0; k < problem->n; k++) value += coefficients[k] * psi[k];
-  return value;
-}
-
-/* Moments of the mass under the factor, over the total mass; and, unless `slopes` is NULL, what the coefficients change in the conditions,
-   column by column */
-static PetscErrorCode ComputeMoments(const Problem *problem, const PetscReal coefficients[], PetscReal moments[], PetscReal slopes[])
-{
-  const PetscInt n = problem->n, n_moments = problem->n_moments;
-  PetscReal      sums[MAX_MOMENTS + MAX_MOMENTS * MAX_MOMENTS] = {0}, *slope = sums + n_moments;
-
-  PetscFunctionBegin;
-  for (PetscInt node = 0; node < problem->body->mesh.local_nodes; node++) {
-    const PetscReal *weights = problem->weights + node * n_moments;
-    PetscReal        psi[MAX_MOMENTS], polynomial, factor;
-
-    GetPolynomials(problem, node, psi);
-    polynomial = GetPolynomial(problem, coefficients, psi);
-    factor     = PetscClipInterval(polynomial, LEAST_FACTOR, problem->most);
-    for (PetscInt m = 0; m < n_moments; m++) sums[m] += factor * weights[m];
-    if (!slopes || factor != polynomial) continue;
-    for (PetscInt k = 0; k < n; k++) {
-      PetscReal weight = 0;
-
-      for (PetscInt m = 0; m < n_moments; m++) weight += problem->condition[k][m] * weights[m];
-      for (PetscInt l = 0; l < n; l++) slope[l * n + k] += weight * psi[l];
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(n_moments + (slopes ? n * n : 0)), MPIU_REAL, MPIU_SUM,
-                             PetscObjectComm((PetscObject)problem->body)));
-  PetscCall(PetscArraycpy(moments, sums, n_moments));
-  if (slopes) PetscCall(PetscArraycpy(slopes, slope, n * n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What is missing in the conditions, with springs where they are soft, and its norm */
-static void ComputeResidual(const Problem *problem, PetscReal hold, const PetscReal start[], const PetscReal coefficients[],
-                            const PetscReal moments[], PetscReal residual[], PetscReal *norm)
-{
-  *norm = 0;
-  for (PetscInt k = 0; k < problem->n; k++) {
-    residual[k] = problem->softness[k] * coefficients[k] + hold * (coefficients[k] - start[k]);
-    for (PetscInt m = 0; m < problem->n_moments; m++) residual[k] += problem->condition[k][m] * (moments[m] - problem->target[m]);
-    *norm += PetscSqr(residual[k]);
-  }
-  *norm = PetscSqrtReal(*norm);
-}
-
-/* x becomes A^-1 x; what A leaves undetermined is zero */
-static PetscErrorCode SolveSmall(PetscInt n, PetscReal A[], PetscReal x[])
-{
-  PetscReal    singular[MAX_MOMENTS], work[20 * MAX_MOMENTS], least = 1e-12;
-  PetscBLASInt order = (PetscBLASInt)n, one = 1, rank, lwork = 20 * MAX_MOMENTS, info;
-
-  PetscFunctionBegin;
-  PetscCallBLAS("LAPACKgelss", LAPACKgelss_(&order, &order, &one, A, &order, x, &order, singular, &least, &rank, work, &lwork, &info));
-  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gelss info %d", (int)info);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Newton's method with halved steps, from the coefficients as they are. `hold` is the stiffness of further springs that hold them there. */
-static PetscErrorCode Iterate(Problem *problem, PetscReal hold, PetscReal coefficients[], PetscBool *converged)
-{
-  const PetscInt n = problem->n;
-  PetscReal      moments[MAX_MOMENTS], residual[MAX_MOMENTS], slopes[MAX_MOMENTS * MAX_MOMENTS], start[MAX_MOMENTS], norm;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(start, coefficients, n));
-  PetscCall(ComputeMoments(problem, coefficients, moments, slopes));
-  ComputeResidual(problem, hold, start, coefficients, moments, residual, &norm);
-  for (PetscInt iteration = 0; iteration < ITERATIONS; iteration++) {
-    PetscReal next[MAX_MOMENTS], next_residual[MAX_MOMENTS], next_norm = PETSC_MAX_REAL, part = 1;
-
-    for (PetscInt k = 0; k < n; k++) slopes[k * n + k] += problem->softness[k] + hold;
-    PetscCall(SolveSmall(n, slopes, residual));
-    for (PetscInt halving = 0; halving < HALVINGS && !(next_norm < PROGRESS * norm); halving++, part /= 2) {
-      for (PetscInt k = 0; k < n; k++) next[k] = coefficients[k] - part * residual[k];
-      PetscCall(ComputeMoments(problem, next, moments, slopes));
-      ComputeResidual(problem, hold, start, next, moments, next_residual, &next_norm);
-    }
-    if (!(next_norm < PROGRESS * norm)) break;
-    norm = next_norm;
-    PetscCall(PetscArraycpy(coefficients, next, n));
-    PetscCall(PetscArraycpy(residual, next_residual, n));
-  }
-  *converged = (PetscBool)(norm <= TOLERANCE);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The coefficients that satisfy the conditions: by Newton's method from a factor of 1, or, if that fails because too many nodes are at the
-   bounds, by the proximal point method: solutions held near the one before, less and less */
-static PetscErrorCode Solve(Problem *problem, PetscReal coefficients[], PetscBool *converged)
-{
-  PetscBool held;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));
-  PetscCall(Iterate(problem, 0, coefficients, converged));
-  if (*converged) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));
-  for (PetscReal hold = 1; hold > LEAST_HOLD; hold *= HOLD_REDUCTION) PetscCall(Iterate(problem, hold, coefficients, &held));
-  PetscCall(Iterate(problem, 0, coefficients, converged));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* phi' M phi of an element for each moment, field values by node */
-static void AddElementMoments(const Problem *problem, const PetscScalar M[], PetscReal phi[][4], PetscReal scale, PetscReal moments[])
+static void AddElementMoments(const MomentsProblem *problem, const PetscScalar M[], PetscReal phi[][4], PetscReal scale,
+                              PetscReal moments[])
 {
   const PetscInt n = problem->body->model.element->nodes, dim = problem->body->mesh.dim;
 
@@ -206,7 +42,7 @@ static void AddElementMoments(const Problem *problem, const PetscScalar M[], Pet
 }
 
 /* The moments of the full mass in the fields as they are */
-static PetscErrorCode ComputeFullMoments(const Problem *problem, PetscReal moments[])
+static PetscErrorCode ComputeFullMoments(const MomentsProblem *problem, PetscReal moments[])
 {
   Body           body = problem->body;
   const PetscInt n    = body->model.element->nodes;
@@ -217,7 +53,7 @@ static PetscErrorCode ComputeFullMoments(const Problem *problem, PetscReal momen
   PetscCall(PetscArrayzero(moments, problem->n_moments));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall(BodyGetElementMassParts(body, e, PETSC_FALSE, lumped, consistent));
-    for (PetscInt i = 0; i < n; i++) GetFields(problem, body->mesh.connectivity[e * n + i], phi[i]);
+    for (PetscInt i = 0; i < n; i++) MomentsGetFields(problem, body->mesh.connectivity[e * n + i], phi[i]);
     AddElementMoments(problem, lumped, phi, 1, moments);
     AddElementMoments(problem, consistent, phi, 1, moments);
   }
@@ -227,7 +63,7 @@ static PetscErrorCode ComputeFullMoments(const Problem *problem, PetscReal momen
 }
 
 /* What the mass at each node adds to the moments: lumped mass, its share of the consistent part of its elements, and orphans */
-static PetscErrorCode ComputeWeights(Problem *problem)
+static PetscErrorCode ComputeWeights(MomentsProblem *problem)
 {
   Body               body = problem->body;
   const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim, n_moments = problem->n_moments;
@@ -244,7 +80,7 @@ static PetscErrorCode ComputeWeights(Problem *problem)
 
     PetscCall(BodyGetElementMassParts(body, e, PETSC_TRUE, lumped, consistent));
     for (PetscInt i = 0; i < n; i++) {
-      GetFields(problem, nodes[i], phi[i]);
+      MomentsGetFields(problem, nodes[i], phi[i]);
       inner += !body->layer.contains[nodes[i]];
     }
     if (!inner) continue;
@@ -261,7 +97,7 @@ static PetscErrorCode ComputeWeights(Problem *problem)
   if (!body->mass.orphans) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(body->mass.orphans, &orphans));
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    GetFields(problem, node, phi[0]);
+    MomentsGetFields(problem, node, phi[0]);
     for (PetscInt m = 0; m < n_moments; m++)
       problem->weights[node * n_moments + m] += orphans[node * dim] * phi[0][problem->pair[m][0]] * phi[0][problem->pair[m][1]] /
                                                 problem->total;
@@ -271,7 +107,7 @@ static PetscErrorCode ComputeWeights(Problem *problem)
 }
 
 /* The principal axes of the full mass, and its radii of gyration along them, from its moments in fields along the coordinates */
-static PetscErrorCode FindAxes(Problem *problem, const PetscReal moments[])
+static PetscErrorCode FindAxes(MomentsProblem *problem, const PetscReal moments[])
 {
   const PetscInt dim = problem->body->mesh.dim;
   PetscReal      J[9], squares[3], work[12];
@@ -296,7 +132,7 @@ static PetscErrorCode FindAxes(Problem *problem, const PetscReal moments[])
 
 /* Fields of first order along the principal axes of the full mass, from its centre, in units of its radii of gyration; then its moments in
    them. In such fields the conditions are well conditioned whatever the shape of the body and however it is turned. */
-static PetscErrorCode SetUpFields(Problem *problem)
+static PetscErrorCode SetUpFields(MomentsProblem *problem)
 {
   const PetscInt dim = problem->body->mesh.dim;
   PetscReal      lower[3], upper[3], moments[MAX_MOMENTS];
@@ -328,7 +164,7 @@ static PetscErrorCode SetUpFields(Problem *problem)
 }
 
 /* Adds the condition that a moment is kept */
-static PetscReal *AddCondition(Problem *problem, PetscInt moment, PetscReal softness)
+static PetscReal *AddCondition(MomentsProblem *problem, PetscInt moment, PetscReal softness)
 {
   PetscReal *weights = problem->condition[problem->n];
 
@@ -344,7 +180,7 @@ typedef enum {
   FIRST_ORDER                /* nothing */
 } Order;
 
-static void SetConditions(Problem *problem, Order order, PetscReal centre, PetscReal inertia)
+static void SetConditions(MomentsProblem *problem, Order order, PetscReal centre, PetscReal inertia)
 {
   const PetscInt  dim     = problem->body->mesh.dim;
   const PetscReal largest = PetscMax(problem->size[0], PetscMax(problem->size[1], problem->size[2]));
@@ -369,7 +205,7 @@ static void SetConditions(Problem *problem, Order order, PetscReal centre, Petsc
 
 /* Largest change of a moment of inertia about any axis through the centre, relative to it. With the inertia tensors I = tr(J) 1 - J, these
    are the eigenvalues of I_full^-1 (I - I_full). In two dimensions there is one axis. */
-static PetscErrorCode CompareInertia(const Problem *problem, const PetscReal moments[], PetscReal *error)
+static PetscErrorCode CompareInertia(const MomentsProblem *problem, const PetscReal moments[], PetscReal *error)
 {
   const PetscInt dim     = problem->body->mesh.dim;
   PetscReal      J[2][9] = {{0}}, inertia[2][9] = {{0}}, values[3], work[12];
@@ -400,7 +236,7 @@ static PetscErrorCode CompareInertia(const Problem *problem, const PetscReal mom
 }
 
 /* The factor at all nodes of this rank, also ghosts, and its range over nodes with mass */
-static PetscErrorCode EvaluateFactor(Problem *problem, const PetscReal coefficients[])
+static PetscErrorCode EvaluateFactor(MomentsProblem *problem, const PetscReal coefficients[])
 {
   Body      body     = problem->body;
   PetscReal range[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL};
@@ -410,8 +246,8 @@ static PetscErrorCode EvaluateFactor(Problem *problem, const PetscReal coefficie
   for (PetscInt node = 0; node < body->mesh.local_nodes; node++) {
     PetscReal psi[MAX_MOMENTS];
 
-    GetPolynomials(problem, node, psi);
-    body->mass.factor[node] = PetscClipInterval(GetPolynomial(problem, coefficients, psi), LEAST_FACTOR, problem->most);
+    MomentsGetPolynomials(problem, node, psi);
+    body->mass.factor[node] = PetscClipInterval(MomentsGetPolynomial(problem, coefficients, psi), LEAST_FACTOR, problem->most);
     if (body->layer.contains[node]) continue;
     range[0] = PetscMin(range[0], body->mass.factor[node]);
     range[1] = PetscMin(range[1], -body->mass.factor[node]);
@@ -424,7 +260,7 @@ static PetscErrorCode EvaluateFactor(Problem *problem, const PetscReal coefficie
 
 /* The first of these sets of conditions that can be satisfied gives the factor. What is given up, in this order: in two
    dimensions, moments of second order that no rotation needs; moments of inertia; the centre. */
-static PetscErrorCode FindFactor(Problem *problem)
+static PetscErrorCode FindFactor(MomentsProblem *problem)
 {
   const struct {
     PetscInt  dim; /* 0: in all dimensions */
@@ -445,11 +281,11 @@ static PetscErrorCode FindFactor(Problem *problem)
   for (PetscInt i = 0; i < n_attempts && !converged && problem->body->mass.moments != BODY_MASS_TOTAL; i++) {
     if (attempts[i].dim && attempts[i].dim != dim) continue;
     SetConditions(problem, centre_alone ? FIRST_ORDER : attempts[i].order, attempts[i].centre, attempts[i].inertia);
-    PetscCall(Solve(problem, coefficients, &converged));
+    PetscCall(MomentsSolve(problem, coefficients, &converged));
   }
   if (!converged) PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));
   PetscCall(EvaluateFactor(problem, coefficients));
-  PetscCall(ComputeMoments(problem, coefficients, moments, NULL));
+  PetscCall(MomentsCompute(problem, coefficients, moments, NULL));
   for (PetscInt a = 0; a < dim; a++)
     for (PetscInt d = 0; d < dim && PetscAbsReal(moments[1 + a]) > KEPT; d++)
       problem->body->mass.shift[d] += problem->axes[a][d] * problem->size[a] * moments[1 + a];
@@ -461,8 +297,8 @@ static PetscErrorCode FindFactor(Problem *problem)
 /* Finds the factor with which the mass that is left has the moments of the full mass, where any node is massless */
 PetscErrorCode BodyFindMassFactor(Body body)
 {
-  Problem   problem = {.body = body, .most = PETSC_MAX_REAL};
-  PetscBool any     = PETSC_FALSE;
+  MomentsProblem problem = {.body = body, .most = PETSC_MAX_REAL};
+  PetscBool      any     = PETSC_FALSE;
 
   PetscFunctionBegin;
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) any = (PetscBool)(any || body->layer.contains[node]);

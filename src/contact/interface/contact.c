@@ -177,7 +177,7 @@ PetscErrorCode ContactStep(Contact contact)
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   if (contact->rows.n_all) {
-    PetscUseTypeMethod(contact, step);
+    PetscCall(ContactMakeStep(contact));
     if (!ContactFailed(contact)) PetscCall(ContactLimitEnergy(contact));
   } else { /* nothing can touch */
     PetscBool penetrating;
@@ -330,6 +330,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->spares));
   PetscCall(PetscFree(c->work.stabilized));
   PetscCall(ContactDestroyResultants(c));
+  PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -123,6 +123,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
+  PetscCall(ContactSetUpFloating(contact));
   PetscCall(ContactSetUpObstacleTraces(contact));
   PetscCall(ContactSetUpResultants(contact));
   PetscCall(ContactSetUpEnergy(contact));

@@ -1,18 +1,6 @@
 /* Setters of the penalty method and of the augmented Lagrangian, beside their options. */
 #include "penaltyimpl.h"
-
-static PetscErrorCode GetPenalty(Contact contact, Penalty **method)
-{
-  PetscBool is_it;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)contact, &is_it, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, ""));
-  PetscCheck(is_it, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetType(contact, CONTACT_PENALTY) first");
-  *method = (Penalty *)contact->data;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include "../methodset.h"
 
 /*@
   ContactPenaltySetParameter - sets the stiffness of the springs
@@ -35,8 +23,8 @@ PetscErrorCode ContactPenaltySetParameter(Contact contact, PetscReal parameter)
   Penalty *penalty = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
   PetscValidLogicalCollectiveReal(contact, parameter, 2);
-  PetscCall(GetPenalty(contact, &penalty));
   PetscCheck(parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A penalty parameter of %g must be positive",
              (double)parameter);
   penalty->penalty = parameter;
@@ -64,8 +52,8 @@ PetscErrorCode ContactPenaltySetScale(Contact contact, PetscReal scale)
   Penalty *penalty = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
   PetscValidLogicalCollectiveReal(contact, scale, 2);
-  PetscCall(GetPenalty(contact, &penalty));
   PetscCheck(scale > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A penalty scale of %g must be positive",
              (double)scale);
   penalty->scale = scale;
@@ -93,8 +81,8 @@ PetscErrorCode ContactPenaltySetDamping(Contact contact, PetscReal damping)
   Penalty *penalty = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
   PetscValidLogicalCollectiveReal(contact, damping, 2);
-  PetscCall(GetPenalty(contact, &penalty));
   PetscCheck(damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A damping of %g must be positive",
              (double)damping);
   penalty->damping = damping;
@@ -124,9 +112,9 @@ PetscErrorCode ContactPenaltySetAugmentation(Contact contact, PetscReal toleranc
   Penalty *penalty = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
   PetscValidLogicalCollectiveReal(contact, tolerance, 2);
   PetscValidLogicalCollectiveInt(contact, max_it, 3);
-  PetscCall(GetPenalty(contact, &penalty));
   PetscCheck(tolerance > 0 && max_it > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "A gap of %g m that is left, and a limit of %" PetscInt_FMT " augmentations, must be positive", (double)tolerance, max_it);
   penalty->augmentation_tolerance = tolerance;

@@ -1,18 +1,6 @@
 /* Setters of the Schwarz alternating method, beside its options. */
 #include "schwarzimpl.h"
-
-static PetscErrorCode GetSchwarz(Contact contact, Schwarz **method)
-{
-  PetscBool is_it;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)contact, &is_it, CONTACT_SCHWARZ, ""));
-  PetscCheck(is_it, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetType(contact, CONTACT_SCHWARZ) first");
-  *method = (Schwarz *)contact->data;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include "../methodset.h"
 
 /*@
   ContactSchwarzSetTransmission - sets what is prescribed on both sides of the contact boundary
@@ -35,8 +23,9 @@ PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmissio
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, transmission, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, transmission, SCHWARZ_TRANSMISSION_IMPEDANCE, "transmission condition");
   schwarz->transmission = transmission;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -64,8 +53,8 @@ PetscErrorCode ContactSchwarzSetRobinParameter(Contact contact, PetscReal stiffn
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveReal(contact, stiffness, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
   PetscCheck(stiffness > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A Robin parameter of %g must be positive",
              (double)stiffness);
   schwarz->robin_parameter = stiffness;
@@ -94,8 +83,8 @@ PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact contact, PetscReal im
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveReal(contact, impedance, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
   PetscCheck(impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "An impedance of %g must be positive",
              (double)impedance);
   schwarz->impedance = impedance;
@@ -123,8 +112,9 @@ PetscErrorCode ContactSchwarzSetTraction(Contact contact, BodyTractionType tract
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, traction, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, traction, BODY_TRACTION_REACTION, "traction");
   schwarz->traction = traction;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -150,8 +140,9 @@ PetscErrorCode ContactSchwarzSetTractionWaveform(Contact contact, SchwarzWavefor
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, waveform, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, waveform, SCHWARZ_WAVEFORM_CONSTANT, "waveform");
   schwarz->waveform = waveform;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -177,8 +168,9 @@ PetscErrorCode ContactSchwarzSetPredictor(Contact contact, SchwarzPredictor pred
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, predictor, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, predictor, SCHWARZ_PREDICTOR_INELASTIC, "predictor");
   schwarz->predictor = predictor;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -204,8 +196,8 @@ PetscErrorCode ContactSchwarzSetSwapSides(Contact contact, PetscBool swap)
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveBool(contact, swap, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
   schwarz->swap = swap;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -231,8 +223,9 @@ PetscErrorCode ContactSchwarzSetRelaxation(Contact contact, SchwarzRelaxation re
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, relaxation, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, relaxation, SCHWARZ_RELAXATION_AITKEN, "relaxation");
   schwarz->relaxation = relaxation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -258,8 +251,9 @@ PetscErrorCode ContactSchwarzSetConvergence(Contact contact, SchwarzConvergence 
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, test, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, test, SCHWARZ_CONVERGENCE_MISMATCH, "convergence test");
   schwarz->convergence = test;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -285,8 +279,9 @@ PetscErrorCode ContactSchwarzSetUnconverged(Contact contact, SchwarzUnconverged 
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, what, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, what, SCHWARZ_UNCONVERGED_ACCEPT, "way to go on unconverged");
   schwarz->unconverged = what;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -312,8 +307,8 @@ PetscErrorCode ContactSchwarzSetRecheck(Contact contact, PetscBool recheck)
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveBool(contact, recheck, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
   schwarz->recheck = recheck;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -339,8 +334,9 @@ PetscErrorCode ContactSchwarzSetCondense(Contact contact, SchwarzCondense conden
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, condense, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
+  ContactCheckEnum(contact, condense, SCHWARZ_CONDENSE_AUTO, "condensation");
   schwarz->condense = condense;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -366,8 +362,8 @@ PetscErrorCode ContactSchwarzSetDenseLimit(Contact contact, PetscInt limit)
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
+  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
   PetscValidLogicalCollectiveInt(contact, limit, 2);
-  PetscCall(GetSchwarz(contact, &schwarz));
   PetscCheck(limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "A dense limit of %" PetscInt_FMT " must not be negative", limit);
   schwarz->dense_limit = limit;

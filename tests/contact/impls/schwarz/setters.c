@@ -137,6 +137,18 @@ static void refusals(void **state)
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetRobinParameter(contact, 0));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetImpedanceParameter(contact, -1));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must not be negative", ContactSchwarzSetDenseLimit(contact, -1));
+  for (int value = -1; value <= 4; value += 5) { /* one less and one more than there are, of the largest enum */
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no transmission condition", ContactSchwarzSetTransmission(contact, (SchwarzTransmission)value));
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no traction", ContactSchwarzSetTraction(contact, (BodyTractionType)value));
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no waveform", ContactSchwarzSetTractionWaveform(contact, (SchwarzWaveform)value));
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no predictor", ContactSchwarzSetPredictor(contact, (SchwarzPredictor)value));
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no relaxation", ContactSchwarzSetRelaxation(contact, (SchwarzRelaxation)value));
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no convergence test", ContactSchwarzSetConvergence(contact, (SchwarzConvergence)value));
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no way to go on", ContactSchwarzSetUnconverged(contact, (SchwarzUnconverged)value));
+    refused(PETSC_ERR_ARG_OUTOFRANGE, "no condensation", ContactSchwarzSetCondense(contact, (SchwarzCondense)value));
+  }
+  ok(ContactSchwarzSetTransmission(contact, SCHWARZ_TRANSMISSION_IMPEDANCE));
+  ok(ContactSchwarzSetTransmission(contact, SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetType(contact, CONTACT_PENALTY)", ContactPenaltySetParameter(contact, 1));
   ok(ContactSetType(contact, CONTACT_PENALTY));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetType(contact, CONTACT_SCHWARZ)",

@@ -1,0 +1,223 @@
+/* Static bodies that contact or ties alone hold: how contact sees their artificial springs, see src/body/system/springs.c. */
+#include <body/layout/bodyimpl.h>
+#include <impakt/private/bodyrows.h>
+#include <petscblaslapack.h>
+
+/*@
+  BodySetArtificialStiffness - sets how stiff the artificial springs are of a static body that contact or ties alone hold
+
+  Logically Collective
+
+  Input Parameters:
++ body - the `Body`, not yet set up
+- part - of the least that the body sets against being stretched along its longest edge and bent, by force over displacement; positive
+
+  Options Database Key:
+. -<body>_artificial_stiffness part - the part, 1e-2, of a nonlinear body 1
+
+  Level: advanced
+
+  Notes:
+  Springs hold the body while the contact forces are found. They are moved then, and the step is solved again, until they do not pull
+  any more: so results do not depend on them, but for round-off, which the displacement of the body as a whole has by the inverse of the
+  part more of.
+
+  The softer the springs, the fewer times that takes where contact is soft, and where the active set changes much. In a nonlinear body they
+  have to hold against what Newton's method leaves.
+
+.seealso: `Body`, `BodyGetArtificialStiffness()`, `BodyIsFloating()`, `BodyAddDisplacement()`
+@*/
+PetscErrorCode BodySetArtificialStiffness(Body body, PetscReal part)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(body, part, 2);
+  BodyCheckNotSetUp(body);
+  PetscCheck(part > 0 && part < PETSC_INFINITY, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "-%sartificial_stiffness %g must be positive", ((PetscObject)body)->prefix, (double)part);
+  body->springs.part = part;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetArtificialStiffness - how stiff the artificial springs are of a static body that contact or ties alone hold
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. part - see `BodySetArtificialStiffness()`; `PETSC_DECIDE` where the default has not been chosen yet
+
+  Level: advanced
+
+.seealso: `Body`, `BodySetArtificialStiffness()`
+@*/
+PetscErrorCode BodyGetArtificialStiffness(Body body, PetscReal *part)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(part, 2);
+  *part = body->springs.part;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsFloating - whether a static body is held by contact or ties alone, in one direction at least
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. floating - true if so: it has artificial springs then
+
+  Level: developer
+
+.seealso: `Body`, `BodySetArtificialStiffness()`, `BodyResetSprings()`
+@*/
+PetscErrorCode BodyIsFloating(Body body, PetscBool *floating)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(floating, 2);
+  *floating = (PetscBool)(body->springs.n > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacements of the dofs that the springs pull at, on every rank */
+static PetscErrorCode GatherDisplacements(Body body, Vec u, PetscReal values[BODY_MAX_RIGID])
+{
+  const PetscScalar *array;
+
+  PetscFunctionBegin;
+  if (!body->springs.n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(u, &array));
+  for (PetscInt k = 0; k < body->springs.n; k++) values[k] = body->springs.dof[k] >= 0 ? PetscRealPart(array[body->springs.dof[k]]) : 0;
+  PetscCall(VecRestoreArrayRead(u, &array));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, values, (PetscMPIInt)body->springs.n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyResetSprings - puts the artificial springs of a floating body at rest in its saved state
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Level: developer
+
+  Note:
+  What a controller step begins with; `BodySave()` does it too.
+
+.seealso: `Body`, `BodyIsFloating()`, `BodyMoveSprings()`
+@*/
+PetscErrorCode BodyResetSprings(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(GatherDisplacements(body, body->saved.u, body->springs.start));
+  PetscCall(PetscArraycpy(body->springs.place, body->springs.start, BODY_MAX_RIGID));
+  body->repeats = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyMeasureSprings - how the artificial springs of a floating body are stretched at the end of the step that has been made
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, integrated
+
+  Output Parameter:
+. state - the same on every rank
+
+  Level: developer
+
+.seealso: `Body`, `BodyIsFloating()`, `BodyMoveSprings()`
+@*/
+PetscErrorCode BodyMeasureSprings(Body body, BodySpringState *state)
+{
+  BodySprings *springs = &body->springs;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(state, 2);
+  PetscCall(PetscMemzero(state, sizeof(*state)));
+  state->n         = springs->n;
+  state->stiffness = springs->stiffness;
+  state->part      = springs->part;
+  state->linear    = body->model.linear;
+  state->size      = springs->size;
+  PetscCall(GatherDisplacements(body, body->state.u, springs->reached));
+  for (PetscInt k = 0; k < springs->n; k++) {
+    state->stretch[k]   = springs->reached[k] - springs->place[k];
+    state->displacement = PetscMax(state->displacement, PetscAbsReal(springs->reached[k]));
+    state->way          = PetscMax(state->way, PetscAbsReal(springs->reached[k] - springs->start[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyMoveSprings - moves the places at which the artificial springs of a floating body are at rest
+
+  Logically Collective
+
+  Input Parameters:
++ body - the `Body`
+- move - of each spring [m]; by its stretch: to where the body has come
+
+  Level: developer
+
+.seealso: `Body`, `BodyMeasureSprings()`, `BodyResetSprings()`
+@*/
+PetscErrorCode BodyMoveSprings(Body body, const PetscReal move[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->springs.n) PetscAssertPointer(move, 2);
+  for (PetscInt k = 0; k < body->springs.n; k++) body->springs.place[k] += move[k];
+  body->repeats = PETSC_FALSE; /* the end state was found with the springs where they have been */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  BodyDescribeDrift - in words, how a floating body has moved as a whole in the step, by its springs
+
+  Not Collective
+
+  Input Parameters:
++ body - the `Body`, after `BodyMeasureSprings()`
+- size - of the text
+
+  Output Parameter:
+. text - as in "move along x and turn about z"
+
+  Level: developer
+
+.seealso: `Body`, `BodyMeasureSprings()`
+@*/
+PetscErrorCode BodyDescribeDrift(Body body, size_t size, char text[])
+{
+  const BodySprings *springs = &body->springs;
+  const PetscInt     dim = body->mesh.dim, n_rigid = dim == 1 ? 1 : 3 * (dim - 1);
+  PetscReal          parts[BODY_MAX_RIGID] = {0}, matrix[BODY_MAX_RIGID * BODY_MAX_RIGID], amounts[BODY_MAX_RIGID];
+  PetscBLASInt       order = (PetscBLASInt)springs->n, one = 1, info, pivots[BODY_MAX_RIGID];
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(text, 3);
+  PetscCall(PetscArraycpy(matrix, springs->at_springs, springs->n * springs->n));
+  for (PetscInt k = 0; k < springs->n; k++) amounts[k] = springs->reached[k] - springs->start[k];
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&order, &one, matrix, &order, pivots, amounts, &order, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv info %d", (int)info);
+  for (PetscInt k = 0; k < springs->n; k++)
+    for (PetscInt i = 0; i < n_rigid; i++) parts[i] += amounts[k] * springs->motions[k * n_rigid + i];
+  PetscCall(BodyDescribeMotions(dim, parts, size, text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,178 @@
+/*
+   Controller steps of static bodies that contact or ties alone hold. Such a body has artificial springs (src/body/system/springs.c), with
+   which the method makes its step as with any other body. The step is made again with the springs at rest where the body has come to, until
+   they do not pull: that is the step without springs. Whatever the method, and whatever it does in a step, is the same each time.
+   src/contact/interface/springmoves.c has by how much the springs are moved.
+*/
+#include "floating.h"
+
+/* Times that a step is made: 3 to 12 are enough for most */
+#define MAX_TIMES 200
+/* Springs do not pull where their stretch is below this part of the displacements that they pull at */
+#define STRETCH_RTOL 1e-12
+/* or, where it has not fallen for so many times, below so many times the tolerance on positions: that is the round-off of contact forces */
+#define STRETCH_ATOL 10
+#define MAX_STALLS   3
+/* A stretch above this part of the last one does not fall */
+#define FALLS 0.5
+/* One that changes by less than this part of it is steady */
+#define STEADY 1e-3
+/* Way of a body, in parts of its size, after which nothing is thought to hold it */
+#define FAR           100
+#define FAR_NONLINEAR 0.5
+
+/* After the bodies and the rows */
+PetscErrorCode ContactSetUpFloating(Contact contact)
+{
+  ContactFloating *f = &contact->floating;
+  const PetscInt   n = contact->n_bodies;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc2(n, &f->bodies, n, &f->states));
+  for (PetscInt b = 0; b < n; b++) {
+    PetscBool floating;
+
+    PetscCall(BodyIsFloating(contact->bodies[b], &floating));
+    if (!floating) continue;
+    PetscCall(BodyMeasureSprings(contact->bodies[b], &f->states[f->n]));
+    f->bodies[f->n] = (ContactSprings){.body = b, .begin = f->n_springs};
+    f->n_springs += f->states[f->n++].n;
+  }
+  if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc4(f->n_springs, &f->root, f->n_springs, &f->stretch, f->n_springs, &f->last, f->n_springs, &f->move));
+  PetscCall(PetscCalloc4((SPRINGS_HISTORY + 1) * f->n_springs, &f->moves, (SPRINGS_HISTORY + 1) * f->n_springs, &f->changes,
+                         SPRINGS_HISTORY * f->n_springs, &f->basis, SPRINGS_HISTORY * f->n_springs, &f->directions));
+  PetscCall(PetscCalloc2(contact->rows.n, &f->start_force, contact->rows.n, &f->start_active));
+  for (PetscInt k = 0; k < f->n; k++)
+    for (PetscInt i = 0; i < f->states[k].n; i++) f->root[f->bodies[k].begin + i] = PetscSqrtReal(f->states[k].stiffness);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyFloating(Contact contact)
+{
+  ContactFloating *f = &contact->floating;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(f->bodies, f->states));
+  PetscCall(PetscFree4(f->root, f->stretch, f->last, f->move));
+  PetscCall(PetscFree4(f->moves, f->changes, f->basis, f->directions));
+  PetscCall(PetscFree2(f->start_force, f->start_active));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A body that has gone far, driven by what does not get less */
+static PetscErrorCode RefuseUnheld(Contact contact, Body body)
+{
+  const char *name = ((PetscObject)body)->name;
+  char        motion[128];
+
+  PetscFunctionBegin;
+  PetscCall(BodyDescribeDrift(body, sizeof(motion), motion));
+  SETERRQ(
+      PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "Body '%s' is static, and neither contact nor ties hold it in the step from time %.9g s: a load, or the push of its partners, makes "
+      "it %s, and nothing stops that; hold it with -%s_boundary_displacement, or let friction or ties do it",
+      name, (double)contact->floating.time, motion, name);
+}
+
+/* How the springs of all bodies are stretched; whether they have come to rest */
+static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
+{
+  const PetscReal  atol = STRETCH_ATOL * CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  ContactFloating *f    = &contact->floating;
+
+  PetscFunctionBegin;
+  *rest = PETSC_TRUE;
+  PetscCall(PetscArraycpy(f->last, f->stretch, f->n_springs));
+  for (PetscInt k = 0; k < f->n; k++) {
+    ContactSprings  *springs = &f->bodies[k];
+    BodySpringState *state   = &f->states[k];
+    const Body       body    = contact->bodies[springs->body];
+    PetscReal        most = 0, square = 0, last = 0, change = 0;
+
+    PetscCall(BodyMeasureSprings(body, state));
+    for (PetscInt i = 0; i < state->n; i++) {
+      const PetscInt at = springs->begin + i;
+
+      f->stretch[at] = f->root[at] * state->stretch[i];
+      most           = PetscMax(most, PetscAbsReal(state->stretch[i]));
+      square += PetscSqr(f->stretch[at]);
+      last += PetscSqr(f->last[at]);
+      change += PetscSqr(f->stretch[at] - f->last[at]);
+    }
+    springs->stalls = times && square > PetscSqr(FALLS) * last ? springs->stalls + 1 : 0;
+    springs->steady = times && most > atol && change < PetscSqr(STEADY) * last ? springs->steady + 1 : 0;
+    if (most > STRETCH_RTOL * state->displacement && (springs->stalls < MAX_STALLS || most > atol)) *rest = PETSC_FALSE;
+    if (springs->stalls && state->way > (state->linear ? FAR : FAR_NONLINEAR) * state->size && most > atol)
+      PetscCall(RefuseUnheld(contact, body));
+    PetscCall(PetscInfo(contact, "body '%s': springs stretched by %g m after a way of %g m, step made %" PetscInt_FMT " times\n",
+                        ((PetscObject)body)->name, (double)most, (double)state->way, times + 1));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step of the method, from where contact has been the last time; but not where rows that are let go have forces that fade from what
+   they were at the start */
+static PetscErrorCode MakeStep(Contact contact, PetscBool first)
+{
+  const PetscBool again = contact->energy.again;
+
+  PetscFunctionBegin;
+  if (!first && !contact->release.fades) {
+    PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
+    PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
+  }
+  contact->energy.again = (PetscBool)(again || !first);
+  PetscUseTypeMethod(contact, step);
+  contact->energy.again = again;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step from the saved states with springs at rest there; then as often as they pull */
+static PetscErrorCode MakeStepOfFloating(Contact contact)
+{
+  ContactFloating *f    = &contact->floating;
+  PetscBool        rest = PETSC_FALSE;
+  TS               ts;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetTS(contact->bodies[f->bodies[0].body], &ts));
+  PetscCall(TSGetTime(ts, &f->time));
+  f->n_history = f->plain = 0;
+  f->patience             = 2;
+  f->leapt                = PETSC_FALSE;
+  for (PetscInt k = 0; k < f->n; k++) {
+    f->bodies[k].leaps = f->bodies[k].steady = f->bodies[k].stalls = 0;
+    PetscCall(BodyResetSprings(contact->bodies[f->bodies[k].body]));
+  }
+  for (PetscInt times = 0; times < MAX_TIMES && !rest; times++) {
+    PetscCall(MakeStep(contact, (PetscBool)(times == 0)));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(Measure(contact, times, &rest));
+    if (!rest) PetscCall(SpringsMove(contact, (PetscBool)(times > 0)));
+  }
+  if (!rest)
+    PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                             "Static bodies that contact or ties alone hold have not come to rest in the step from time %.9g s, which has "
+                             "been made %d times: -info tells of their springs. Choose a smaller -time_step, or prescribe displacements",
+                             (double)f->time, MAX_TIMES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The method's step, as often as floating bodies need it */
+PetscErrorCode ContactMakeStep(Contact contact)
+{
+  ContactFloating *f = &contact->floating;
+
+  PetscFunctionBegin;
+  if (!f->n) {
+    PetscUseTypeMethod(contact, step);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscArraycpy(f->start_force, contact->start.force, contact->rows.n));
+  PetscCall(PetscArraycpy(f->start_active, contact->start.active, contact->rows.n));
+  PetscCall(MakeStepOfFloating(contact));
+  PetscCall(PetscArraycpy(contact->start.force, f->start_force, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->start.active, f->start_active, contact->rows.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
