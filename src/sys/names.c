@@ -29,6 +29,26 @@ PetscErrorCode NamesRead(const char prefix[], const char option[], PetscInt *n, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds a name to a list in a message; where there is no room left, " ..." once. PETSc's own call writes a byte beyond a text that is full
+ */
+PetscErrorCode NamesAppend(char list[], size_t size, const char separator[], const char name[])
+{
+  static const char more[] = " ...";
+  size_t            length, wanted, end;
+  PetscBool         full;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrlen(list, &length));
+  PetscCall(PetscStrlen(separator, &end));
+  PetscCall(PetscStrlen(name, &wanted));
+  PetscCall(PetscStrendswith(list, more, &full));
+  if (full) PetscFunctionReturn(PETSC_SUCCESS);
+  if (length + end + wanted + sizeof(more) <= size)
+    PetscCall(PetscSNPrintf(list + length, size - length, "%s%s", length ? separator : "", name));
+  else PetscCall(PetscStrncpy(list + length, more, size - length));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The names in a registry, in alphabetical order, with commas between them */
 PetscErrorCode NamesOfRegistry(PetscFunctionList registry, size_t size, char known[])
 {
@@ -42,10 +62,7 @@ PetscErrorCode NamesOfRegistry(PetscFunctionList registry, size_t size, char kno
   for (int i = 0; i < n; i++) order[i] = i;
   PetscCall(PetscSortStrWithPermutation(n, names, order));
   known[0] = '\0';
-  for (int i = 0; i < n; i++) {
-    if (i) PetscCall(PetscStrlcat(known, ", ", size));
-    PetscCall(PetscStrlcat(known, names[order[i]], size));
-  }
+  for (int i = 0; i < n; i++) PetscCall(NamesAppend(known, size, ", ", names[order[i]]));
   PetscCall(PetscFree(order));
   PetscCall(PetscFree(names));
   PetscFunctionReturn(PETSC_SUCCESS);
