@@ -1,6 +1,7 @@
 /* The program: everything from options, run, report. */
 #include <impakt.h>
 #include <sys/commandline.h>
+#include <sys/example.h>
 #include <sys/help.h>
 #include <sys/optionvalues.h>
 
@@ -75,6 +76,7 @@ int main(int argc, char **argv)
   CommandLine    line  = {.words = NULL};
   PetscErrorCode error = ImpaktHelp(argc, argv, &done);
 
+  if (!error && !done) error = ImpaktExample(argc, argv, &done);
   if (error || done) return ImpaktExit(error);
   error = CommandLineCreate(argc, argv, &line);
   if (!error) error = Start(&line);

@@ -113,7 +113,8 @@ PetscErrorCode ImpaktPrintUsage(FILE *file)
                          "  impakt FILE.opts [-option value ...]\n"
                          "  mpiexec -n 4 impakt FILE.opts [-option value ...]\n\n",
                          IMPAKT_VERSION));
-  if (file == stderr) PetscCall(PetscFPrintf(PETSC_COMM_WORLD, file, "There are options files in options/. `impakt -help` tells more.\n"));
+  if (file == stderr)
+    PetscCall(PetscFPrintf(PETSC_COMM_WORLD, file, "`impakt -example` has options files to start from, `impakt -help` tells more.\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,6 +132,7 @@ static PetscErrorCode PrintScreen(void)
   for (size_t t = 0; t < n; t++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-10s %s\n", topics[t].name, topics[t].text));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  all        the options of all topics, and those of PETSc\n"
                                           "  markdown   the options of all topics, as tables in Markdown\n"
+                                          "-example [NAME] lists options files to start from, or writes one.\n"
                                           "-version prints what Impakt was built with and ends.\n\n"));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                         "PETSc %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT ", %s, HDF5 %u.%u.%u\nbuilt by %s, %s\n", v.petsc[0],

@@ -110,7 +110,7 @@ def known_options():
             yield "blocks", {"RUN": "", "BODY": "left_"}[owner] + name.replace("<surface>", "xmin"), value
 
 
-KNOWN = [known for known in known_options() if known[1] != "options_file"]
+KNOWN = [known for known in known_options() if known[1] not in ("options_file", "example")]
 BATCHES = 4
 TEXTS = re.compile(r"^(file|\[viewer\])|filename")  # any text will do, or is found wrong when it is used
 
@@ -133,3 +133,28 @@ def test_values_of_no_sense(batch, words):
         run = words(f"options/{case}.opts", *SHORT, f"-{option}", "zzz")
         assert run.returncode > 0, option
         check_message(run, [f"-{option}"])
+
+
+def without_remarks(text):
+    return [line.split("#")[0].split() for line in text.splitlines() if line.split("#")[0].strip()]
+
+
+def test_examples(words, tmp_path):
+    """What is written is the file of options/, each option with what it means, and nothing that is there is overwritten."""
+    names = re.findall(r"^  (\S+)", words("-example").stdout, re.MULTILINE)
+    assert len(names) > 20
+    for name in names:
+        assert words("-example", name).returncode == 0
+        text, original = ((folder / f"{name}.opts").read_text() for folder in (tmp_path, ROOT / "options"))
+        assert without_remarks(text) == without_remarks(original)
+        assert text.count("#") > original.count("#")
+    (tmp_path / "blocks.opts").write_text("mine")
+    refused(words("-example", "blocks"), ["'blocks.opts' exists already"])
+    assert (tmp_path / "blocks.opts").read_text() == "mine"
+    refused(words("-example", "block"), ["-example block", "blocks", "two-walls"])
+    assert steps(words("two-walls.opts", "-time_end", "6.245e-6", "-output_history", "h.h5", "-output_summary", "s.json")) == 10
+
+
+def test_example_on_two_ranks(words, tmp_path):
+    assert words("-example", "blocks", ranks=2).stdout.count("blocks.opts is written") == 1
+    refused(words("-example", "blocks", ranks=2), ["'blocks.opts' exists already"])
