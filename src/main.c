@@ -1,5 +1,6 @@
 /* The program: everything from options, run, report. */
 #include <impakt.h>
+#include <signal.h>
 #include <sys/commandline.h>
 #include <sys/example.h>
 #include <sys/help.h>
@@ -65,6 +66,7 @@ static PetscErrorCode Start(CommandLine *line)
   if (line->error[0]) n = 1;
   PetscCall(ImpaktInitialize(&n, &words));
   PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
+  (void)signal(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
   PetscCall(CommandLineInsert(line));
   PetscCall(OptionsCheckValues());
   return PETSC_SUCCESS;

@@ -21,13 +21,15 @@ struct Place {
 };
 
 typedef struct {
-  char       *error; /* what is wrong with the files, if somebody wants to know */
-  size_t      error_size;
-  const char *option; /* which one is looked for, else NULL */
-  char       *origin; /* where it stands last, as "file, line 3" */
-  size_t      origin_size;
-  char        prefixes[8][PETSC_MAX_OPTION_NAME]; /* by -prefix_push */
-  int         n_prefixes;
+  char              *error; /* what is wrong with the files, if somebody wants to know */
+  size_t             error_size;
+  const struct stat *sought; /* a file, or NULL */
+  PetscBool          found;  /* it has been visited */
+  const char        *option; /* which one is looked for, else NULL */
+  char              *origin; /* where it stands last, as "file, line 3" */
+  size_t             origin_size;
+  char               prefixes[8][PETSC_MAX_OPTION_NAME]; /* by -prefix_push */
+  int                n_prefixes;
 } Walk;
 
 static PetscErrorCode VisitFile(Walk *, const char[], Place);
@@ -157,6 +159,7 @@ static PetscErrorCode VisitFile(Walk *walk, const char text[], Place by)
   if (yaml) PetscFunctionReturn(PETSC_SUCCESS); /* these are not made of lines, and cannot include others */
   PetscCall(CheckFile(walk, path, by, &place.status, &fine));
   if (!fine) PetscFunctionReturn(PETSC_SUCCESS);
+  if (walk->sought && walk->sought->st_dev == place.status.st_dev && walk->sought->st_ino == place.status.st_ino) walk->found = PETSC_TRUE;
   file = fopen(path, "r");
   if (file) {
     PetscCall(VisitLines(walk, file, &place));
@@ -173,6 +176,26 @@ PetscErrorCode OptionsFileCheck(const char path[], char error[], size_t size)
   PetscFunctionBegin;
   error[0] = 0;
   PetscCall(VisitFile(&walk, path, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a file is one of the options files of the run */
+PetscErrorCode OptionsFilesInclude(const struct stat *status, PetscBool *include)
+{
+  char   error[1024] = "";
+  Walk   walk        = {.error = error, .error_size = sizeof(error), .sought = status};
+  int    argc;
+  char **argv;
+
+  PetscFunctionBegin;
+  PetscCall(PetscGetArgs(&argc, &argv));
+  for (int i = 1; i + 1 < argc; i++) {
+    PetscBool file;
+
+    PetscCall(PetscStrcasecmp(argv[i], "-options_file", &file));
+    if (file) PetscCall(VisitFile(&walk, argv[i + 1], NULL));
+  }
+  *include = walk.found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,7 +6,7 @@ import re
 import pytest
 from cases import long
 from conftest import IMPAKT, ROOT
-from test_bad_input import check_message
+from messages import check_message
 
 BLOCKS = "options/blocks.opts"
 SHORT = ["-time_end", "1e-6"]
