@@ -2,7 +2,9 @@
 
    PETSc skips words that belong to no option, and lets an options file that stands further right overrule what stands before it. Impakt
    refuses the former, takes a file that stands alone as an options file, and lets the command line overrule all files. */
+#define _DEFAULT_SOURCE /* isascii() */
 #include <impakt.h>
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include "commandline.h"
@@ -42,6 +44,11 @@ static PetscErrorCode Blame(CommandLine *line, const char word[], const char opt
     PetscCall(PetscSNPrintf(line->error, sizeof(line->error),
                             "There is an empty word on the command line%s%s: is a variable of a script empty?", option ? " after " : "",
                             option ? option : ""));
+  else if (word[0] == '-' && (isdigit((unsigned char)word[1]) || !isascii((unsigned char)word[1])))
+    PetscCall(PetscSNPrintf(line->error, sizeof(line->error),
+                            "'%s' on the command line cannot be an option, and is no value of %s: options, and so names of bodies and "
+                            "obstacles, begin with a letter of ASCII",
+                            word, option ? option : "one"));
   else if (option)
     PetscCall(PetscSNPrintf(line->error, sizeof(line->error),
                             "'%s' on the command line belongs to no option: %s has its value already, '%s'. Lists take commas without "

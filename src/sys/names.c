@@ -1,6 +1,8 @@
 /* Lists of names: in the options, of any length (PETSc's own call fills an array of the caller's, and leaves away what does not fit), and
    in registries. */
+#define _DEFAULT_SOURCE /* isascii() */
 #include "names.h"
+#include <ctype.h>
 
 PetscErrorCode NamesDestroy(PetscInt n, char ***names)
 {
@@ -26,6 +28,20 @@ PetscErrorCode NamesRead(const char prefix[], const char option[], PetscInt *n, 
     PetscCall(PetscOptionsGetStringArray(NULL, prefix, option, *names, n, set));
   } while (*n == capacity);
   if (!*n) PetscCall(NamesDestroy(0, names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stops with an error if options cannot begin with a name, as PETSc reads them; `option` is the one that gave it */
+PetscErrorCode NamesCheck(MPI_Comm comm, const char option[], const char name[])
+{
+  PetscBool fine = (PetscBool)(isascii((unsigned char)name[0]) && isalpha((unsigned char)name[0]));
+
+  PetscFunctionBegin;
+  for (const char *c = name; *c; c++)
+    if (!isascii((unsigned char)*c) || !(isalnum((unsigned char)*c) || *c == '_' || *c == '-')) fine = PETSC_FALSE;
+  PetscCheck(fine, comm, PETSC_ERR_USER_INPUT,
+             "-%s: '%s' cannot be a name, since options begin with it: it needs a letter of ASCII first, then letters, digits, _ or -",
+             option, name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,6 +3,7 @@
 import os
 import re
 
+import h5py
 import pytest
 from cases import long
 from conftest import IMPAKT, ROOT
@@ -158,3 +159,36 @@ def test_examples(words, tmp_path):
 def test_example_on_two_ranks(words, tmp_path):
     assert words("-example", "blocks", ranks=2).stdout.count("blocks.opts is written") == 1
     refused(words("-example", "blocks", ranks=2), ["'blocks.opts' exists already"])
+
+
+# What was computed without a word, or blamed on something else
+SENSELESS = {
+    "body with digit": (["-bodies", "1a,b"], ["-bodies", "'1a'", "letter"]),
+    "option with digit": (["-bodies", "1a", "-1a_dm_plex_dim", "1"], ["'-1a_dm_plex_dim'", "letter"]),
+    "body not ASCII": (["-bodies", "block,kl\u00f6tz"], ["-bodies", "kl\u00f6tz", "letters"]),
+    "obstacle": ([BLOCKS, "-obstacles", "2nd"], ["-obstacles", "'2nd'"]),
+    "far away": ([BLOCKS, "-left_translate", "1e12,0"], ["'left'", "-left_translate", "digits"]),
+    "tiny": ([BLOCKS, "-left_scale", "1e-80"], ["'left'", "-left_scale"]),
+    "huge": ([BLOCKS, "-left_scale", "1e90"], ["'left'", "-left_scale"]),
+    "angle": ([BLOCKS, "-left_rotate", "1e9"], ["-left_rotate", "1e+09", "360"]),
+    "exact in two dimensions": ([BLOCKS, "-exact", "impact", "-left_poissons_ratio", "0.3"], ["-exact", "'left'", "-left_poissons_ratio 0"]),
+    "exact with loads": (["options/impact-high-speed.opts", "-right_body_force", "1e3"], ["-exact", "'right'", "body forces"]),
+}
+
+
+@pytest.mark.parametrize("case", list(SENSELESS))
+def test_input_without_sense(case, words):
+    given, named = SENSELESS[case]
+    refused(words(*given), named)
+
+
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+def test_line_ends_of_tables(ends, words, tmp_path):
+    (tmp_path / "t.txt").write_bytes(f"0 0{ends}# comment{ends}{ends}1e-6,1e12{ends}2e-6 2e12".encode())
+    run = words(BLOCKS, "-left_body_force", "table:t.txt,0", "-output_history", "h.h5", "-output_summary", "s.json", "-time_end", "2e-6")
+    assert run.returncode == 0, run.stderr
+    with h5py.File(tmp_path / "h.h5") as history:
+        # the force grows to f = 2e12 N/m^3 in t = 2e-6 s, and the momentum to V f t / 2; contact takes 0.4 % of it
+        momentum = history["body/left/momentum"][:, 0]
+    gained = momentum - momentum[0]
+    assert gained[-1] == pytest.approx(0.25 * 0.05 * 2e12 * 2e-6 / 2, rel=0.01)
