@@ -178,10 +178,19 @@ $(BUILD)/yardstick_hex8: tests/scaling/yardstick_hex8.c
 	@mkdir -p $(@D)
 	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
 
+# The options files that need nothing but themselves, as text for -example
+examples := $(sort $(shell grep -l '^-bodies' $$(grep -LE 'filename|options_file|file:' options/*.opts)))
+$(BUILD)/examples.inc: $(examples) $(BUILD)/examples
+	@for f in $(examples); do n=$${f##*/}; echo "{\"$${n%.opts}\", (const char *const[]){"; \
+	  sed -e 's/[\"\\]/\\&/g' -e 's/.*/"&",/' $$f; echo "NULL}},"; done >$@
+$(BUILD)/src/sys/example.o: $(BUILD)/examples.inc
+$(BUILD)/src/sys/example.o: private CPPFLAGS += -I$(BUILD)
+
 # What the objects and the library were made with: rewritten only when that changes
 $(BUILD)/flags: text = $(CC) $(CPPFLAGS) $(CFLAGS) $(LIBS), $(SHARED)
 $(BUILD)/members: text = $(members)
-$(BUILD)/flags $(BUILD)/members: force
+$(BUILD)/examples: text = $(examples)
+$(BUILD)/flags $(BUILD)/members $(BUILD)/examples: force
 	@mkdir -p $(@D); echo '$(text)' | cmp -s - $@ || echo '$(text)' >$@
 
 -include $(members:.o=.d) $(BUILD)/src/main.d $(addsuffix .d,$(units))

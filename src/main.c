@@ -1,6 +1,10 @@
 /* The program: everything from options, run, report. */
 #include <impakt.h>
+#include <signal.h>
+#include <sys/commandline.h>
+#include <sys/example.h>
 #include <sys/help.h>
+#include <sys/optionvalues.h>
 
 static PetscErrorCode CheckOptions(Controller controller)
 {
@@ -50,16 +54,38 @@ static PetscErrorCode CheckAsked(int argc, PetscBool *asked)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Starts PETSc with the words of the command line, or with none where these are wrong */
+static PetscErrorCode Start(CommandLine *line)
+{
+  int    required = MPI_THREAD_FUNNELED, provided, n = line->n;
+  char **words = line->words;
+
+  /* PetscFunctionBegin would need PETSc */
+  if (MPI_Init_thread(&n, &words, required, &provided)) return PETSC_ERR_MPI;
+  PetscCall(CommandLineCheckFiles(line));
+  if (line->error[0]) n = 1;
+  PetscCall(ImpaktInitialize(&n, &words));
+  PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
+  (void)signal(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
+  PetscCall(CommandLineInsert(line));
+  PetscCall(OptionsCheckValues());
+  return PETSC_SUCCESS;
+}
+
 int main(int argc, char **argv)
 {
   PetscBool      done, asked = PETSC_TRUE;
-  const int      n_words = argc;
-  PetscErrorCode error   = ImpaktHelp(argc, argv, &done);
+  CommandLine    line  = {.words = NULL};
+  PetscErrorCode error = ImpaktHelp(argc, argv, &done);
 
+  if (!error && !done) error = ImpaktExample(argc, argv, &done);
   if (error || done) return ImpaktExit(error);
-  error = ImpaktInitialize(&argc, &argv);
-  if (!error) error = CheckAsked(n_words, &asked);
+  error = CommandLineCreate(argc, argv, &line);
+  if (!error) error = Start(&line);
+  if (!error) error = CheckAsked(argc, &asked);
   if (!error && asked) error = Run();
   if (!error) error = ImpaktFinalize();
+  if (!error) (void)MPI_Finalize(); /* whoever starts MPI ends it */
+  CommandLineDestroy(&line);
   return error || asked ? ImpaktExit(error) : 1;
 }

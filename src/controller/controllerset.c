@@ -99,7 +99,8 @@ static PetscErrorCode ReadBodies(Controller controller)
   for (PetscInt b = 0; b < n && !error; b++) {
     Body body = NULL;
 
-    error = BodyCreate(comm, names[b], &body);
+    error = NamesCheck(comm, "bodies", names[b]);
+    if (!error) error = BodyCreate(comm, names[b], &body);
     if (!error) error = ControllerAddBody(controller, body);
     PetscCall(BodyDestroy(&body));
   }

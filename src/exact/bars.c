@@ -37,8 +37,8 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   Material  material;
   PetscInt  dim;
   Vec       reference, displacement, positions;
-  PetscReal lower, upper;
-  PetscBool linear;
+  PetscReal lower, upper, poissons_ratio;
+  PetscBool linear, loaded;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &bar->name));
@@ -48,10 +48,20 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
              "-exact: the exact solutions are those of linear elastic bars, and body '%s' is nonlinear; leave the option out, or choose "
              "-%s_material_type linear_elastic",
              ((PetscObject)body)->name, ((PetscObject)body)->name);
+  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(MaterialGetPoissonsRatio(material, &poissons_ratio));
+  PetscCheck(dim == 1 || poissons_ratio == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-exact: waves in body '%s', of %" PetscInt_FMT " dimensions, are those of a bar only if it does not get thicker where it is "
+             "pressed; leave the option out, or choose -%s_poissons_ratio 0",
+             ((PetscObject)body)->name, dim, ((PetscObject)body)->name);
+  PetscCall(BodyHasForces(body, &loaded));
+  PetscCheck(!loaded, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-exact: the exact solutions are those of bars without forces from outside, and body '%s' has tractions, body forces or "
+             "gravity; leave the option out",
+             ((PetscObject)body)->name);
   PetscCall(MaterialGetDensity(material, &bar->density));
   PetscCall(MaterialGetUniaxialModulus(material, &bar->modulus));
   PetscCall(BodyGetMass(body, &bar->mass));
-  PetscCall(BodyGetDimension(body, &dim));
   PetscCall(BodyGetReferencePositions(body, &reference));
   PetscCall(GetExtent(reference, dim, normal, &lower, &upper));
   bar->length = upper - lower;

@@ -2,6 +2,7 @@
 #include "exactimpl.h"
 #include <sys/package.h>
 #include <math.h>
+#include <sys/names.h>
 
 PetscClassId EXACT_CLASSID = 0;
 
@@ -90,8 +91,7 @@ PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
 
     PetscCall(PetscStrcmp(type, Types[i].type, &same));
     if (same) found = i;
-    PetscCall(PetscStrlcat(known, " ", sizeof(known)));
-    PetscCall(PetscStrlcat(known, Types[i].type, sizeof(known)));
+    PetscCall(NamesAppend(known, sizeof(known), " ", Types[i].type));
   }
   PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT, "Unknown -exact '%s'; known: %s", type, known);
   PetscCall(PetscHeaderCreate(*exact, EXACT_CLASSID, "Exact", "Exact solution", "Exact", comm, ExactDestroy, ExactView));

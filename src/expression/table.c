@@ -37,27 +37,48 @@ static char *ReadNumber(char text[], PetscReal *value)
   return end;
 }
 
+/* Reads a line without its end, which is that of any system; `whole`: it fits. Whether there was one */
+static PetscBool ReadLine(FILE *file, char line[], size_t size, PetscBool *whole)
+{
+  size_t n = 0;
+  int    c;
+
+  *whole = PETSC_TRUE;
+  while ((c = getc(file)) != EOF && c != '\n' && c != '\r') {
+    if (n + 1 < size) line[n++] = c ? (char)c : '?'; /* binary, and no end of the line */
+    else *whole = PETSC_FALSE;
+  }
+  line[n] = 0;
+  if (c == '\r') {
+    const int next = getc(file);
+
+    if (next != '\n' && next != EOF) (void)ungetc(next, file);
+  }
+  return (PetscBool)(n > 0 || c != EOF);
+}
+
 /* Reads a table. If the file is none, `problem` says why. */
 static PetscErrorCode ReadRows(FILE *file, Table table, char problem[], size_t size)
 {
-  char     line[1024];
-  PetscInt number = 0;
+  char      line[1024];
+  PetscInt  number = 0;
+  PetscBool whole;
 
   PetscFunctionBegin;
   errno = 0;
-  while (fgets(line, sizeof(line), file)) {
+  while (ReadLine(file, line, sizeof(line), &whole)) {
     PetscReal time, value;
     char     *rest = line, *comment;
 
     number++;
-    if (strlen(line) == sizeof(line) - 1) {
-      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT " is longer than %d characters", number, (int)sizeof(line) - 2));
+    if (!whole) {
+      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT " is longer than %d characters", number, (int)sizeof(line) - 1));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
-    comment = strpbrk(line, "#\r\n");
+    comment = strchr(line, '#');
     if (comment) *comment = 0;
     rest += strspn(rest, " \t");
-    if (!*rest && (comment || feof(file))) continue;
+    if (!*rest) continue;
     rest = ReadNumber(rest, &time);
     if (rest) rest = ReadNumber(rest, &value);
     if (!rest || *rest) {

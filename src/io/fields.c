@@ -8,6 +8,7 @@
 #include <petsctime.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Most frames in a run whose options do not say how often */
 #define DEFAULT_FRAMES 100
@@ -31,6 +32,7 @@ struct _n_Fields {
   PetscReal      *nodal;                    /* of each node of this rank, what ContactFieldsCompute() gives */
   void           *buffer;                   /* one field of a frame, in the file's precision */
   hid_t           file;                     /* -1 until it is begun */
+  int             held;                     /* the file with its final name, see OutputFileHold(); on the first rank */
   PetscInt        listed;                   /* frames in the XDMF file */
   PetscLogDouble  list_ended, list_seconds; /* when the XDMF file was written last, and how long that took [s] */
 };
@@ -121,6 +123,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   *fields = f;
   f->comm = PetscObjectComm((PetscObject)controller);
   f->file = -1;
+  f->held = -1;
   PetscCallMPI(MPI_Comm_rank(f->comm, &rank));
   f->first_rank = rank ? PETSC_FALSE : PETSC_TRUE;
   f->precision  = precision;
@@ -303,6 +306,7 @@ static PetscErrorCode TakePlace(Fields fields)
   if (fields->first_rank) {
     remove(fields->xdmf);
     PetscCall(OutputFileReplace(fields->part, fields->path));
+    PetscCall(OutputFileHold(fields->path, &fields->held));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -379,12 +383,14 @@ PetscErrorCode FieldsFinish(Fields fields)
   int closed;
 
   PetscFunctionBegin;
+  if (fields->first_rank && access(fields->xdmf, F_OK)) fields->listed = -1; /* somebody has moved or deleted it */
   PetscCall(Share(fields, List(fields, PETSC_TRUE)));
   if (fields->file < 0) PetscFunctionReturn(PETSC_SUCCESS);
   closed       = H5Fclose(fields->file) < 0 ? 0 : 1;
   fields->file = -1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed, 1, MPI_INT, MPI_MIN, fields->comm));
   PetscCheck(closed, fields->comm, PETSC_ERR_FILE_WRITE, "HDF5 cannot close %s; is the disk full?", fields->path);
+  PetscCall(Share(fields, OutputFileRestore(fields->held, fields->path)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -416,6 +422,7 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscFunctionBegin;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(List(f, PETSC_TRUE));
+  PetscCall(OutputFileRelease(&f->held));
   PetscCall(ContactFieldsDestroy(&f->contact));
   PetscCall(FieldsMeshDestroy(&f->mesh));
   PetscCall(PetscFree(f->times));

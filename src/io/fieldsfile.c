@@ -127,8 +127,9 @@ static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, const char path
 
 static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char path[])
 {
-  char        names[4096] = "";
   const char *name;
+  size_t      size = 1, used = 0;
+  char       *names;
   hid_t       dataset;
 
   PetscFunctionBegin;
@@ -138,11 +139,22 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char 
   PetscCall(CreateDataset(file, "mesh/rank", H5T_STD_I32LE, mesh->cells.total, 1, "1", path, NULL));
   PetscCall(CreateDataset(file, "mesh/body", H5T_STD_I32LE, mesh->cells.total, 1, "1", path, &dataset));
   for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    size_t length;
+
     PetscCall(PetscObjectGetName((PetscObject)mesh->bodies[b], &name));
-    if (b) PetscCall(PetscStrlcat(names, ",", sizeof(names)));
-    PetscCall(PetscStrlcat(names, name, sizeof(names)));
+    PetscCall(PetscStrlen(name, &length));
+    size += length + 1;
+  }
+  PetscCall(PetscCalloc1(size, &names));
+  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    size_t length;
+
+    PetscCall(PetscObjectGetName((PetscObject)mesh->bodies[b], &name));
+    PetscCall(PetscSNPrintfCount(names + used, size - used, "%s%s", &length, b ? "," : "", name));
+    used += length - 1; /* counted with the end of the text */
   }
   PetscCall(HDF5WriteText(dataset, "names", names, path));
+  PetscCall(PetscFree(names));
   PetscCall(HDF5Check(H5Dclose(dataset), "create a dataset", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

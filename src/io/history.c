@@ -6,7 +6,6 @@
 #include <petsctime.h>
 #include <stdio.h>
 
-#define COPY_BYTES        ((size_t)1 << 20) /* copied at a time when the file is copied */
 #define BUFFER_BYTES      ((size_t)1 << 16) /* of records that wait for writing, at first */
 #define BUFFER_BYTES_MOST ((size_t)1 << 26) /* at most: then they are written at once */
 
@@ -23,9 +22,9 @@ struct _n_History {
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
-  PetscReal     *records; /* those that are not in the file yet, `width` numbers each */
-  PetscInt64     written; /* records in the file */
-  char          *copy;
+  PetscReal     *records;                /* those that are not in the file yet, `width` numbers each */
+  PetscInt64     written;                /* records in the file */
+  int            held;                   /* the file, see OutputFileHold() */
   PetscLogDouble flushed, flush_seconds; /* when the last flush ended, and how long it took [s] */
 };
 
@@ -110,6 +109,7 @@ PetscErrorCode HistoryCreate(Controller controller, const char path[], History *
   PetscCall(OutputFileCheck(comm, "-output_history", path));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscNew(&h));
+  h->held   = -1;
   h->writes = rank ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscStrncpy(h->path, path, sizeof(h->path)));
   PetscCall(OutputFileGetPart(path, sizeof(h->part), h->part));
@@ -118,7 +118,6 @@ PetscErrorCode HistoryCreate(Controller controller, const char path[], History *
     PetscCall(AddAllSeries(h, controller));
     h->capacity = 1 + (PetscInt)(BUFFER_BYTES / (h->width * sizeof(PetscReal)));
     PetscCall(PetscMalloc1(h->capacity * h->width, &h->records));
-    PetscCall(PetscMalloc1(COPY_BYTES, &h->copy));
   }
   *history = h;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -128,11 +127,12 @@ PetscErrorCode HistoryCreate(Controller controller, const char path[], History *
 static PetscErrorCode WritePart(History history)
 {
   PetscFunctionBegin;
-  if (history->written) PetscCall(OutputFileCopy(history->path, history->part, COPY_BYTES, history->copy));
+  if (history->written) PetscCall(OutputFileCopy(history->held, history->part));
   else PetscCall(SeriesFileCreate(history->part, history->n_series, history->series, history->options));
   PetscCall(SeriesFileAppend(history->part, history->n_series, history->series, history->written, history->n_records, history->width,
                              history->records));
   PetscCall(OutputFileReplace(history->part, history->path));
+  PetscCall(OutputFileHold(history->path, &history->held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -252,7 +252,7 @@ PetscErrorCode HistoryDestroy(History *history)
   PetscCall(PetscFree((*history)->dims));
   PetscCall(PetscFree((*history)->series));
   PetscCall(PetscFree((*history)->records));
-  PetscCall(PetscFree((*history)->copy));
+  PetscCall(OutputFileRelease(&(*history)->held));
   PetscCall(PetscFree(*history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -43,6 +43,23 @@ PetscErrorCode OutputFinalizePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Before the first record is written: keeps other runs away from the files */
+static PetscErrorCode LockFiles(Controller controller, const ControllerFrame *frame, void *context)
+{
+  Output            output    = (Output)context;
+  MPI_Comm          comm      = PetscObjectComm((PetscObject)controller);
+  const char *const options[] = {"-output_history", "-output_summary", "-output_fields"};
+  const char *const paths[]   = {output->history_path, output->summary_path, output->fields_path};
+
+  PetscFunctionBegin;
+  (void)frame;
+  if (output->locked) PetscFunctionReturn(PETSC_SUCCESS);
+  output->locked = PETSC_TRUE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(paths); i++)
+    if (paths[i][0]) PetscCall(OutputLocksTake(comm, &output->locks, options[i], paths[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   OutputCreate - observes a controller and gathers the figures of its run
 
@@ -67,6 +84,7 @@ PetscErrorCode OutputCreate(Controller controller, Output *output)
   PetscCall(PetscHeaderCreate(*output, OUTPUT_CLASSID, "Output", "Files and table of a run", "Output",
                               PetscObjectComm((PetscObject)controller), OutputDestroy, OutputView));
   (*output)->controller = controller;
+  PetscCall(ControllerMonitorSet(controller, LockFiles, *output, NULL));
   PetscCall(StatisticsCreate(controller, &(*output)->statistics));
   PetscCall(ControllerMonitorSet(controller, StatisticsMonitor, (*output)->statistics, NULL));
   PetscCall(DeviationCreate(controller, &(*output)->deviation));
@@ -275,6 +293,7 @@ PetscErrorCode OutputDestroy(Output *output)
   PetscCall(FieldsDestroy(&(*output)->fields));
   PetscCall(ExactDestroy(&(*output)->exact));
   PetscCall(DeviationDestroy(&(*output)->deviation));
+  PetscCall(OutputLocksRelease(&(*output)->locks));
   PetscCall(PetscHeaderDestroy(output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

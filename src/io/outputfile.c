@@ -1,12 +1,15 @@
 /* Output files are written as `<path>.part` and then renamed to `<path>`, so that a file with that name is always whole. */
 #define _POSIX_C_SOURCE 200809L
 #include "outputfile.h"
+#include "outputpaths.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#define COPY_BYTES ((size_t)1 << 20) /* copied at a time */
 
 /* Makes the directories that `path` needs; returns errno, or 0 */
 static int MakeParents(const char path[])
@@ -27,7 +30,7 @@ static int MakeParents(const char path[])
 static int TryToWrite(const char path[], const char part[])
 {
   struct stat status;
-  int         error = MakeParents(path), file;
+  int         error = MakeParents(part), file;
 
   if (error) return error;
   if (!stat(path, &status)) {
@@ -51,17 +54,22 @@ static int TryToWrite(const char path[], const char part[])
 - size - length of part
 
   Output Parameter:
-. part - `<path>.part`
+. part - `<path>.part`; beside the file itself where the path is a symbolic link
 */
 PetscErrorCode OutputFileGetPart(const char path[], size_t size, char part[])
 {
+  char   resolved[PETSC_MAX_PATH_LEN];
   size_t length;
 
   PetscFunctionBegin;
   PetscCall(PetscStrlen(path, &length));
   PetscCheck(length + sizeof(".part") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "The output path '%s' is too long: %zu characters at most", path, size - sizeof(".part"));
-  PetscCall(PetscSNPrintf(part, size, "%s.part", path));
+  PetscCall(OutputPathResolve(path, sizeof(resolved), resolved));
+  PetscCall(PetscStrlen(resolved, &length));
+  PetscCheck(length + sizeof(".part") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "The output path '%s', to which '%s' leads, is too long: %zu characters at most", resolved, path, size - sizeof(".part"));
+  PetscCall(PetscSNPrintf(part, size, "%s.part", resolved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,8 +111,11 @@ PetscErrorCode OutputFileCheck(MPI_Comm comm, const char option[], const char pa
 */
 PetscErrorCode OutputFileReplace(const char part[], const char path[])
 {
+  char resolved[PETSC_MAX_PATH_LEN];
+
   PetscFunctionBegin;
-  PetscCheck(!rename(part, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be renamed to %s: %s", part, path, strerror(errno));
+  PetscCall(OutputPathResolve(path, sizeof(resolved), resolved)); /* else a link would be replaced by the file */
+  PetscCheck(!rename(part, resolved), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be renamed to %s: %s", part, path, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,27 +135,96 @@ static int CopyBytes(int from, int to, size_t size, char buffer[])
 }
 
 /*
-  OutputFileCopy - copies a file
+  OutputFileMakeParents - makes the folders that a file is to be in, where they are gone or never were
+
+  Not Collective
+
+  Input Parameter:
+. path - of the file
+*/
+PetscErrorCode OutputFileMakeParents(const char path[])
+{
+  const int error = MakeParents(path);
+
+  PetscFunctionBegin;
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "The folder of %s cannot be made: %s", path, strerror(error));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileHold - keeps the contents of a file at hand, even if somebody moves or deletes it
 
   Not Collective
 
   Input Parameters:
-+ path   - what to copy
-. part   - the copy, replaced if it exists
-. size   - length of buffer
-- buffer - work space
++ path - the file, whole
+- held - what was held before, or -1
+
+  Output Parameter:
+. held - an open file
 */
-PetscErrorCode OutputFileCopy(const char path[], const char part[], size_t size, char buffer[])
+PetscErrorCode OutputFileHold(const char path[], int *held)
 {
-  int from, to, error;
+  PetscFunctionBegin;
+  PetscCall(OutputFileRelease(held));
+  *held = open(path, O_RDONLY | O_CLOEXEC);
+  PetscCheck(*held >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s, just written by this run, cannot be read: %s", path, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* OutputFileRelease - ends OutputFileHold(); -1: nothing is held */
+PetscErrorCode OutputFileRelease(int *held)
+{
+  PetscFunctionBegin;
+  if (*held >= 0) close(*held);
+  *held = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileCopy - copies a file that is held
+
+  Not Collective
+
+  Input Parameters:
++ held - from OutputFileHold()
+- part - the copy, replaced if it exists; its folder is made where it is missing
+*/
+PetscErrorCode OutputFileCopy(int held, const char part[])
+{
+  char *buffer;
+  int   to, error;
 
   PetscFunctionBegin;
-  from = open(path, O_RDONLY);
-  PetscCheck(from >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s, written by this run before, cannot be read: %s", path, strerror(errno));
+  PetscCall(OutputFileMakeParents(part));
+  PetscCall(PetscMalloc1(COPY_BYTES, &buffer));
   to    = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  error = to < 0 ? errno : CopyBytes(from, to, size, buffer);
-  close(from);
+  error = to < 0 || lseek(held, 0, SEEK_SET) < 0 ? errno : CopyBytes(held, to, COPY_BYTES, buffer);
   if (to >= 0 && close(to) && !error) error = errno;
+  PetscCall(PetscFree(buffer));
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(error));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileRestore - writes a file again if it is not any more where it was put
+
+  Not Collective
+
+  Input Parameters:
++ held - from OutputFileHold(), whole
+- path - where the file belongs
+*/
+PetscErrorCode OutputFileRestore(int held, const char path[])
+{
+  char        part[PETSC_MAX_PATH_LEN];
+  struct stat own, there;
+
+  PetscFunctionBegin;
+  if (held < 0 || fstat(held, &own)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!stat(path, &there) && there.st_ino == own.st_ino && there.st_dev == own.st_dev) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OutputFileGetPart(path, sizeof(part), part));
+  PetscCall(OutputFileCopy(held, part));
+  PetscCall(OutputFileReplace(part, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,4 +5,8 @@
 PETSC_INTERN PetscErrorCode OutputFileCheck(MPI_Comm, const char[], const char[]);
 PETSC_INTERN PetscErrorCode OutputFileGetPart(const char[], size_t, char[]);
 PETSC_INTERN PetscErrorCode OutputFileReplace(const char[], const char[]);
-PETSC_INTERN PetscErrorCode OutputFileCopy(const char[], const char[], size_t, char[]);
+PETSC_INTERN PetscErrorCode OutputFileMakeParents(const char[]);
+PETSC_INTERN PetscErrorCode OutputFileHold(const char[], int *);
+PETSC_INTERN PetscErrorCode OutputFileRelease(int *);
+PETSC_INTERN PetscErrorCode OutputFileCopy(int, const char[]);
+PETSC_INTERN PetscErrorCode OutputFileRestore(int, const char[]);

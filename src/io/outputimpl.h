@@ -5,18 +5,21 @@
 #include "deviation.h"
 #include "fields.h"
 #include "history.h"
+#include "outputlock.h"
 #include "statistics.h"
 
 struct _p_Output {
   PETSCHEADER(int);
-  Controller controller; /* borrowed */
-  Statistics statistics;
-  History    history;
-  Fields     fields;
-  Exact      exact;
-  Deviation  deviation;
-  char       summary_path[PETSC_MAX_PATH_LEN]; /* empty: there is none */
-  char       history_path[PETSC_MAX_PATH_LEN], fields_path[PETSC_MAX_PATH_LEN];
+  Controller  controller; /* borrowed */
+  Statistics  statistics;
+  History     history;
+  Fields      fields;
+  Exact       exact;
+  Deviation   deviation;
+  char        summary_path[PETSC_MAX_PATH_LEN]; /* empty: there is none */
+  char        history_path[PETSC_MAX_PATH_LEN], fields_path[PETSC_MAX_PATH_LEN];
+  OutputLocks locks;
+  PetscBool   locked;
 };
 
 PETSC_INTERN PetscErrorCode OutputCheckPaths(MPI_Comm, const char[], const char[], const char[]);

@@ -1,9 +1,10 @@
 /* What a program asks of the output beside its options. */
 #include "outputimpl.h"
 #include "outputfile.h"
+#include "outputpaths.h"
 #include "xdmf.h"
 
-/* Each file has a path of its own; empty: it is not written */
+/* Each file has a path of its own, and is none that the run reads; empty: it is not written */
 PetscErrorCode OutputCheckPaths(MPI_Comm comm, const char summary[], const char history[], const char fields[])
 {
   const char *const options[4]               = {"-output_history", "-output_summary", "-output_fields", "the XDMF file of -output_fields"};
@@ -12,13 +13,7 @@ PetscErrorCode OutputCheckPaths(MPI_Comm comm, const char summary[], const char 
 
   PetscFunctionBegin;
   if (fields[0]) PetscCall(XdmfGetPath(fields, sizeof(xdmf), xdmf));
-  for (PetscInt i = 0; i < 4; i++)
-    for (PetscInt j = i + 1; j < 4; j++) {
-      PetscBool same = PETSC_FALSE;
-
-      if (paths[i][0]) PetscCall(PetscStrcmp(paths[i], paths[j], &same));
-      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s and %s are the same file, %s; give each its own", options[i], options[j], paths[i]);
-    }
+  PetscCall(OutputPathsCheck(comm, 4, options, paths));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

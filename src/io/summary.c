@@ -329,6 +329,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(AddWarnings(root, verdict));
   PetscCall(AddTiming(root, controller, contact, n, bodies));
   PetscCall(OutputFileGetPart(path, sizeof(part), part));
+  PetscCall(OutputFileMakeParents(part));
   failed = json_dump_file(root, part, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
   json_decref(root);
   if (failed) remove(part);

@@ -53,6 +53,10 @@ PetscErrorCode XdmfCheckPath(MPI_Comm comm, const char path[])
   PetscFunctionBegin;
   PetscCheck(!EndsWith(path, ".xdmf") && !EndsWith(path, ".xmf"), comm, PETSC_ERR_USER_INPUT,
              "-output_fields %s: give the path of the HDF5 file, as in fields.h5; the XDMF file is written beside it", path);
+  PetscCheck(
+      !EndsWith(path, ".vtu") && !EndsWith(path, ".vtk") && !EndsWith(path, ".pvd") && !EndsWith(path, ".pvtu") && !EndsWith(path, ".csv"),
+      comm, PETSC_ERR_USER_INPUT,
+      "-output_fields %s: HDF5 is written, with an XDMF file beside it that ParaView and pyvista read; give a path as in fields.h5", path);
   PetscCheck(!strpbrk(FileName(path), ":&<>\"'"), comm, PETSC_ERR_USER_INPUT,
              "-output_fields %s: the XDMF file beside it cannot name a file with any of : & < > \" ' in its name; choose another", path);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -137,6 +141,7 @@ PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n
   PetscFunctionBegin;
   PetscCall(XdmfGetPath(fields, sizeof(path), path));
   PetscCall(OutputFileGetPart(path, sizeof(part), part));
+  PetscCall(OutputFileMakeParents(part));
   out = fopen(part, "w");
   PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
   fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" "

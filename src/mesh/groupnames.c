@@ -1,5 +1,6 @@
 /* What surfaces and node sets a mesh has, for messages. */
 #include "meshimpl.h"
+#include <sys/names.h>
 
 /* Labels that PETSc keeps for itself */
 PetscErrorCode MeshLabelIsInternal(const char name[], PetscBool *internal)
@@ -75,8 +76,8 @@ static PetscErrorCode ListNumbers(DM dm, const char name[], char list[], size_t 
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &next, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)dm)));
     if (next == PETSC_INT_MAX) break;
     last = next;
-    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%" PetscInt_FMT, list[0] ? ", " : "", next));
-    PetscCall(PetscStrlcat(list, text, size));
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%" PetscInt_FMT, next));
+    PetscCall(NamesAppend(list, size, ", ", text));
   }
   PetscCall(ISDestroy(&values));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -103,8 +104,7 @@ PetscErrorCode MeshListLabels(DM dm, PetscInt start, PetscInt end, const char se
     PetscCall(DMGetLabel(dm, name, &label));
     PetscCall(MeshLabelHasPoints(dm, label, start, end, &has));
     if (!has) continue;
-    if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
-    PetscCall(PetscStrlcat(list, name, size));
+    PetscCall(NamesAppend(list, size, ", ", name));
   }
   PetscCall(ListNumbers(dm, sets, list, size));
   PetscFunctionReturn(PETSC_SUCCESS);

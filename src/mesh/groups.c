@@ -2,6 +2,7 @@
 #include "meshimpl.h"
 #include <petsc/private/petscimpl.h>
 #include <petscsf.h>
+#include <sys/names.h>
 
 /* A face is on a side of the bounding box if none of its vertices is further from it, in parts of the box's edge across that side:
    round-off */
@@ -84,8 +85,7 @@ static PetscErrorCode RefuseSurface(DM dm, const char name[], const char what[])
   PetscCall(DMPlexGetHeightStratum(dm, 1, &fstart, &fend));
   PetscCall(MeshListLabels(dm, fstart, fend, "Face Sets", list, sizeof(list)));
   for (PetscInt i = 0; i < 2 * dim; i++) {
-    if (i) PetscCall(PetscStrlcat(box, ", ", sizeof(box)));
-    PetscCall(PetscStrlcat(box, sides[i], sizeof(box)));
+    PetscCall(NamesAppend(box, sizeof(box), ", ", sides[i]));
   }
   PetscCall(PetscObjectGetName((PetscObject)dm, &body));
   SETERRQ(PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,

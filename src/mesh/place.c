@@ -1,6 +1,14 @@
 /* Where a body's mesh lies: scale, rotation and translation from options. */
 #include "meshimpl.h"
 
+/* A mesh that is smaller than this part of its distance from the origin has lost the digits that its coordinates need */
+#define SMALLEST_EXTENT 1e-9
+/* Sines of larger angles have lost digits [degrees] */
+#define LARGEST_ANGLE 1e6
+/* Cubes of lengths beyond these are no numbers any more [m] */
+#define SMALLEST_SIZE 1e-60
+#define LARGEST_SIZE  1e60
+
 typedef struct {
   PetscReal scale, rotation[3][3];
   PetscReal centre[3], shift[3]; /* [m] */
@@ -50,12 +58,49 @@ static PetscErrorCode ReadMotion(MPI_Comm comm, const char prefix[], const char 
       for (PetscInt d = 0; d < 3; d++) axis[d] = values[d];
     PetscCheck(axis[0] != 0 || axis[1] != 0 || axis[2] != 0, comm, PETSC_ERR_USER_INPUT,
                "-%srotate: the axis is (0, 0, 0), which has no direction", prefix);
+    PetscCheck(PetscAbsReal(values[dim == 3 ? 3 : 0]) <= LARGEST_ANGLE, comm, PETSC_ERR_USER_INPUT,
+               "-%srotate: %g degrees are out of all proportion; give an angle between -360 and 360", prefix,
+               (double)values[dim == 3 ? 3 : 0]);
     Rotation(axis, values[dim == 3 ? 3 : 0], motion->rotation);
   }
   PetscCall(MeshReadNumbers(comm, prefix, "-rotate_centre", dim, "a point [m]", motion->centre, &centre));
   PetscCheck(!centre || rotate, comm, PETSC_ERR_USER_INPUT, "-%srotate_centre without -%srotate has no effect", prefix, prefix);
   PetscCall(MeshReadNumbers(comm, prefix, "-translate", dim, "one for each dimension of the body [m]", motion->shift, &translate));
   *moves = (PetscBool)(scale || rotate || translate);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Blames the placement for what it does to a mesh, rather than the mesh later on */
+static PetscErrorCode CheckPlace(DM dm, const char prefix[], const char name[], Vec coordinates)
+{
+  MPI_Comm           comm       = PetscObjectComm((PetscObject)dm);
+  PetscReal          extreme[6] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
+  PetscReal          size = 0, distance = 0;
+  const PetscScalar *x;
+  PetscInt           n, dim;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(VecGetLocalSize(coordinates, &n));
+  PetscCall(VecGetArrayRead(coordinates, &x));
+  for (PetscInt i = 0; i < n; i++) {
+    extreme[i % dim]     = PetscMax(extreme[i % dim], PetscRealPart(x[i]));
+    extreme[3 + i % dim] = PetscMax(extreme[3 + i % dim], -PetscRealPart(x[i]));
+  }
+  PetscCall(VecRestoreArrayRead(coordinates, &x));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, extreme, 6, MPIU_REAL, MPI_MAX, comm));
+  for (PetscInt d = 0; d < dim; d++) {
+    size     = PetscMax(size, extreme[d] + extreme[3 + d]);
+    distance = PetscMax(distance, PetscMax(PetscAbsReal(extreme[d]), PetscAbsReal(extreme[3 + d])));
+  }
+  PetscCheck(size >= SMALLEST_SIZE && size <= LARGEST_SIZE, comm, PETSC_ERR_USER_INPUT,
+             "Body '%s' is %g m large after -%sscale: choose a factor that leaves it between %g and %g m", name, (double)size, prefix,
+             SMALLEST_SIZE, LARGEST_SIZE);
+  PetscCheck(
+      size >= SMALLEST_EXTENT * distance, comm, PETSC_ERR_USER_INPUT,
+      "Body '%s' is %g m large and lies %g m from the origin after -%stranslate (or -%srotate_centre): so far away its coordinates do "
+      "not have the digits that its elements need",
+      name, (double)size, (double)distance, prefix, prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -96,6 +141,7 @@ PetscErrorCode MeshPlace(DM dm, const char prefix[], const char name[])
   if (!moves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   PetscCall(Move(&motion, dim, coordinates));
+  PetscCall(CheckPlace(dm, prefix, name, coordinates));
   PetscCall(DMSetCoordinatesLocal(dm, coordinates)); /* this drops the global coordinates, which have not been moved */
   PetscCall(DMGetCellCoordinatesLocal(dm, &coordinates));
   if (coordinates) {

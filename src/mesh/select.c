@@ -1,5 +1,6 @@
 /* Which elements of a mesh file make the body, and whether these can be computed with. */
 #include "meshimpl.h"
+#include <sys/names.h>
 
 /* A body in one or two dimensions may be off its axis or plane by this, in parts of its largest coordinate: files carry the round-off of
    the program that drew it */
@@ -33,9 +34,9 @@ static PetscErrorCode CheckWanted(const MeshFile *file)
     char             text[MESH_NAME_LENGTH + 32];
 
     if (group->kind != MESH_BLOCK) continue;
-    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%s%s%" PetscInt_FMT "%s", list[0] ? ", " : "", group->name, group->name[0] ? " (" : "",
-                            group->number, group->name[0] ? ")" : ""));
-    PetscCall(PetscStrlcat(list, text, sizeof(list)));
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%s%s%" PetscInt_FMT "%s", group->name, group->name[0] ? " (" : "", group->number,
+                            group->name[0] ? ")" : ""));
+    PetscCall(NamesAppend(list, sizeof(list), ", ", text));
   }
   for (PetscInt i = 0; i < file->n_wanted; i++) {
     PetscBool found = PETSC_FALSE;

@@ -2,6 +2,7 @@
 #include <impakt.h>
 #include <unistd.h>
 #include "errors.h"
+#include "optionvalues.h"
 
 /* Errors whose message says all that the user can do about them */
 static PetscBool IsUsersBusiness(PetscErrorCode code)
@@ -24,9 +25,16 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
                                  const char *message, void *ctx)
 {
   PetscMPIInt rank = 0, size = 1, initialized = 0;
+  char        text[4096];
+  PetscBool   explained = PETSC_FALSE;
 
   (void)ctx;
   if (type != PETSC_ERROR_INITIAL) return code;
+  if (function && message && OptionsExplain(function, message, text, sizeof(text), &explained)) explained = PETSC_FALSE;
+  if (explained) { /* all ranks read the same options */
+    message = text;
+    comm    = PETSC_COMM_WORLD;
+  }
   MPI_Initialized(&initialized);
   if (initialized && comm != MPI_COMM_NULL && comm != MPI_COMM_SELF) MPI_Comm_rank(comm, &rank);
   if (initialized && comm == MPI_COMM_SELF) MPI_Comm_size(MPI_COMM_WORLD, &size);
@@ -35,7 +43,7 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     fprintf(stderr, "impakt: error on rank %d: %s\n", rank, message ? message : "");
   } else fprintf(stderr, "impakt: error: %s\n", message ? message : "");
-  if (!IsUsersBusiness(code)) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
+  if (!explained && !IsUsersBusiness(code)) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
   fflush(stderr);
   return code;
 }

@@ -7,6 +7,7 @@
 #include <hdf5.h>
 #include "help.h"
 #include "optiontable.h"
+#include "names.h"
 
 /* The Makefile knows with what */
 #if !defined(IMPAKT_OPTIMISATION)
@@ -109,10 +110,11 @@ PetscErrorCode ImpaktPrintUsage(FILE *file)
   PetscFunctionBegin;
   PetscCall(PetscFPrintf(PETSC_COMM_WORLD, file,
                          "Impakt %s simulates bodies that hit each other.\n\n"
-                         "  impakt -options_file FILE [-option value ...]\n"
-                         "  mpiexec -n 4 impakt -options_file FILE [-option value ...]\n\n",
+                         "  impakt FILE.opts [-option value ...]\n"
+                         "  mpiexec -n 4 impakt FILE.opts [-option value ...]\n\n",
                          IMPAKT_VERSION));
-  if (file == stderr) PetscCall(PetscFPrintf(PETSC_COMM_WORLD, file, "There are options files in options/. `impakt -help` tells more.\n"));
+  if (file == stderr)
+    PetscCall(PetscFPrintf(PETSC_COMM_WORLD, file, "`impakt -example` has options files to start from, `impakt -help` tells more.\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,6 +132,7 @@ static PetscErrorCode PrintScreen(void)
   for (size_t t = 0; t < n; t++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-10s %s\n", topics[t].name, topics[t].text));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  all        the options of all topics, and those of PETSc\n"
                                           "  markdown   the options of all topics, as tables in Markdown\n"
+                                          "-example [NAME] lists options files to start from, or writes one.\n"
                                           "-version prints what Impakt was built with and ends.\n\n"));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                         "PETSc %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT ", %s, HDF5 %u.%u.%u\nbuilt by %s, %s\n", v.petsc[0],
@@ -257,10 +260,9 @@ static PetscErrorCode FindTopic(const char name[], const OptionTopic **topic)
 
     PetscCall(PetscStrcmp(topics[t].name, name, &same));
     if (same) *topic = &topics[t];
-    PetscCall(PetscStrlcat(list, topics[t].name, sizeof(list)));
-    PetscCall(PetscStrlcat(list, ", ", sizeof(list)));
+    PetscCall(NamesAppend(list, sizeof(list), ", ", topics[t].name));
   }
-  PetscCheck(*topic, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "-help %s: there is no such topic; topics are %sall, markdown", name, list);
+  PetscCheck(*topic, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "-help %s: there is no such topic; topics are %s, all, markdown", name, list);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

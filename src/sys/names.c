@@ -1,6 +1,8 @@
 /* Lists of names: in the options, of any length (PETSc's own call fills an array of the caller's, and leaves away what does not fit), and
    in registries. */
+#define _DEFAULT_SOURCE /* isascii() */
 #include "names.h"
+#include <ctype.h>
 
 PetscErrorCode NamesDestroy(PetscInt n, char ***names)
 {
@@ -29,6 +31,40 @@ PetscErrorCode NamesRead(const char prefix[], const char option[], PetscInt *n, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Stops with an error if options cannot begin with a name, as PETSc reads them; `option` is the one that gave it */
+PetscErrorCode NamesCheck(MPI_Comm comm, const char option[], const char name[])
+{
+  PetscBool fine = (PetscBool)(isascii((unsigned char)name[0]) && isalpha((unsigned char)name[0]));
+
+  PetscFunctionBegin;
+  for (const char *c = name; *c; c++)
+    if (!isascii((unsigned char)*c) || !(isalnum((unsigned char)*c) || *c == '_' || *c == '-')) fine = PETSC_FALSE;
+  PetscCheck(fine, comm, PETSC_ERR_USER_INPUT,
+             "-%s: '%s' cannot be a name, since options begin with it: it needs a letter of ASCII first, then letters, digits, _ or -",
+             option, name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds a name to a list in a message; where there is no room left, " ..." once. PETSc's own call writes a byte beyond a text that is full
+ */
+PetscErrorCode NamesAppend(char list[], size_t size, const char separator[], const char name[])
+{
+  static const char more[] = " ...";
+  size_t            length, wanted, end;
+  PetscBool         full;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrlen(list, &length));
+  PetscCall(PetscStrlen(separator, &end));
+  PetscCall(PetscStrlen(name, &wanted));
+  PetscCall(PetscStrendswith(list, more, &full));
+  if (full) PetscFunctionReturn(PETSC_SUCCESS);
+  if (length + end + wanted + sizeof(more) <= size)
+    PetscCall(PetscSNPrintf(list + length, size - length, "%s%s", length ? separator : "", name));
+  else PetscCall(PetscStrncpy(list + length, more, size - length));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The names in a registry, in alphabetical order, with commas between them */
 PetscErrorCode NamesOfRegistry(PetscFunctionList registry, size_t size, char known[])
 {
@@ -42,10 +78,7 @@ PetscErrorCode NamesOfRegistry(PetscFunctionList registry, size_t size, char kno
   for (int i = 0; i < n; i++) order[i] = i;
   PetscCall(PetscSortStrWithPermutation(n, names, order));
   known[0] = '\0';
-  for (int i = 0; i < n; i++) {
-    if (i) PetscCall(PetscStrlcat(known, ", ", size));
-    PetscCall(PetscStrlcat(known, names[order[i]], size));
-  }
+  for (int i = 0; i < n; i++) PetscCall(NamesAppend(known, size, ", ", names[order[i]]));
   PetscCall(PetscFree(order));
   PetscCall(PetscFree(names));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -110,9 +110,8 @@ static PetscErrorCode FindNearest(const char name[], PetscInt n_bodies, const ch
 @*/
 PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
 {
-  PetscInt n_left;
-  char   **names, **values, message[2048] = "";
-  PetscInt unread = 0;
+  PetscInt n_left, unread = 0;
+  char   **names, **values, message[1800] = "";
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &n_left, &names, &values));
@@ -127,9 +126,8 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
     PetscCall(PetscStrcmp(names[i], nearest, &known));
     if (known) PetscCall(PetscSNPrintf(reason, sizeof(reason), "it goes with another method or type than the one chosen"));
     else PetscCall(PetscSNPrintf(reason, sizeof(reason), "the nearest known one is -%s", nearest));
-    PetscCall(PetscSNPrintf(line, sizeof(line), "%s-%s%s%s (%s)", unread ? ", " : "", names[i], values[i] ? " " : "",
-                            values[i] ? values[i] : "", reason));
-    PetscCall(PetscStrlcat(message, line, sizeof(message)));
+    PetscCall(PetscSNPrintf(line, sizeof(line), "-%s%s%s (%s)", names[i], values[i] ? " " : "", values[i] ? values[i] : "", reason));
+    PetscCall(NamesAppend(message, sizeof(message), ", ", line));
     unread++;
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n_left, &names, &values));

@@ -189,7 +189,10 @@ static const KnownOption options[] = {
      "gap that the augmented Lagrangian leaves [m], default 4e-10 of the size of the smallest body"},
     {"lagrange", OPTION_OF_RUN, "contact_augmentation_max_it", "n", "limit of augmentations in a controller step, default 200"},
 
-    {"files", OPTION_OF_RUN, "options_file", "file", "more options from a file"},
+    {"files", OPTION_OF_RUN, "example", "[name]",
+     "lists options files to start from, or writes the one with this name, with remarks; and ends"},
+    {"files", OPTION_OF_RUN, "options_file", "file",
+     "more options from a file, which those of the command line overrule; a FILE.opts may stand alone"},
     {"files", OPTION_OF_RUN, "output_history", "file.h5", "history of every controller step"},
     {"files", OPTION_OF_RUN, "output_summary", "file.json", "summary of the run"},
     {"files", OPTION_OF_RUN, "output_fields", "file.h5",

@@ -8,6 +8,7 @@ import time
 import pytest
 from cases import PAIRINGS
 from conftest import IMPAKT, ROOT
+from messages import check_message
 
 BASE = "-options_file options/impact-high-speed.opts"
 PENALTY = "-options_file options/impact-penalty.opts"
@@ -73,15 +74,6 @@ CASES = {
     "components": (f"{BASE} -left_initial_velocity 1,2", ["-left_initial_velocity", "2", "left"]),
 }
 ON_TWO_RANKS = ["nothing", "options-file", "misspelt-of-body", "contact-type", "lagrange-substeps", "stabilized-schwarz", "missing-body", "indivisible", "unstable", "negative-density", "overlapping", "pair-surface", "static-unheld"]
-
-
-def check_message(run, words):
-    """One line by Impakt itself, which names all that it should."""
-    lines = [line for line in run.stderr.splitlines() if line.startswith("impakt: error")]
-    assert len(lines) == 1, run.stderr
-    assert "PETSC ERROR" not in run.stderr
-    missing = [word for word in words if word not in lines[0]]
-    assert not missing, lines[0]
 
 
 def check_no_files(run):

@@ -10,7 +10,7 @@ TOPICS = ["bodies", "meshes", "materials", "loads", "time", "contact", "obstacle
 ENTRY = re.compile(r"^  -(\S+) \S+\n      \S.*$", re.MULTILINE)
 
 # Options that Impakt looks at, and that are PETSc's own: their table is PETSc's
-OF_PETSC = {
+OF_PETSC = {"options_file_yaml", "prefix_push", "prefix_pop", 
     "snes_type",
     "snes_anderson_m",
     "snes_anderson_beta",
@@ -61,7 +61,7 @@ def test_help(word, ranks, say):
     text = say(word, ranks=ranks)
     assert len(text.splitlines()) <= 24
     assert max(map(len, text.splitlines()[:-1])) <= 80  # the last one tells the compiler's flags, however many
-    assert text.count("impakt -options_file FILE") == 2  # by itself and under mpiexec
+    assert text.count("impakt FILE.opts") == 2  # by itself and under mpiexec
     assert re.findall(r"^  (\w+) +\S", text, re.MULTILINE) == ["impakt", "mpiexec", *TOPICS, "all", "markdown"]
     assert re.search(r"^Impakt \d+\.\d+\.\d+ ", text)
     assert re.search(r"^PETSc 3\.\d+\.\d+, .*\d.*, HDF5 \d+\.\d+\.\d+$", text, re.MULTILINE)
@@ -167,7 +167,7 @@ def test_nothing_given(ranks, launch):
     """How it is used, where errors go, and an exit code of its own."""
     done = launch([IMPAKT], ranks, timeout=60)
     assert done.returncode > 0
-    assert done.stderr.count("  impakt -options_file FILE") == 1
+    assert done.stderr.count("  impakt FILE.opts") == 1
     assert "error" not in done.stderr.split("-----")[0]  # mpiexec has its say below a line
     assert not done.stdout.strip()
 

@@ -61,6 +61,7 @@ static PetscErrorCode ReadObstacles(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(NamesRead(NULL, "-obstacles", &n, &names, NULL));
+  for (PetscInt o = 0; o < n; o++) PetscCall(NamesCheck(PetscObjectComm((PetscObject)contact), "obstacles", names[o]));
   for (PetscInt o = 0; o < n && !error; o++) {
     Obstacle obstacle = NULL;
 

@@ -1,5 +1,6 @@
 /* Contact pairs: from their names to surfaces of bodies, and which side takes displacements. */
 #include <impakt/private/contactimpl.h>
+#include <sys/names.h>
 
 /* Mean elements of two bodies are alike if the ratio of their edges is above this, so that round-off does not choose the sides */
 #define ALIKE 0.999
@@ -23,8 +24,7 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(PetscStrcmp(((PetscObject)contact->bodies[b])->name, name, &same));
     if (same) *body = b;
-    PetscCall(PetscStrlcat(known, b ? ", " : "", sizeof(known)));
-    PetscCall(PetscStrlcat(known, ((PetscObject)contact->bodies[b])->name, sizeof(known)));
+    PetscCall(NamesAppend(known, sizeof(known), ", ", ((PetscObject)contact->bodies[b])->name));
   }
   for (PetscInt o = 0; obstacle && !dot && *body < 0 && o < contact->n_obstacles; o++) {
     const char *other;

@@ -1,0 +1,225 @@
+/* Options files, looked at apart from PETSc.
+
+   PETSc forgets which file and line an option came from, waits for ever for what a pipe or a device may say, and follows a file that
+   includes itself until its stack ends. So the files are looked at before PETSC reads them, and again when an error is to name a line. */
+#define _POSIX_C_SOURCE 200809L /* getline() */
+#include <impakt.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "optionsfiles.h"
+
+typedef struct Place *Place;
+/* Where a walk through the files is: a file, included by the line of another */
+struct Place {
+  const char *path;
+  PetscInt    line;
+  struct stat status;
+  const Place by;
+};
+
+typedef struct {
+  char              *error; /* what is wrong with the files, if somebody wants to know */
+  size_t             error_size;
+  const struct stat *sought; /* a file, or NULL */
+  PetscBool          found;  /* it has been visited */
+  const char        *option; /* which one is looked for, else NULL */
+  char              *origin; /* where it stands last, as "file, line 3" */
+  size_t             origin_size;
+  char               prefixes[8][PETSC_MAX_OPTION_NAME]; /* by -prefix_push */
+  int                n_prefixes;
+} Walk;
+
+static PetscErrorCode VisitFile(Walk *, const char[], Place);
+
+/* The path as PETSc opens it */
+static PetscErrorCode Expand(const char text[], char path[PETSC_MAX_PATH_LEN])
+{
+  char replaced[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrreplace(PETSC_COMM_SELF, text, replaced, sizeof(replaced)));
+  PetscCall(PetscFixFilename(replaced, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* "'c.opts', which 'b.opts' includes in line 3" */
+static PetscErrorCode Describe(const char path[], Place by, char text[], size_t size)
+{
+  PetscFunctionBegin;
+  if (by) PetscCall(PetscSNPrintf(text, size, "'%s', which '%s' includes in line %" PetscInt_FMT ",", path, by->path, by->line));
+  else PetscCall(PetscSNPrintf(text, size, "'%s'", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a file can be read to its end: a file that exists, and is not being read already */
+static PetscErrorCode CheckFile(Walk *walk, const char path[], Place by, struct stat *status, PetscBool *fine)
+{
+  char name[2 * PETSC_MAX_PATH_LEN];
+  int  failure;
+
+  PetscFunctionBegin;
+  errno   = 0;
+  failure = stat(path, status) ? errno : 0;
+  *fine   = (PetscBool)(!failure && S_ISREG(status->st_mode));
+  PetscCall(Describe(path, by, name, sizeof(name)));
+  if (failure) PetscCall(PetscSNPrintf(walk->error, walk->error_size, "The options file %s cannot be read: %s", name, strerror(failure)));
+  else if (!*fine)
+    PetscCall(PetscSNPrintf(walk->error, walk->error_size, "The options file %s is %s and not a file with text", name,
+                            S_ISDIR(status->st_mode)    ? "a directory"
+                            : S_ISFIFO(status->st_mode) ? "a pipe"
+                                                        : "a device"));
+  for (Place p = by; p && *fine; p = p->by) {
+    if (p->status.st_dev != status->st_dev || p->status.st_ino != status->st_ino) continue;
+    *fine = PETSC_FALSE;
+    PetscCall(PetscSNPrintf(walk->error, walk->error_size, "The options file %s includes itself: take that line out", name));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PushPrefix(Walk *walk, const char prefix[])
+{
+  const int n = walk->n_prefixes;
+
+  PetscFunctionBegin;
+  if (n < (int)PETSC_STATIC_ARRAY_LENGTH(walk->prefixes)) {
+    PetscCall(PetscSNPrintf(walk->prefixes[n], sizeof(walk->prefixes[n]), "%s%s", n ? walk->prefixes[n - 1] : "", prefix));
+    walk->n_prefixes++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A line of a file: the name of an option and, where it has one, its value */
+static PetscErrorCode VisitOption(Walk *walk, const char name[], const char value[], Place place)
+{
+  PetscBool file, push, pop, same = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcasecmp(name, "-options_file", &file));
+  PetscCall(PetscStrcasecmp(name, "-prefix_push", &push));
+  PetscCall(PetscStrcasecmp(name, "-prefix_pop", &pop));
+  if (file && value) PetscCall(VisitFile(walk, value, place));
+  else if (push && value) PetscCall(PushPrefix(walk, value));
+  else if (pop && walk->n_prefixes) walk->n_prefixes--;
+  else if (walk->option && name[0] == '-') {
+    char full[PETSC_MAX_OPTION_NAME];
+
+    PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s", walk->n_prefixes ? walk->prefixes[walk->n_prefixes - 1] : "", name + 1));
+    PetscCall(PetscStrcasecmp(full, walk->option, &same));
+    if (same) PetscCall(PetscSNPrintf(walk->origin, walk->origin_size, "%s, line %" PetscInt_FMT, place->path, place->line));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The words of a line without what follows a #; words in quotes are one */
+static char *NextWord(char **rest)
+{
+  char *word = *rest + strspn(*rest, " \t\r\n");
+  char  end  = *word;
+
+  if (end == '"' || end == '\'') word++;
+  else end = 0;
+  if (!*word) return NULL;
+  *rest = end ? strchr(word, end) : word + strcspn(word, " \t\r\n");
+  if (!*rest) *rest = word + strlen(word);
+  else if (**rest) *(*rest)++ = 0;
+  return word;
+}
+
+static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
+{
+  char  *text = NULL;
+  size_t size = 0;
+
+  PetscFunctionBegin;
+  for (place->line = 1; getline(&text, &size, file) >= 0 && !walk->error[0]; place->line++) {
+    char *rest = text, *comment = strchr(text, '#'), *name;
+
+    if (comment) *comment = 0;
+    name = NextWord(&rest);
+    if (name) PetscCall(VisitOption(walk, name, NextWord(&rest), place));
+  }
+  free(text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitFile(Walk *walk, const char text[], Place by)
+{
+  char         path[PETSC_MAX_PATH_LEN];
+  struct Place place = {.path = path, .line = 0, .by = by};
+  PetscBool    fine, yaml = PETSC_FALSE;
+  const char  *endings[] = {".yaml", ".yml", ".json", ":yaml"};
+  FILE        *file;
+
+  PetscFunctionBegin;
+  PetscCall(Expand(text, path));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(endings) && !yaml; i++) PetscCall(PetscStrendswith(path, endings[i], &yaml));
+  if (yaml) PetscFunctionReturn(PETSC_SUCCESS); /* these are not made of lines, and cannot include others */
+  PetscCall(CheckFile(walk, path, by, &place.status, &fine));
+  if (!fine) PetscFunctionReturn(PETSC_SUCCESS);
+  if (walk->sought && walk->sought->st_dev == place.status.st_dev && walk->sought->st_ino == place.status.st_ino) walk->found = PETSC_TRUE;
+  file = fopen(path, "r");
+  if (file) {
+    PetscCall(VisitLines(walk, file, &place));
+    fclose(file);
+  } else PetscCall(PetscSNPrintf(walk->error, walk->error_size, "The options file '%s' cannot be read: %s", path, strerror(errno)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is wrong with an options file or with one that it includes; nothing if all of them can be read. PETSc need not run */
+PetscErrorCode OptionsFileCheck(const char path[], char error[], size_t size)
+{
+  Walk walk = {.error = error, .error_size = size};
+
+  PetscFunctionBegin;
+  error[0] = 0;
+  PetscCall(VisitFile(&walk, path, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a file is one of the options files of the run */
+PetscErrorCode OptionsFilesInclude(const struct stat *status, PetscBool *include)
+{
+  char   error[1024] = "";
+  Walk   walk        = {.error = error, .error_size = sizeof(error), .sought = status};
+  int    argc;
+  char **argv;
+
+  PetscFunctionBegin;
+  PetscCall(PetscGetArgs(&argc, &argv));
+  for (int i = 1; i + 1 < argc; i++) {
+    PetscBool file;
+
+    PetscCall(PetscStrcasecmp(argv[i], "-options_file", &file));
+    if (file) PetscCall(VisitFile(&walk, argv[i + 1], NULL));
+  }
+  *include = walk.found;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where an option (without its dash) comes from: "the command line", a file and its line, or nothing if neither is known */
+PetscErrorCode OptionsFindOrigin(const char option[], char origin[], size_t size)
+{
+  char   error[1024] = "";
+  Walk   walk        = {.error = error, .error_size = sizeof(error), .option = option, .origin = origin, .origin_size = size};
+  int    argc;
+  char **argv;
+
+  PetscFunctionBegin;
+  origin[0] = 0;
+  PetscCall(PetscGetArgs(&argc, &argv));
+  for (int i = 1; i < argc; i++) {
+    PetscBool file, same = PETSC_FALSE;
+
+    PetscCall(PetscStrcasecmp(argv[i], "-options_file", &file));
+    if (argv[i][0] == '-') PetscCall(PetscStrcasecmp(argv[i] + 1, option, &same));
+    if (same) {
+      PetscCall(PetscStrncpy(origin, "the command line", size));
+      break; /* which overrules files */
+    }
+    if (file && i + 1 < argc) PetscCall(VisitFile(&walk, argv[i + 1], NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,215 @@
+/* Values of options that are missing, or are not what they should be.
+
+   PETSc takes the default where an option has no value, and says of a value that it cannot convert neither whose it is nor where it
+   stands. Impakt refuses the former and adds to the latter. */
+#include <impakt.h>
+#include <ctype.h>
+#include <string.h>
+#include "names.h"
+#include "optionsfiles.h"
+#include "optiontable.h"
+#include "optionvalues.h"
+
+/* Whether an option belongs to a line of the table, whatever body or obstacle it is of */
+static PetscErrorCode Matches(const char option[], const KnownOption *known, PetscBool *matches)
+{
+  char        middle[128];
+  const char *part = strchr(known->name, '<'); /* what follows is the name of a surface */
+  size_t      length, end;
+
+  PetscFunctionBegin;
+  if (known->owner == OPTION_OF_RUN) {
+    PetscCall(PetscStrcasecmp(option, known->name, matches));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscSNPrintf(middle, sizeof(middle), "_%s", known->name));
+  if (part) middle[part - known->name + 1] = 0;
+  PetscCall(PetscStrlen(middle, &length));
+  PetscCall(PetscStrlen(option, &end));
+  if (part) *matches = (PetscBool)(strstr(option, middle) != NULL);
+  else *matches = (PetscBool)(end > length && !strcmp(option + end - length, middle));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FindKnown(const char option[], const KnownOption **found)
+{
+  const KnownOption *known;
+  size_t             n;
+
+  PetscFunctionBegin;
+  known  = KnownOptionsGet(&n);
+  *found = NULL;
+  for (size_t i = 0; i < n && !*found; i++) {
+    PetscBool matches;
+
+    PetscCall(Matches(option, &known[i], &matches));
+    if (matches) *found = &known[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* "-left_density (steel.opts, line 3)" */
+static PetscErrorCode NameWithOrigin(const char option[], char text[], size_t size)
+{
+  char origin[PETSC_MAX_PATH_LEN + 64];
+
+  PetscFunctionBegin;
+  PetscCall(OptionsFindOrigin(option, origin, sizeof(origin)));
+  PetscCall(PetscSNPrintf(text, size, "-%s%s%s%s", option, origin[0] ? " (" : "", origin, origin[0] ? ")" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options of PETSc that mean nothing without a value, by how they end: tolerances, counts, types */
+static PetscErrorCode WantsValue(const char option[], PetscBool *wants)
+{
+  const char *const endings[] = {"_type", "_rtol", "_atol", "_stol", "_divtol", "_max_it", "_max_funcs", "_restart", "_damping", "_order"};
+
+  PetscFunctionBegin;
+  *wants = (PetscBool)(strstr(option, "_icntl_") || strstr(option, "_cntl_"));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(endings) && !*wants; i++) PetscCall(PetscStrendswith(option, endings[i], wants));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What there is to say of an option that has no value: nothing, if it can be on or off, or if nobody knows it */
+PetscErrorCode OptionsDescribeMissing(const char option[], char text[], size_t size)
+{
+  const KnownOption *known;
+  PetscBool          on_or_off = PETSC_FALSE, viewer = PETSC_FALSE, wants;
+
+  PetscFunctionBegin;
+  text[0] = 0;
+  PetscCall(FindKnown(option, &known));
+  if (known) {
+    PetscCall(PetscStrcmp(known->value, "true|false", &on_or_off));
+    viewer = (PetscBool)(known->value[0] == '[');
+    wants  = (PetscBool)(!on_or_off && !viewer);
+  } else PetscCall(WantsValue(option, &wants));
+  if (wants && known) PetscCall(PetscSNPrintf(text, size, "has no value: it takes %s (%s)", known->value, known->text));
+  else if (wants) PetscCall(PetscSNPrintf(text, size, "has no value: give one after it"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stops with an error if an option without a value is not one that can be on or off. Before anybody has read options; collective */
+PetscErrorCode OptionsCheckValues(void)
+{
+  PetscInt n;
+  char   **names, **values;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; i++) {
+    char name[2 * PETSC_MAX_PATH_LEN], text[1024] = "";
+
+    if (!values[i] || !values[i][0]) PetscCall(OptionsDescribeMissing(names[i], text, sizeof(text)));
+    if (!text[0]) continue;
+    PetscCall(NameWithOrigin(names[i], name, sizeof(name)));
+    SETERRQ(PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s %s", name, text);
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What PETSc says of a value that it cannot convert: before and after the value, and what Impakt says instead */
+typedef struct {
+  const char *before, *after, *wanted;
+} Complaint;
+
+static const Complaint complaints[] = {
+    {"Input string ", " has no integer value (do not include . in it)", "a whole number"},
+    {"Input string ", " has no numeric value", "a number"},
+    {"Unknown logical value: ", "", "true or false"},
+    {"Unsupported viewer ", "", "a viewer, as in ascii:file.txt"},
+};
+
+/* The value that a message complains about */
+static const Complaint *FindComplaint(const char message[], char value[], size_t size)
+{
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(complaints); i++) {
+    const size_t before = strlen(complaints[i].before), after = strlen(complaints[i].after), length = strlen(message);
+
+    if (length < before + after || length - before - after >= size) continue;
+    if (strncmp(message, complaints[i].before, before) || strcmp(message + length - after, complaints[i].after)) continue;
+    memcpy(value, message + before, length - before - after);
+    value[length - before - after] = 0;
+    return &complaints[i];
+  }
+  return NULL;
+}
+
+/* Whether a text is a value, or an element of a list that is one */
+static PetscBool Contains(const char value[], const char text[])
+{
+  const size_t n = strlen(text);
+
+  for (const char *at = strstr(value, text); at; at = strstr(at + 1, text)) {
+    const PetscBool begins = (PetscBool)(at == value || strchr(",:- ", at[-1])), ends = (PetscBool)(!at[n] || strchr(",:- ", at[n]));
+
+    if (n && begins && ends) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The options with such a value that somebody has read, each with its origin and what it takes */
+static PetscErrorCode Describe(const char value[], char text[], size_t size)
+{
+  char       *all, name[2 * PETSC_MAX_PATH_LEN], one[3 * PETSC_MAX_PATH_LEN];
+  const char *word;
+  PetscToken  words;
+
+  PetscFunctionBegin;
+  text[0] = 0;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  PetscCall(PetscTokenCreate(all, ' ', &words));
+  while (PETSC_TRUE) {
+    const KnownOption *known;
+    const char        *given = NULL;
+    PetscBool          key, used, set = PETSC_FALSE;
+
+    PetscCall(PetscTokenFind(words, &word));
+    if (!word) break;
+    PetscCall(PetscOptionsValidKey(word, &key));
+    if (!key) continue;
+    PetscCall(PetscOptionsUsed(NULL, word + 1, &used));
+    if (used) PetscCall(PetscOptionsFindPair(NULL, NULL, word, &given, &set));
+    if (!set || !given || !Contains(given, value)) continue;
+    PetscCall(FindKnown(word + 1, &known));
+    PetscCall(NameWithOrigin(word + 1, name, sizeof(name)));
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s%s", name, known ? ", which takes " : "", known ? known->value : ""));
+    PetscCall(NamesAppend(text, size, " or ", one));
+  }
+  PetscCall(PetscTokenDestroy(&words));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What may help, by how the value looks */
+static const char *Advise(const char value[])
+{
+  const char *end  = value + strspn(value, "0123456789+-.eE");
+  const char *tail = value + strspn(value, "0123456789+-");
+
+  if (tail > value && *tail == ',' && isdigit((unsigned char)tail[1]) && !strchr(tail + 1, ','))
+    return "; decimals come after a point, not a comma";
+  if (end > value && isalpha((unsigned char)*end)) return "; numbers stand without units, which are those of the SI";
+  return "";
+}
+
+/* Says of a complaint by PETSc which option it is about, where that stands and what is wanted; not Collective */
+PetscErrorCode OptionsExplain(const char function[], const char message[], char text[], size_t size, PetscBool *explained)
+{
+  char             value[512], names[2048];
+  const Complaint *complaint = NULL;
+  PetscBool        converts, views;
+
+  PetscFunctionBegin;
+  *explained = PETSC_FALSE;
+  PetscCall(PetscStrncmp(function, "PetscOptionsStringTo", 20, &converts));
+  PetscCall(PetscStrncmp(function, "PetscOptionsCreateViewer", 24, &views));
+  if ((converts || views) && message) complaint = FindComplaint(message, value, sizeof(value));
+  if (!complaint) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Describe(value, names, sizeof(names)));
+  if (!names[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(text, size, "%s: '%s' is not %s%s", names, value, complaint->wanted, Advise(value)));
+  *explained = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

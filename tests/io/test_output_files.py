@@ -1,0 +1,142 @@
+"""Files of runs that share them, that somebody moves away meanwhile, that are links, or that nobody reads to their end."""
+
+import json
+import shutil
+import subprocess
+import time
+
+import h5py
+import pytest
+from conftest import IMPAKT, ROOT, run_command
+from messages import check_message
+
+RUN = ["-options_file", "options/impact-high-speed.opts", "-time_step", "4e-8", "-exact", "none", "-output_history", "d/h.h5", "-output_summary", "d/s.json", "-output_fields", "d/f.h5"]
+STEPS = 25000  # 1e-3 s
+SHORT = ["options/blocks.opts", "-time_end", "1e-6"]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "options").symlink_to(ROOT / "options")
+    return tmp_path
+
+
+def run(folder, *words, ranks=1):
+    return run_command([IMPAKT, *words], ranks, 60, cwd=folder)
+
+
+def begin(folder, *words):
+    """Starts a run, and waits until its files are there."""
+    process = subprocess.Popen([IMPAKT, *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 30
+    while not ((folder / "d/h.h5").exists() and (folder / "d/f.xdmf").exists()):
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.01)
+    return process
+
+
+def check_whole(folder):
+    with h5py.File(folder / "h.h5") as history, h5py.File(folder / "f.h5") as fields:
+        times = history["time"][()]
+        assert len(times) == STEPS + 1 and (times[1:] > times[:-1]).all()
+        assert (fields["time"][()] <= times[-1]).all() and len(fields["time"]) > 90
+    assert json.loads((folder / "s.json").read_text())["system"]["energy_error_max"] < 1e-3
+    assert "f.h5" in (folder / "f.xdmf").read_text()
+
+
+def test_two_runs_with_one_output(folder):
+    """The second one ends before it computes anything, and leaves alone what is the first one's."""
+    first = begin(folder, *RUN)
+    for ranks in (1, 2):
+        second = run(folder, *RUN, ranks=ranks)
+        assert second.returncode > 0
+        check_message(second, ["-output_history d/h.h5", "another run", f"process {first.pid} "])
+    other = run(folder, *SHORT, "-output_history", "other.h5", "-output_summary", "d/s.json")
+    assert other.returncode > 0
+    check_message(other, ["-output_summary d/s.json", "another run"])
+    _, stderr = first.communicate(timeout=60)
+    assert first.returncode == 0, stderr
+    check_whole(folder / "d")
+    assert not list(folder.rglob("*.lock")) and not list(folder.rglob("*.part"))
+
+
+def test_lock_of_a_run_that_was_killed(folder):
+    first = begin(folder, *RUN)
+    first.kill()
+    first.communicate(timeout=60)
+    assert list(folder.rglob("*.lock"))  # nobody holds it any more
+    assert run(folder, *RUN).returncode == 0
+    check_whole(folder / "d")
+    assert not list(folder.rglob("*.lock"))
+
+
+@pytest.mark.parametrize("what", ["folder", "files", "moved"])
+def test_files_that_vanish(what, folder):
+    """They are written again where their paths say, with all that was in them."""
+    process = begin(folder, *RUN)
+    if what == "folder":
+        shutil.rmtree(folder / "d")
+    elif what == "moved":
+        (folder / "d").rename(folder / "elsewhere")
+    else:
+        for name in ("h.h5", "f.h5", "f.xdmf"):
+            (folder / "d" / name).unlink()
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 0, stderr
+    check_whole(folder / "d")
+
+
+def test_links_are_written_through(folder):
+    (folder / "store").mkdir()
+    (folder / "h.h5").symlink_to("store/real.h5")  # which is not there yet
+    (folder / "store/s.json").write_text("old")
+    (folder / "s.json").symlink_to(folder / "store/s.json")
+    assert run(folder, *SHORT, "-output_history", "h.h5", "-output_summary", "s.json").returncode == 0
+    assert (folder / "h.h5").is_symlink() and (folder / "s.json").is_symlink()
+    assert h5py.is_hdf5(folder / "store/real.h5")
+    assert json.loads((folder / "store/s.json").read_text())
+    (folder / "ring").symlink_to("ring")
+    refused = run(folder, *SHORT, "-output_history", "ring")
+    assert refused.returncode > 0
+    check_message(refused, ["ring"])
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("kind", ["link", "hard link", "folder", "options", "mesh", "table"])
+def test_one_file_under_two_names(kind, ranks, folder):
+    """Two outputs, or an output and what the run reads."""
+    words, named = {
+        "link": (["-output_history", "a.h5", "-output_summary", "b.h5"], ["-output_history and -output_summary", "same file"]),
+        "hard link": (["-output_history", "a.h5", "-output_fields", "c.h5"], ["-output_history and -output_fields", "same file"]),
+        "folder": (["-output_history", "sub/../x.h5", "-output_summary", "./x.h5"], ["-output_history and -output_summary", "same file"]),
+        "options": (["-options_file", "mine.opts", "-output_summary", "mine.opts"], ["-output_summary mine.opts", "-options_file"]),
+        "mesh": (["-left_dm_plex_filename", "a.h5", "-output_summary", "b.h5"], ["-output_summary b.h5", "reads"]),
+        "table": (["-left_body_force", "table:t.txt,0", "-output_summary", "t.txt"], ["-output_summary t.txt", "-left_body_force"]),
+    }[kind]
+    (folder / "sub").mkdir()
+    (folder / "a.h5").write_text("")
+    (folder / "b.h5").symlink_to("a.h5")
+    (folder / "c.h5").hardlink_to(folder / "a.h5")
+    (folder / "t.txt").write_text("0 0\n1 0\n")
+    shutil.copy(ROOT / "options/blocks.opts", folder / "mine.opts")
+    before = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    refused = run(folder, *SHORT, *words, ranks=ranks)
+    assert refused.returncode > 0
+    check_message(refused, named if kind != "mesh" else ["a.h5"])  # which is no mesh
+    assert before == {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize("name", ["x.vtu", "x.xdmf", "x.csv"])
+def test_format_of_fields(name, folder):
+    refused = run(folder, *SHORT, "-output_fields", name)
+    assert refused.returncode > 0
+    check_message(refused, [name, "HDF5", "h5"])
+
+
+def test_closed_pipe(folder):
+    """`impakt ... | head -1`: silence, and the files are complete. (`mpiexec` itself ends then, and its ranks with it.)"""
+    command = f"set -o pipefail; {IMPAKT} {' '.join(RUN)} | head -1"
+    done = subprocess.run(["bash", "-c", command], check=False, cwd=folder, capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0 and done.stderr == ""
+    assert done.stdout.startswith("time ")
+    check_whole(folder / "d")

@@ -1,0 +1,194 @@
+"""Words of the command line and values of options: what is not understood ends the run in a line that names the option and where it stands."""
+
+import os
+import re
+
+import h5py
+import pytest
+from cases import long
+from conftest import IMPAKT, ROOT
+from messages import check_message
+
+BLOCKS = "options/blocks.opts"
+SHORT = ["-time_end", "1e-6"]
+
+
+@pytest.fixture
+def words(launch, tmp_path):
+    """Runs the program with these words, in a folder of its own."""
+    (tmp_path / "options").symlink_to(ROOT / "options")
+
+    def run(*words, ranks=1, timeout=60):
+        return launch([IMPAKT, *words], ranks, timeout=timeout, cwd=tmp_path)
+
+    return run
+
+
+def refused(run, named):
+    assert run.returncode > 0
+    check_message(run, named)
+    assert "options.c" not in run.stderr  # of PETSc
+
+
+def steps(run):
+    assert run.returncode == 0, run.stderr
+    return int(re.search(r"(\d+) controller steps", run.stdout).group(1))
+
+
+# Words, and what is told of them
+WRONG = {
+    "word": ([BLOCKS, "foo"], ["'foo'", "no option", ".opts"]),
+    "second value": ([BLOCKS, "-left_density", "3", "4"], ["'4'", "-left_density", "'3'"]),
+    "blank in a list": ([BLOCKS, "-left_initial_velocity", "1,", "2"], ["'2'", "-left_initial_velocity", "commas without blanks"]),
+    "empty value": ([BLOCKS, "-left_density", ""], ["-left_density", "empty"]),
+    "empty word": ([BLOCKS, ""], ["empty word"]),
+    "no file": (["nowhere.opts"], ["'nowhere.opts'", "No such file"]),
+    "file without name": (["-options_file", "-left_density", "3"], ["-options_file", "path"]),
+    "folder": (["-options_file", "options"], ["'options'", "directory"]),
+    "device": (["-options_file", "/dev/zero"], ["'/dev/zero'", "device"]),
+    "comma": ([BLOCKS, "-left_density", "7,850"], ["-left_density (the command line)", "'7,850'", "rho", "not a comma"]),
+    "unit": ([BLOCKS, "-left_density", "7850kg"], ["-left_density", "'7850kg'", "without units"]),
+    "fraction": ([BLOCKS, "-left_dm_plex_box_faces", "2.5,2"], ["-left_dm_plex_box_faces", "'2.5'", "whole number"]),
+    "switch": ([BLOCKS, "-contact_facing", "perhaps"], ["-contact_facing", "'perhaps'", "true or false"]),
+    "of PETSc": ([BLOCKS, "-left_snes_rtol", "tight"], ["-left_snes_rtol", "'tight'", "not a number"]),
+    "of PETSc without value": ([BLOCKS, "-left_snes_rtol", "-time_end", "1e-6"], ["-left_snes_rtol", "no value"]),
+    "viewer": ([BLOCKS, "-contact_view", "paper"], ["-contact_view", "'paper'", "viewer"]),
+}
+
+
+@pytest.mark.parametrize("case", list(WRONG))
+def test_wrong_words(case, words, tmp_path):
+    given, named = WRONG[case]
+    refused(words(*given), named)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["options"]
+
+
+@pytest.mark.parametrize("case", ["word", "device", "comma", "of PETSc without value"])
+def test_wrong_words_on_two_ranks(case, words):
+    given, named = WRONG[case]
+    refused(words(*given, ranks=2), named)
+
+
+def test_pipe(words, tmp_path):
+    os.mkfifo(tmp_path / "pipe.opts")
+    refused(words("pipe.opts"), ["'pipe.opts'", "pipe"])
+
+
+@pytest.mark.parametrize("ring", [1, 3])
+def test_file_that_includes_itself(ring, words, tmp_path):
+    for i in range(ring):
+        (tmp_path / f"{i}.opts").write_text(f"# comment\n-left_density 3 # another\n-options_file {(i + 1) % ring}.opts\n")
+    refused(words("0.opts"), [f"'{ring - 1}.opts' includes in line 3", "includes itself"])
+
+
+def test_place_in_a_file(words, tmp_path):
+    (tmp_path / "inner.opts").write_text("\n-prefix_push left_\n  -density abc # no number\n-prefix_pop\n")
+    (tmp_path / "outer.opts").write_text(f"-options_file {BLOCKS}\n-options_file inner.opts\n")
+    refused(words("outer.opts"), ["-left_density (inner.opts, line 3)", "'abc'"])
+    (tmp_path / "inner.opts").write_text("-prefix_push left_\n  -poissons_ratio\n-prefix_pop\n")
+    refused(words("outer.opts"), ["-left_poissons_ratio (inner.opts, line 2)", "no value"])
+
+
+def test_command_line_overrules_files(words):
+    """On whichever side of the file an option stands; a file may stand alone, before or after."""
+    end = ["-time_end", "3e-6"]
+    counts = [steps(words(*given)) for given in ([BLOCKS, *end], [*end, BLOCKS], [*end, "-options_file", BLOCKS], ["-options_file", BLOCKS, *end])]
+    assert counts == [counts[0]] * 4 and 0 < counts[0] < steps(words(BLOCKS, "-time_end", "6e-6"))
+    assert steps(words(*end, BLOCKS, "-time_end", "6e-6")) == 2 * counts[0]  # the last one holds
+
+
+def test_many_unknown_options(words):
+    """More than a message can hold: it ends in dots."""
+    refused(words(BLOCKS, *(word for i in range(100) for word in (f"-unknown_option_number_{i}", "3"))), ["-unknown_option_number_0 3", " ..."])
+
+
+def known_options():
+    table = (ROOT / "src/sys/optiontable.c").read_text()
+    for owner, name, value in re.findall(r'OPTION_OF_([A-Z]+), "([^"]+)",\s*"((?:[^"\\]|\\.)*)"', table):
+        if owner == "OBSTACLE":
+            yield "hertz-impact", "plane_" + name, value
+        else:
+            yield "blocks", {"RUN": "", "BODY": "left_"}[owner] + name.replace("<surface>", "xmin"), value
+
+
+KNOWN = [known for known in known_options() if known[1] not in ("options_file", "example")]
+BATCHES = 4
+TEXTS = re.compile(r"^(file|\[viewer\])|filename")  # any text will do, or is found wrong when it is used
+
+
+@pytest.mark.parametrize("batch", range(BATCHES))
+def test_missing_values(batch, words):
+    """Nothing but what can be true or false, and viewers, may stand alone."""
+    for case, option, value in KNOWN[batch::BATCHES]:
+        if value == "true|false" or value.startswith("["):
+            continue
+        refused(words(f"options/{case}.opts", f"-{option}", *SHORT), [f"-{option} (the command line) has no value"])
+
+
+@pytest.mark.parametrize("batch", long(*range(BATCHES)))
+def test_values_of_no_sense(batch, words):
+    """Whatever an option takes, the message names it."""
+    for case, option, value in KNOWN[batch::BATCHES]:
+        if option == "obstacles" or TEXTS.search(value):
+            continue
+        run = words(f"options/{case}.opts", *SHORT, f"-{option}", "zzz")
+        assert run.returncode > 0, option
+        check_message(run, [f"-{option}"])
+
+
+def without_remarks(text):
+    return [line.split("#")[0].split() for line in text.splitlines() if line.split("#")[0].strip()]
+
+
+def test_examples(words, tmp_path):
+    """What is written is the file of options/, each option with what it means, and nothing that is there is overwritten."""
+    names = re.findall(r"^  (\S+)", words("-example").stdout, re.MULTILINE)
+    assert len(names) > 20
+    for name in names:
+        assert words("-example", name).returncode == 0
+        text, original = ((folder / f"{name}.opts").read_text() for folder in (tmp_path, ROOT / "options"))
+        assert without_remarks(text) == without_remarks(original)
+        assert text.count("#") > original.count("#")
+    (tmp_path / "blocks.opts").write_text("mine")
+    refused(words("-example", "blocks"), ["'blocks.opts' exists already"])
+    assert (tmp_path / "blocks.opts").read_text() == "mine"
+    refused(words("-example", "block"), ["-example block", "blocks", "two-walls"])
+    assert steps(words("two-walls.opts", "-time_end", "6.245e-6", "-output_history", "h.h5", "-output_summary", "s.json")) == 10
+
+
+def test_example_on_two_ranks(words, tmp_path):
+    assert words("-example", "blocks", ranks=2).stdout.count("blocks.opts is written") == 1
+    refused(words("-example", "blocks", ranks=2), ["'blocks.opts' exists already"])
+
+
+# What was computed without a word, or blamed on something else
+SENSELESS = {
+    "body with digit": (["-bodies", "1a,b"], ["-bodies", "'1a'", "letter"]),
+    "option with digit": (["-bodies", "1a", "-1a_dm_plex_dim", "1"], ["'-1a_dm_plex_dim'", "letter"]),
+    "body not ASCII": (["-bodies", "block,kl\u00f6tz"], ["-bodies", "kl\u00f6tz", "letters"]),
+    "obstacle": ([BLOCKS, "-obstacles", "2nd"], ["-obstacles", "'2nd'"]),
+    "far away": ([BLOCKS, "-left_translate", "1e12,0"], ["'left'", "-left_translate", "digits"]),
+    "tiny": ([BLOCKS, "-left_scale", "1e-80"], ["'left'", "-left_scale"]),
+    "huge": ([BLOCKS, "-left_scale", "1e90"], ["'left'", "-left_scale"]),
+    "angle": ([BLOCKS, "-left_rotate", "1e9"], ["-left_rotate", "1e+09", "360"]),
+    "exact in two dimensions": ([BLOCKS, "-exact", "impact", "-left_poissons_ratio", "0.3"], ["-exact", "'left'", "-left_poissons_ratio 0"]),
+    "exact with loads": (["options/impact-high-speed.opts", "-right_body_force", "1e3"], ["-exact", "'right'", "body forces"]),
+}
+
+
+@pytest.mark.parametrize("case", list(SENSELESS))
+def test_input_without_sense(case, words):
+    given, named = SENSELESS[case]
+    refused(words(*given), named)
+
+
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+def test_line_ends_of_tables(ends, words, tmp_path):
+    (tmp_path / "t.txt").write_bytes(f"0 0{ends}# comment{ends}{ends}1e-6,1e12{ends}2e-6 2e12".encode())
+    run = words(BLOCKS, "-left_body_force", "table:t.txt,0", "-output_history", "h.h5", "-output_summary", "s.json", "-time_end", "2e-6")
+    assert run.returncode == 0, run.stderr
+    with h5py.File(tmp_path / "h.h5") as history:
+        # the force grows to f = 2e12 N/m^3 in t = 2e-6 s, and the momentum to V f t / 2; contact takes 0.4 % of it
+        momentum = history["body/left/momentum"][:, 0]
+    gained = momentum - momentum[0]
+    assert gained[-1] == pytest.approx(0.25 * 0.05 * 2e12 * 2e-6 / 2, rel=0.01)
