@@ -124,7 +124,8 @@ def test_bars(ranks, precision, step, interval, impakt):
 @pytest.mark.parametrize(("names", "ranks"), [(("hex",), 1), (("tet",), 2), (("hex", "tet"), 1), (("hex", "tet"), 3)], ids=lambda value: "-".join(value) if isinstance(value, tuple) else None)
 def test_solids(names, ranks, impakt):
     """Stress of a uniform deformation, component by component; several shapes in one file."""
-    run = impakt(f"{solids(*names)} -output_fields fields.h5 -output_fields_precision double -output_fields_interval 1", ranks=ranks)
+    start = "-contact_balanced_start false" if len(names) > 1 else ""  # contact nodes where they are put, not where they are in balance
+    run = impakt(f"{solids(*names)} {start} -output_fields fields.h5 -output_fields_precision double -output_fields_interval 1", ranks=ranks)
     times, grids = same(run.folder / "fields.xdmf", contact=len(names) > 1)
     np.testing.assert_allclose(times, [0, 1e-7, 2e-7, 3e-7], rtol=0, atol=1e-20)
     first = grids[0]

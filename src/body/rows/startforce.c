@@ -124,6 +124,8 @@ PetscErrorCode BodyDropStartForce(Body body)
 @*/
 PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
 {
+  PetscBool layer;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
@@ -136,6 +138,9 @@ PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
     body->rows.any_by_mean = (PetscBool)(body->rows.any_by_mean || rows[i]);
   }
   PetscCall(BodyAnyRank(body, &body->rows.any_by_mean));
+  layer = (PetscBool)(body->layer.n_dofs > 0);
+  PetscCall(BodyAnyRank(body, &layer));
+  if (layer && body->rows.any_by_mean) PetscCall(BodyPrepareLayer(body, body->state.u)); /* its factors, before the time loop */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -107,9 +107,14 @@ PetscErrorCode ContactSetMeanForces(Contact contact)
   PetscFunctionBegin;
   if (!contact->ties.by_mean) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(contact->rows.n, &by_mean));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    by_mean[i] = (PetscBool)(contact->rows.tied[i] && !contact->pairs[contact->rows.pair[i]].keeps_mass);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetMeanForces(contact->bodies[b], by_mean));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+
+      by_mean[i] = (PetscBool)(contact->rows.tied[i] && !pair->keeps_mass && (pair->body[0] == b || pair->body[1] == b));
+    }
+    PetscCall(BodySetMeanForces(contact->bodies[b], by_mean));
+  }
   PetscCall(PetscFree(by_mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
