@@ -4,7 +4,7 @@ import h5py
 import hertz
 import numpy as np
 import pytest
-from cases import joined, long
+from cases import joined
 from setups import FIELDS, box, material, plane
 
 STACK = "-options_file options/stack-static.opts"
@@ -159,7 +159,7 @@ def test_punch(shared_run):
     np.testing.assert_allclose(u[block, 0], 1e-3 * 0.3 / 0.7 * x[block, 0], rtol=0, atol=3e-7)
 
 
-@long
+@pytest.mark.long
 def test_cylinder_between_plates(shared_run):
     """A cylinder between a rigid plane below and an elastic plate above, which comes down by 20 mm: Hertz's half width and largest pressure with the
     force that both bear, from nodes inside 0.9 of the half width: measured -0.5 and +0.3 % below, where it is 4 elements, -2.1 and +1.0 % above, where the plate
