@@ -68,9 +68,17 @@ static PetscErrorCode GetParameters(Body body)
 
 static PetscErrorCode SetUp(Body body)
 {
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+
   PetscFunctionBegin;
   body->integrator->depends_on_step = PETSC_TRUE;
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
+  /* the force that acts in the substep is that at the stage; with a linear body it is the mean of those at the ends */
+  if (!body->model.linear && implicit->alpha_f != 1 && body->rows.global &&
+      (!body->rows.have_mass || body->rows.traction == BODY_TRACTION_REACTION)) {
+    body->rows.stage = implicit->alpha_f;
+    PetscCall(BodyCreateVec(body, &body->rows.stage_balance));
+  }
   /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
   if (body->rows.have_mass && body->mass.matrix) body->integrator->ops.repeat = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -110,6 +110,7 @@ PetscErrorCode BodyImplicitAddForces(Body body, PetscReal t, Vec U, Vec F)
   PetscCall(VecAXPY(F, 1, body->state.internal_force));
   PetscCall(BodyAddExternalForce(body, t, -1, F));
   PetscCall(BodyAddContactForce(body, position, -1, U, F));
+  if (body->rows.stage_balance) PetscCall(VecCopy(F, body->rows.stage_balance));
   PetscCall(BodyZeroHeld(body, F));
   PetscCall(BodyPrescribe(body, NULL, position, F));
   PetscFunctionReturn(PETSC_SUCCESS);

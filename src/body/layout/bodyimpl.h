@@ -130,8 +130,11 @@ typedef struct {
   PetscReal     *flexibility;                     /* per local row: of its Robin spring [m/N]; 0: it is held */
   PetscReal     *robin;                           /* per local row: stiffness of its Robin spring [N/m] */
   PetscInt       n_prescribed, n_forced, n_robin; /* over all ranks; Robin rows are forced ones */
-  PetscScalar   *kept_traces;                     /* output traces put aside by BodyKeep() */
-  BodyHandover   handover;
+  /* of a nonlinear body whose equations hold at a stage within the substep: forces are what they are there, and those at the end follow */
+  PetscReal    stage;         /* where it is, as a part of the substep */
+  Vec          stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
+  PetscScalar *kept_traces;   /* output traces put aside by BodyKeep() */
+  BodyHandover handover;
 } BodyRows;
 
 /* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */

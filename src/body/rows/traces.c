@@ -16,10 +16,25 @@ PetscErrorCode BodyWriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces at the end of a substep such that those at its stage lie on the line from its start: partners take them as varying linearly, and
+   get at the stage what has held the rows there. Were it the balance at the end instead, momentum would change by what the internal force
+   is nonlinear in the substep. */
+static PetscErrorCode ExtendFromStage(Body body, PetscInt level, PetscScalar reaction[])
+{
+  const PetscReal stage = body->rows.stage;
+  PetscScalar    *start;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(body->traces.reaction, level - 1, &start));
+  for (PetscInt i = 0; i < body->rows.local; i++) reaction[i] = (reaction[i] - (1 - stage) * start[i]) / stage;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Displacement, velocity and acceleration of all rows, and the force along prescribed and Robin ones, as they are now */
 PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 {
-  PetscScalar *reaction, *displacement, *force_in;
+  const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
+  PetscScalar    *reaction, *displacement, *force_in;
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
@@ -30,7 +45,8 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
     Vec             force   = body->state.internal_force;
     const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);
 
-    if (inertia || body->loads || body->rows.n_forced || BodyHandsOver(body)) {
+    if (at_stage) force = body->rows.stage_balance;
+    else if (inertia || body->loads || body->rows.n_forced || BodyHandsOver(body)) {
       force = body->work.nodes[0];
       if (inertia) {
         PetscCall(BodyMultiplyMass(body, body->state.a, force));
@@ -44,6 +60,7 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
   }
   PetscCall(TraceGetLevel(body->traces.reaction, level, &reaction));
   if (body->rows.n_prescribed) BodyDivideByGram(body, reaction);
+  if (body->rows.n_prescribed && at_stage) PetscCall(ExtendFromStage(body, level, reaction));
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
   for (PetscInt i = 0; i < body->rows.local; i++) {

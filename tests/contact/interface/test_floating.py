@@ -4,7 +4,7 @@ import h5py
 import hertz
 import numpy as np
 import pytest
-from cases import joined, long
+from cases import joined
 from setups import FIELDS, box, material, plane
 
 STACK = "-options_file options/stack-static.opts"
@@ -159,11 +159,11 @@ def test_punch(shared_run):
     np.testing.assert_allclose(u[block, 0], 1e-3 * 0.3 / 0.7 * x[block, 0], rtol=0, atol=3e-7)
 
 
-@long
+@pytest.mark.long
 def test_cylinder_between_plates(shared_run):
     """A cylinder between a rigid plane below and an elastic plate above, which comes down by 20 mm: Hertz's half width and largest pressure with the
-    force that both bear, from nodes inside 0.9 of the half width: measured -0.5 and +0.3 % below, where it is 4 elements, -2.1 and +1.0 % above, where
-    1 mm of the plate's height is beside a half space. It may roll, and nothing makes it do so: its middle stays in place."""
+    force that both bear, from nodes inside 0.9 of the half width: measured -0.5 and +0.3 % below, where it is 4 elements, -2.1 and +1.0 % above, where the plate
+    is no half space. It may roll, and nothing makes it do so: its middle stays in place."""
     ball = joined("-ball_dm_plex_dim 2 -ball_dm_plex_shape ball -ball_ball_radius 1 -ball_ball_divisions 96 -ball_ball_layers 32 -ball_ball_keep_volume false",
                   "-ball_ts_type static", material("ball", E, 0.3, 1000))  # fmt: skip
     more = joined(static("plate", (128, 32), (-1, 1), (1, 2), held("plate", "ymax", 0, "-0.02*t"), nu=0.3), "-time_step 0.5 -time_end 1", FIELDS)
