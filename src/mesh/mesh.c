@@ -78,25 +78,6 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error if there are fewer elements than ranks: partitioners may then leave more ranks without elements than they must */
-static PetscErrorCode CheckSize(DM dm, const char name[])
-{
-  MPI_Comm    comm = PetscObjectComm((PetscObject)dm);
-  PetscInt    cstart, cend;
-  PetscInt64  n;
-  PetscMPIInt size;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &cstart, &cend));
-  n = cend - cstart;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT64, MPI_SUM, comm));
-  PetscCheck(n >= size, comm, PETSC_ERR_USER_INPUT,
-             "Body '%s' has %" PetscInt64_FMT " element%s for %d ranks: run it on fewer, or with a finer mesh", name, n, n == 1 ? "" : "s",
-             size);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@C
   MeshCreate - the mesh of a body from options, distributed over the ranks
 
@@ -166,7 +147,6 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   PetscCall(DMSetOptionsPrefix(*dm, prefix));
   PetscCall(DMSetFromOptions(*dm)); /* distributes it */
   PetscCall(PetscObjectSetName((PetscObject)*dm, name));
-  PetscCall(CheckSize(*dm, name));
   if (!from_file) PetscCall(MeshMarkSides(*dm));
   PetscCall(MeshPlace(*dm, prefix, name));
   PetscCall(DMViewFromOptions(*dm, NULL, "-dm_view"));

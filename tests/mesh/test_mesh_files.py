@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from cases import long
 from conftest import IMPAKT
 from meshes import row, write_exodus, write_gmsh
 
@@ -156,6 +157,20 @@ def test_no_file(impakt, tmp_path, ranks):
     refused(impakt, tmp_path / "row.obj", [".msh", ".exo"], ranks)
 
 
-def test_more_ranks_than_elements(impakt):
-    run = impakt("-bodies a -a_dm_plex_dim 1 -a_dm_plex_box_faces 2 -a_density 1 -a_youngs_modulus 1 -time_step 1 -time_end 1", 3, expect_failure=True, timeout=60)
-    assert "impakt: error: Body 'a' has 2 elements for 3 ranks" in run.stderr
+FEW = {
+    "quad4": "blocks.opts -left_dm_plex_box_faces 2,1 -right_dm_plex_box_faces 1,2 -time_end 4e-5",
+    "explicit": "blocks.opts -left_dm_plex_box_faces 2,1 -right_dm_plex_box_faces 1,2 -left_ts_type centraldifference -left_ts_time_step auto -right_material_type neo_hookean -time_end 4e-5",
+    "penalty": "blocks.opts -contact_type penalty -left_dm_plex_box_faces 2,1 -right_dm_plex_box_faces 1,2 -time_end 4e-5",
+    "hex8 and tet4": "bars-3d.opts -left_dm_plex_box_faces 2,1,1 -right_dm_plex_box_faces 1,1,1 -time_end 5e-5",
+    "static": "contact-patch.opts",
+}
+
+
+@pytest.mark.parametrize("ranks", [5, *long(7)])
+@pytest.mark.parametrize("case", list(FEW))
+def test_more_ranks_than_elements(case, ranks, shared_run):
+    """Some ranks have nothing to do, and the results are those of one rank."""
+    one, many = (shared_run(f"-options_file options/{FEW[case]} -output_fields f.h5", n) for n in (1, ranks))
+    assert one.summary["contact"]["force_peak"] > 0
+    assert many.summary["contact"]["force_peak"] == pytest.approx(one.summary["contact"]["force_peak"], rel=1e-9)
+    assert many.summary["contact"]["impulse"] == pytest.approx(one.summary["contact"]["impulse"], rel=1e-9)
