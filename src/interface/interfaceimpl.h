@@ -62,6 +62,7 @@ enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
 typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
+  PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
   PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -160,4 +161,5 @@ PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
 PETSC_INTERN void           RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal      RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                      const PetscReal[]);
+PETSC_INTERN PetscReal      RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
 PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

@@ -4,6 +4,9 @@
 /* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-4
    of the face size of a line or of a point */
 #define NOTHING_NEW 1e-8
+/* Square of the chord of the angle, 50 degrees, by which the normal of a node may differ from the mean of a row if the surface is bent
+   there rather than has an edge */
+#define BENT_CHORD 0.715
 /* Cosines of the angles up to which normals of both sides belong to a bend, 10 degrees, and from which on to an edge, 18 degrees. Discs of
    16 edges, whose faces are 22 degrees from each other, roll on their edges. */
 #define BENT 0.985
@@ -109,4 +112,30 @@ PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscRea
     bulge += 0.5 * weights[j] * (along - plane / cosine);
   }
   return counts * bulge;
+}
+
+/* Depth that a row may have between surfaces that only touch [m]. The dual functions are negative at the far ends of a node's faces, so
+   that the row of the node at which two balls meet sees the partner in front of its vertex: by no more than the partner's nodes lie behind
+   the plane there, which is half the turn of their normals times their distance. */
+PetscReal RowBow(PetscInt dim, PetscInt n, const PetscReal *partners[], const PetscReal *normals[], const PetscReal weights[])
+{
+  PetscReal middle[3] = {0}, mean[3] = {0}, bow = 0;
+
+  if (dim == 1) return 0;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt d = 0; d < dim; d++) {
+      middle[d] += weights[j] * partners[j][d];
+      mean[d] += weights[j] * normals[j][d];
+    }
+  (void)Normalize(mean);
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal turn = 0, distance = 0;
+
+    for (PetscInt d = 0; d < dim; d++) {
+      turn += PetscSqr(normals[j][d] - mean[d]);
+      distance += PetscSqr(partners[j][d] - middle[d]);
+    }
+    if (turn <= BENT_CHORD) bow += 0.5 * PetscAbsReal(weights[j]) * PetscSqrtReal(turn * distance);
+  }
+  return bow;
 }

@@ -18,7 +18,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
   PetscCall(PetscMemzero(set, sizeof(*set)));
   PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
                          &set->offsets));
-  PetscCall(PetscCalloc1(n, &set->rest));
+  PetscCall(PetscCalloc2(n, &set->rest, n, &set->bow));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -27,7 +27,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
-  PetscCall(PetscFree(set->rest));
+  PetscCall(PetscFree2(set->rest, set->bow));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -125,7 +125,8 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
+/* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
+   that touch, and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
    touches when the end of the partner does, not before or after. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
@@ -161,7 +162,8 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += normal[d] * (there - data->reference[3 * row + d]);
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
-  bulge = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights) : 0;
+  set->bow[row] = RowBow(dim, n, partners, normals, weights);
+  bulge         = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights) : 0;
   if (!set->beyond[row]) {
     gap -= bulge;
     present -= bulge;
@@ -176,7 +178,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += end - present;
     present = end;
   }
-  set->opposite[row] = (PetscBool)(present <= ahead && present >= -behind);
+  set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
   if (set->opposite[row]) set->gap[row] = gap;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -222,6 +224,7 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
   set->opposite[row] = PETSC_TRUE;
   set->gap[row]      = transfer->rows.gap[row];
   set->rest[row]     = transfer->rows.rest[row];
+  set->bow[row]      = transfer->rows.bow[row];
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
 }
 

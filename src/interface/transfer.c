@@ -214,6 +214,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->changed  = set->changed;
   rows->followed = transfer->followed;
   rows->slip     = transfer->slip;
+  rows->bow      = set->bow;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

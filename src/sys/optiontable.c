@@ -95,8 +95,9 @@ static const KnownOption options[] = {
     {"time", OPTION_OF_BODY, "ts_alpha_gamma", "g", "Newmark's gamma of alpha2, default 1/2"},
     {"time", OPTION_OF_BODY, "ts_alpha_beta", "b", "Newmark's beta of alpha2, default 1/4: the trapezoidal rule"},
 
-    {"contact", OPTION_OF_RUN, "contact_pairs", "a:b,b:c|auto|none",
-     "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; "
+    {"contact", OPTION_OF_RUN, "contact_pairs", "a:b,b~c|auto|none",
+     "pairs that may touch, Dirichlet side first, or, with a tilde, in the order that is better; a.xmax:b.xmin for certain surfaces, a.all "
+     "for the whole boundary; a:o with an obstacle; "
      "auto: all with all"},
     {"contact", OPTION_OF_RUN, "contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method, default schwarz"},
     {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded",

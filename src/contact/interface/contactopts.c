@@ -103,8 +103,9 @@ static PetscErrorCode ReadPairs(Contact contact)
 . contact - the `Contact`, with its bodies
 
   Options Database Keys:
-+ -contact_pairs a:b,b:c                                       - pairs of bodies, Dirichlet side first; a.top:b.bottom for certain
-                                                                 surfaces; default: the two bodies, where there are two
++ -contact_pairs a:b,b~c                                       - pairs of bodies, Dirichlet side first, or, with a tilde, in the order
+                                                                 that is better; a.top:b.bottom for certain surfaces; default: the two
+                                                                 bodies, where there are two
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
