@@ -65,6 +65,8 @@ PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle,
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscReal, PetscReal, PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferSetBalance(Transfer, PetscReal);
+PETSC_EXTERN PetscErrorCode TransferBalance(Transfer, const PetscReal[], PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSetCurved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);

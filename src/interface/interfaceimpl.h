@@ -82,6 +82,18 @@ typedef struct {
   PetscBool *known;                 /* per row: it has followed in the last step too */
 } Follow;
 
+/* How the gaps of the rows are turned, see src/interface/balance.c */
+typedef struct {
+  PetscReal  stiffness; /* of both sides against a force on a row [N/m]; 0: gaps are not turned */
+  PetscReal  turn;      /* [m] */
+  PetscReal  rate;      /* by which it changes in a step [m] */
+  PetscReal  gain;      /* by which the rate is learnt anew */
+  PetscInt   n_active;  /* rows with a force in the last step */
+  PetscReal *uneven;    /* per row: c_i */
+  PetscReal *gap;       /* per row: present gap [m] */
+  PetscReal *turned;    /* per row: what has been added to its gap [m] */
+} Balance;
+
 struct _p_Transfer {
   PETSCHEADER(int);
   MPI_Comm       comm;
@@ -104,6 +116,7 @@ struct _p_Transfer {
   Follow         follow;
   PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
   PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
+  Balance        balance;
   TransferCounts counts;
 };
 
@@ -154,6 +167,7 @@ PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, Pe
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
@@ -161,5 +175,6 @@ PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
 PETSC_INTERN void           RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal      RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                      const PetscReal[]);
+PETSC_INTERN PetscReal      RowBendCounts(PetscReal);
 PETSC_INTERN PetscReal      RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
 PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

@@ -69,7 +69,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
 }
 
 /* How far a bend counts, from 1 to 0, by the cosine of the angle of the normals */
-static PetscReal BendCounts(PetscReal cosine)
+PetscReal RowBendCounts(PetscReal cosine)
 {
   return PetscMin(1, PetscMax(0, (cosine - EDGE) / (BENT - EDGE)));
 }
@@ -84,7 +84,7 @@ void RowNormal(PetscInt dim, PetscInt n, const PetscReal node[], const PetscReal
     for (PetscInt d = 0; d < dim; d++) partner[d] -= weights[j] * normals[j][d];
   if (Normalize(partner) > 0) cosine = Dot(partner, node);
   for (PetscInt d = 0; d < 3; d++) {
-    sum[d] = d < dim ? node[d] + BendCounts(cosine) * partner[d] : 0;
+    sum[d] = d < dim ? node[d] + RowBendCounts(cosine) * partner[d] : 0;
     square += PetscSqr(sum[d]);
   }
   for (PetscInt d = 0; d < dim; d++) normal[d] = square > 0 ? sum[d] / PetscSqrtReal(square) : node[d];
@@ -107,7 +107,7 @@ PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscRea
       plane += normals[j][d] * (partners[j][d] - x[d]);
       cosine += normals[j][d] * normal[d];
     }
-    counts = PetscMin(counts, BendCounts(-cosine));
+    counts = PetscMin(counts, RowBendCounts(-cosine));
     if (counts == 0) return 0;
     bulge += 0.5 * weights[j] * (along - plane / cosine);
   }

@@ -83,6 +83,7 @@ typedef struct {
   PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
   PetscBool            allow_unstable;   /* what is known to gain energy runs all the same */
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
+  PetscBool            balance;          /* forces have the same sum along the normals of both sides, see ContactSetBalance() */
   PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
@@ -322,6 +323,7 @@ PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
 PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
 PETSC_INTERN PetscErrorCode ContactLetTouch(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpBalance(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);

@@ -30,6 +30,8 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.angle_bound, &contact->options.angle_bound, NULL));
   PetscCall(PetscOptionsBool("-contact_allow_unstable", "What is known to gain energy runs all the same", "ContactSetAllowUnstable",
                              contact->options.allow_unstable, &contact->options.allow_unstable, NULL));
+  PetscCall(PetscOptionsBool("-contact_balance", "Forces have the same sum along the normals of both sides", "ContactSetBalance",
+                             contact->options.balance, &contact->options.balance, NULL));
   PetscCall(PetscOptionsBool("-contact_shared_times", "Contact holds at all times that all bodies have", "ContactSetSharedTimes",
                              contact->options.shared_times, &contact->options.shared_times, NULL));
   PetscCall(PetscOptionsBool("-contact_energy_cap", "Steps that would gain energy at contact are made again", "ContactSetEnergyCap",
@@ -118,6 +120,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_allow_unstable (true|false)                          - whether choices that are known to gain energy run all the same
 . -contact_shared_times (true|false)                            - whether contact holds at all times that all bodies have in common, or
                                                                  at the ends of controller steps alone
+. -contact_balance (true|false)                                 - whether forces have the same sum along the normals of both sides
 . -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
 . -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
 - -contact_energy_tolerance t                                   - energy that contact may take or bring in a step, 1e-3
@@ -131,7 +134,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
           `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
           `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`,
-          `ContactSetTieDistance()`
+          `ContactSetTieDistance()`, `ContactSetBalance()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
