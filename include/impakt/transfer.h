@@ -43,6 +43,7 @@ typedef struct {
   const PetscBool *changed;  /* the last update has built the row anew, and has changed it */
   const PetscBool *followed; /* the row has followed the surfaces since, see TransferFollow() */
   const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
+  const PetscReal *bow;      /* depth that the row may have between surfaces which only touch, since the partner's faces are bent [m] */
 } TransferRows;
 
 /*S
@@ -66,6 +67,8 @@ PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscB
 PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscReal, PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSave(Transfer);
 PETSC_EXTERN PetscErrorCode TransferRestore(Transfer);
+PETSC_EXTERN PetscErrorCode TransferSetBalance(Transfer, PetscReal);
+PETSC_EXTERN PetscErrorCode TransferBalance(Transfer, const PetscReal[], PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSetCurved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);

@@ -147,7 +147,7 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
 }
 
 /* The gap of a row where the surfaces are now [m] */
-static PetscReal PresentGap(Transfer transfer, PetscInt row)
+PetscReal TransferPresentGap(Transfer transfer, PetscInt row)
 {
   const SurfaceData *data = &transfer->dirichlet->data;
 
@@ -169,7 +169,7 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];
 
     transfer->followed[row] = (PetscBool)(set->opposite[row] && !set->beyond[row] && n <= FOLLOW_MAX &&
-                                          (touches[row] || PresentGap(transfer, row) <= reach));
+                                          (touches[row] || TransferPresentGap(transfer, row) <= reach));
     if (transfer->followed[row]) found = 1;
     else transfer->follow.known[row] = PETSC_FALSE;
   }

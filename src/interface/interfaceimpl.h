@@ -62,6 +62,7 @@ enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
 typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
+  PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
   PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -81,6 +82,18 @@ typedef struct {
   PetscBool *known;                 /* per row: it has followed in the last step too */
 } Follow;
 
+/* How the gaps of the rows are turned, see src/interface/balance.c */
+typedef struct {
+  PetscReal  stiffness; /* of both sides against a force on a row [N/m]; 0: gaps are not turned */
+  PetscReal  turn;      /* [m] */
+  PetscReal  rate;      /* by which it changes in a step [m] */
+  PetscReal  gain;      /* by which the rate is learnt anew */
+  PetscInt   n_active;  /* rows with a force in the last step */
+  PetscReal *uneven;    /* per row: c_i */
+  PetscReal *gap;       /* per row: present gap [m] */
+  PetscReal *turned;    /* per row: what has been added to its gap [m] */
+} Balance;
+
 /* What TransferSave() puts aside */
 typedef struct {
   PetscBool  ready;  /* there is room for it */
@@ -89,6 +102,8 @@ typedef struct {
   PetscReal *built_x[2], *built_slip, *slip, built_near, smallest_size;
   PetscReal *x[2], *follow_slip, step; /* of Follow */
   PetscBool *known, has_last;
+  Balance    balance;
+  PetscReal *turned; /* of Balance */
 } TransferSaved;
 
 struct _p_Transfer {
@@ -113,6 +128,7 @@ struct _p_Transfer {
   Follow         follow;
   PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
   PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
+  Balance        balance;
   TransferCounts counts;
   TransferSaved  saved;
 };
@@ -166,6 +182,7 @@ PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
+PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
@@ -173,4 +190,6 @@ PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
 PETSC_INTERN void           RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal      RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                      const PetscReal[]);
+PETSC_INTERN PetscReal      RowBendCounts(PetscReal);
+PETSC_INTERN PetscReal      RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
 PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

@@ -7,17 +7,10 @@
    round-off of the integrals, far below any real slip */
 #define SAME  1e-10
 #define PRUNE 1e-12 /* smaller weights are round-off, and would only fill the matrices */
-/* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-4
-   of the face size of a line or of a point */
-#define NOTHING_NEW 1e-8
 /* In a rebuild, partners are looked for this far behind at least [parts of the smallest face] */
 #define LEAST_DEPTH 0.5
 /* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
 #define OBLIQUE 2
-/* Cosines of the angles up to which normals of both sides belong to a bend, 10 degrees, and from which on to an edge, 18 degrees. Discs of
-   16 edges, whose faces are 22 degrees from each other, roll on their edges. */
-#define BENT 0.985
-#define EDGE 0.95
 
 PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSet *set)
 {
@@ -25,7 +18,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
   PetscCall(PetscMemzero(set, sizeof(*set)));
   PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
                          &set->offsets));
-  PetscCall(PetscCalloc1(n, &set->rest));
+  PetscCall(PetscCalloc2(n, &set->rest, n, &set->bow));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -34,7 +27,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
-  PetscCall(PetscFree(set->rest));
+  PetscCall(PetscFree2(set->rest, set->bow));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -106,108 +99,6 @@ static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Changes the weights by as little as possible, each in proportion to its size, such that they sum to one and sum_j P_j x_j - x is along
-   the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
-   partner's nodes do not differ nothing can be changed. */
-void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
-                PetscReal weights[])
-{
-  PetscReal tangents[2][3] = {{0}}, gram[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
-  PetscInt  thinnest = 0;
-
-  if (dim == 1) return;
-  for (PetscInt d = 1; d < dim; d++)
-    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[thinnest])) thinnest = d;
-  if (dim == 2) {
-    tangents[0][0] = -normal[1];
-    tangents[0][1] = normal[0];
-  } else {
-    tangents[1][thinnest] = 1;
-    Cross(normal, tangents[1], tangents[0]);
-    (void)Normalize(tangents[0]);
-    Cross(normal, tangents[0], tangents[1]);
-  }
-  for (PetscInt j = 0; j < n; j++) {
-    const PetscReal from[3]      = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
-    const PetscReal condition[3] = {1, Dot(from, tangents[0]) / size, Dot(from, tangents[1]) / size};
-
-    for (PetscInt a = 0; a < dim; a++) {
-      rest[a] -= weights[j] * condition[a];
-      for (PetscInt b = 0; b < dim; b++) gram[a][b] += PetscAbsReal(weights[j]) * condition[a] * condition[b];
-    }
-  }
-  for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
-    if (gram[a][a] < NOTHING_NEW) {
-      for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
-      rest[a] = 0;
-      continue;
-    }
-    for (PetscInt r = a + 1; r < dim; r++) {
-      const PetscReal factor = gram[r][a] / gram[a][a];
-
-      for (PetscInt b = a; b < dim; b++) gram[r][b] -= factor * gram[a][b];
-      rest[r] -= factor * rest[a];
-    }
-  }
-  for (PetscInt a = dim - 1; a >= 0; a--) {
-    factors[a] = rest[a];
-    for (PetscInt b = a + 1; b < dim; b++) factors[a] -= gram[a][b] * factors[b];
-    factors[a] /= gram[a][a];
-  }
-  for (PetscInt j = 0; j < n; j++) {
-    const PetscReal from[3] = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
-
-    weights[j] += PetscAbsReal(weights[j]) *
-                  (factors[0] + factors[1] * Dot(from, tangents[0]) / size + factors[2] * Dot(from, tangents[1]) / size);
-  }
-}
-
-/* How far a bend counts, from 1 to 0, by the cosine of the angle of the normals */
-static PetscReal BendCounts(PetscReal cosine)
-{
-  return PetscMin(1, PetscMax(0, (cosine - EDGE) / (BENT - EDGE)));
-}
-
-/* The normal of a row is half way between that of its node and those of the partner, where they are opposed but for a bend: so it does not
-   depend on which of the surfaces has the nodes of the rows */
-void RowNormal(PetscInt dim, PetscInt n, const PetscReal node[], const PetscReal *normals[], const PetscReal weights[], PetscReal normal[])
-{
-  PetscReal partner[3] = {0}, sum[3] = {0}, square = 0, cosine = 0;
-
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt d = 0; d < dim; d++) partner[d] -= weights[j] * normals[j][d];
-  if (Normalize(partner) > 0) cosine = Dot(partner, node);
-  for (PetscInt d = 0; d < 3; d++) {
-    sum[d] = d < dim ? node[d] + BendCounts(cosine) * partner[d] : 0;
-    square += PetscSqr(sum[d]);
-  }
-  for (PetscInt d = 0; d < dim; d++) normal[d] = square > 0 ? sum[d] / PetscSqrtReal(square) : node[d];
-}
-
-/* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its
-   nodes and the planes through them across their normals a surface of second order is met:
-
-     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)) */
-PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
-                   const PetscReal *normals[], const PetscReal weights[])
-{
-  PetscReal bulge = 0, counts = 1;
-
-  for (PetscInt j = 0; j < n; j++) {
-    PetscReal along = 0, plane = 0, cosine = 0;
-
-    for (PetscInt d = 0; d < dim; d++) {
-      along += normal[d] * (partners[j][d] - x[d]);
-      plane += normals[j][d] * (partners[j][d] - x[d]);
-      cosine += normals[j][d] * normal[d];
-    }
-    counts = PetscMin(counts, BendCounts(-cosine));
-    if (counts == 0) return 0;
-    bulge += 0.5 * weights[j] * (along - plane / cosine);
-  }
-  return counts * bulge;
-}
-
 /* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known.
  */
 static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal *gap,
@@ -234,7 +125,8 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corrects the weights of a row, and keeps the row if its gap lies between -behind and ahead [m]. The weights of a node beyond the end of
+/* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
+   that touch, and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
    touches when the end of the partner does, not before or after. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
@@ -270,7 +162,8 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += normal[d] * (there - data->reference[3 * row + d]);
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
-  bulge = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights) : 0;
+  set->bow[row] = RowBow(dim, n, partners, normals, weights);
+  bulge         = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights) : 0;
   if (!set->beyond[row]) {
     gap -= bulge;
     present -= bulge;
@@ -285,7 +178,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     gap += end - present;
     present = end;
   }
-  set->opposite[row] = (PetscBool)(present <= ahead && present >= -behind);
+  set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
   if (set->opposite[row]) set->gap[row] = gap;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -331,6 +224,7 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
   set->opposite[row] = PETSC_TRUE;
   set->gap[row]      = transfer->rows.gap[row];
   set->rest[row]     = transfer->rows.rest[row];
+  set->bow[row]      = transfer->rows.bow[row];
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
 }
 

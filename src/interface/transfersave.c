@@ -12,6 +12,7 @@ static PetscErrorCode CopyNumbers(PetscInt dim, PetscInt n, const RowSet *from, 
   PetscCall(PetscArraycpy(to->area, from->area, n));
   PetscCall(PetscArraycpy(to->normals, from->normals, dim * n));
   PetscCall(PetscArraycpy(to->rest, from->rest, n));
+  PetscCall(PetscArraycpy(to->bow, from->bow, n));
   PetscCall(PetscArraycpy(to->shares, from->shares, from->offsets[n]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -69,6 +70,7 @@ static PetscErrorCode Allocate(Transfer transfer)
   if (saved->ready) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc4(3 * n, &saved->built_x[0], 3 * partners, &saved->built_x[1], 3 * n, &saved->built_slip, n, &saved->slip));
   PetscCall(PetscMalloc4(3 * n, &saved->x[0], 3 * partners, &saved->x[1], 3 * n, &saved->follow_slip, n, &saved->known));
+  if (transfer->balance.stiffness > 0) PetscCall(PetscMalloc1(n, &saved->turned));
   saved->ready = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,6 +103,9 @@ static PetscErrorCode CopyNotes(Transfer transfer, PetscBool back)
   PetscCall(CopyReals(back, 1, &follow->step, &saved->step));
   PetscCall(PetscArraycpy(back ? follow->known : saved->known, back ? saved->known : follow->known, n));
   *(back ? &follow->has_last : &saved->has_last) = back ? saved->has_last : follow->has_last;
+  if (!(transfer->balance.stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  *(back ? &transfer->balance : &saved->balance) = back ? saved->balance : transfer->balance; /* its arrays stay where they are */
+  PetscCall(CopyReals(back, n, transfer->balance.turned, saved->turned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,5 +179,6 @@ PetscErrorCode TransferDestroySaved(Transfer transfer)
   PetscCall(RowSetDestroy(&saved->rows));
   PetscCall(PetscFree4(saved->built_x[0], saved->built_x[1], saved->built_slip, saved->slip));
   PetscCall(PetscFree4(saved->x[0], saved->x[1], saved->follow_slip, saved->known));
+  PetscCall(PetscFree(saved->turned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

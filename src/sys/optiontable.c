@@ -98,8 +98,9 @@ static const KnownOption options[] = {
     {"time", OPTION_OF_BODY, "ts_alpha_gamma", "g", "Newmark's gamma of alpha2, default 1/2"},
     {"time", OPTION_OF_BODY, "ts_alpha_beta", "b", "Newmark's beta of alpha2, default 1/4: the trapezoidal rule"},
 
-    {"contact", OPTION_OF_RUN, "contact_pairs", "a:b,b:c|auto|none",
-     "pairs that may touch, Dirichlet side first; a.xmax:b.xmin for certain surfaces, a.all for the whole boundary; a:o with an obstacle; "
+    {"contact", OPTION_OF_RUN, "contact_pairs", "a:b,b~c|auto|none",
+     "pairs that may touch, Dirichlet side first, or, with a tilde, in the order that is better; a.xmax:b.xmin for certain surfaces, a.all "
+     "for the whole boundary; a:o with an obstacle; "
      "auto: all with all"},
     {"contact", OPTION_OF_RUN, "contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method, default schwarz"},
     {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded",
@@ -119,6 +120,9 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_tolerance", "g", "depth that does not yet count as penetration [m]"},
     {"contact", OPTION_OF_RUN, "contact_allow_unstable", "true|false",
      "whether choices that are known to gain energy run all the same, default false"},
+    {"contact", OPTION_OF_RUN, "contact_balance", "true|false",
+     "in 2-D: forces have the same sum along the normals of both sides, so that discs do not spin; costs 1e-4 to 1e-3 of energy; default "
+     "false"},
     {"contact", OPTION_OF_RUN, "contact_shared_times", "true|false",
      "whether contact holds at all times that all bodies have in common, default true, or at the ends of controller steps alone"},
     {"contact", OPTION_OF_RUN, "contact_balanced_start", "true|false",

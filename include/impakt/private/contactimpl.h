@@ -24,20 +24,21 @@ struct _ContactOps {
 
 /* Two bodies, or a body and an obstacle, that may touch */
 typedef struct {
-  char     *name;        /* as given: left:right */
-  PetscInt  body[2];     /* numbers of the first body, which has a node for each row, and of the second; n_bodies if that is an obstacle */
-  PetscInt  dirichlet;   /* which of them takes displacements in this controller step: 0 or 1 */
-  char     *surface[2];  /* names of the surfaces; NULL for all faces that see the other body */
-  Obstacle  obstacle;    /* in place of the second body, or NULL; borrowed */
-  PetscBool chosen;      /* the program has chosen the sides, not the user */
-  Surface   surfaces[2]; /* those of the bodies */
-  Transfer  transfer;    /* between the surfaces */
-  PetscInt  components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
-  PetscInt  begin, end;  /* rows of this rank: begin to end - 1 */
-  PetscReal normal[3];   /* mean outward normal of the first body */
-  PetscBool bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
-  PetscBool keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
-  PetscBool by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
+  char       *name;       /* as given: left:right */
+  PetscInt    body[2];    /* numbers of the first body, which has a node for each row, and of the second; n_bodies if that is an obstacle */
+  PetscInt    dirichlet;  /* which of them takes displacements in this controller step: 0 or 1 */
+  char       *surface[2]; /* names of the surfaces; NULL for all faces that see the other body */
+  Obstacle    obstacle;   /* in place of the second body, or NULL; borrowed */
+  PetscBool   chosen;     /* the program has chosen the pair, not the user */
+  const char *why;        /* why the program has the first body take displacements; NULL: the user says so */
+  Surface     surfaces[2]; /* those of the bodies */
+  Transfer    transfer;    /* between the surfaces */
+  PetscInt    components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
+  PetscInt    begin, end;  /* rows of this rank: begin to end - 1 */
+  PetscReal   normal[3];   /* mean outward normal of the first body */
+  PetscBool   bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
+  PetscBool   keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
+  PetscBool   by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
 } ContactPair;
 
 /* Default tolerances on lengths, in parts of the size of the smallest body: see ContactGetLengthScale(). That of the outer iterations is
@@ -83,6 +84,7 @@ typedef struct {
   PetscBool            allow_unstable;   /* what is known to gain energy runs all the same */
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
   PetscBool            balanced_start;   /* massless nodes are brought into balance in the first state */
+  PetscBool            balance;          /* forces have the same sum along the normals of both sides, see ContactSetBalance() */
   PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
@@ -372,6 +374,8 @@ PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
 PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
 PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
+PETSC_INTERN PetscErrorCode ContactLetTouch(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpBalance(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);

@@ -249,8 +249,8 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, " %s%s", contact->pairs[p].name,
-                                     contact->pairs[p].chosen && !contact->pairs[p].obstacle ? " (sides chosen)" : ""));
+    PetscCall(PetscViewerASCIIPrintf(viewer, contact->pairs[p].why ? " %s (sides chosen: %s)" : " %s", contact->pairs[p].name,
+                                     contact->pairs[p].why));
   PetscCall(
       PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->rows.n_all, contact->rows.n_all == 1 ? "" : "s"));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)

@@ -30,6 +30,8 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.angle_bound, &contact->options.angle_bound, NULL));
   PetscCall(PetscOptionsBool("-contact_allow_unstable", "What is known to gain energy runs all the same", "ContactSetAllowUnstable",
                              contact->options.allow_unstable, &contact->options.allow_unstable, NULL));
+  PetscCall(PetscOptionsBool("-contact_balance", "Forces have the same sum along the normals of both sides", "ContactSetBalance",
+                             contact->options.balance, &contact->options.balance, NULL));
   PetscCall(PetscOptionsBool("-contact_shared_times", "Contact holds at all times that all bodies have", "ContactSetSharedTimes",
                              contact->options.shared_times, &contact->options.shared_times, NULL));
   PetscCall(PetscOptionsBool("-contact_balanced_start", "Massless nodes are brought into balance in the first state",
@@ -106,8 +108,9 @@ static PetscErrorCode ReadPairs(Contact contact)
 . contact - the `Contact`, with its bodies
 
   Options Database Keys:
-+ -contact_pairs a:b,b:c                                       - pairs of bodies, Dirichlet side first; a.top:b.bottom for certain
-                                                                 surfaces; default: the two bodies, where there are two
++ -contact_pairs a:b,b~c                                       - pairs of bodies, Dirichlet side first, or, with a tilde, in the order
+                                                                 that is better; a.top:b.bottom for certain surfaces; default: the two
+                                                                 bodies, where there are two
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
@@ -121,6 +124,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 . -contact_shared_times (true|false)                            - whether contact holds at all times that all bodies have in common, or
                                                                  at the ends of controller steps alone
 . -contact_balanced_start (true|false)                          - whether massless nodes are brought into balance in the first state
+. -contact_balance (true|false)                                 - whether forces have the same sum along the normals of both sides
 . -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
 . -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
 - -contact_energy_tolerance t                                   - energy that contact may take or bring in a step, 1e-3
@@ -134,7 +138,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
           `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
           `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`,
-          `ContactSetTieDistance()`
+          `ContactSetTieDistance()`, `ContactSetBalance()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

@@ -167,6 +167,7 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactTie(contact));
   PetscCall(ContactDropShared(contact));
+  PetscCall(ContactLetTouch(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     ContactPairState   state;

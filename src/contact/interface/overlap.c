@@ -5,6 +5,30 @@
    of depth is less where they do what they should */
 #define INSIDE 0.02
 
+/* Rows that start no deeper than the bow of their partner's faces makes of surfaces which only touch, as two balls whose poles meet, start
+   closed: the depth is added to their gap until they have been open, so that it is no blow in the first step */
+PetscErrorCode ContactLetTouch(Contact contact)
+{
+  PetscFunctionBegin;
+  if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    TransferRows       rows;
+
+    if (pair->obstacle) continue;
+    PetscCall(TransferGetRows(pair->transfer, &rows));
+    for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
+      const PetscReal depth = -contact->start.gap[i];
+
+      if (!contact->rows.opposite[i] || depth <= 0 || depth > rows.bow[(i - pair->begin) / pair->components]) continue;
+      contact->rows.gap_shift[i] += depth;
+      contact->rows.initial_gap[i] += depth;
+      contact->end.gap[i] = contact->start.gap[i] = 0;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGetOverlap - how deep the bodies of a pair are inside each other
 

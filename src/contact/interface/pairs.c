@@ -40,6 +40,76 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What decides which of two bodies takes displacements */
+typedef struct {
+  PetscBool is_explicit;
+  PetscReal size; /* edge of its mean element, or of the largest that is alike [m] */
+} Preference;
+
+/* The preferences of all bodies. Sizes are compared with the largest that is alike, not two by two: of three bodies each could be alike to
+   the next, and the first not to the last, so that the order could go round in a circle. */
+static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
+{
+  PetscReal *size, level = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_bodies, &size));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
+    PetscCall(BodyGetElementSize(contact->bodies[b], &size[b]));
+    preferences[b].size = -1;
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscInt largest = -1;
+
+    for (PetscInt c = 0; c < contact->n_bodies; c++)
+      if (preferences[c].size < 0 && (largest < 0 || size[c] > size[largest])) largest = c;
+    if (size[largest] < ALIKE * level) level = size[largest];
+    preferences[largest].size = level;
+  }
+  PetscCall(PetscFree(size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the second of two bodies is to take displacements. An implicit body does rather than an explicit one; if both are alike in that,
+   the one with the finer mesh: of two discs without friction that hit each other off-centre the coarser one as the first side has 1.5 to 5
+   times the spin. If both are alike in that too, the one that is named first does. */
+static PetscBool ChooseSides(const Preference *a, const Preference *b, const char **why)
+{
+  if (a->is_explicit != b->is_explicit) {
+    *why = "implicit body first";
+    return a->is_explicit;
+  }
+  *why = a->size == b->size ? "alike, as named" : "finer mesh first";
+  return (PetscBool)(b->size < a->size);
+}
+
+/* Adds a pair that is given with a tilde: the sides are the user's, which of them is the first is not */
+static PetscErrorCode AddTilde(Contact contact, const char pair[], const char left[], const char right[])
+{
+  Preference *preferences;
+  PetscInt    body[2];
+  PetscBool   turn;
+  Obstacle    obstacle = NULL;
+  char       *surface, ordered[512];
+  const char *why = "obstacle second";
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
+  for (PetscInt side = 0; side < 2; side++) {
+    PetscCall(ParseSide(contact, pair, side ? right : left, &body[side], &surface, side ? &obstacle : NULL));
+    PetscCall(PetscFree(surface));
+  }
+  PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
+  PetscCall(GetPreferences(contact, preferences));
+  turn = obstacle ? PETSC_FALSE : ChooseSides(&preferences[body[0]], &preferences[body[1]], &why);
+  PetscCall(PetscFree(preferences));
+  PetscCall(PetscSNPrintf(ordered, sizeof(ordered), "%s:%s", turn ? right : left, turn ? left : right));
+  PetscCall(ContactAddPair(contact, ordered));
+  contact->pairs[contact->n_pairs - 1].why = why;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactAddPair - adds a pair of bodies that may touch
 
@@ -48,19 +118,23 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   Input Parameters:
 + contact - the `Contact`, with its bodies
 - pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`; or of a body and an
-            obstacle that has been added, `ball:floor`
+            obstacle that has been added, `ball:floor`; with a tilde, `left~right`, in the order that is better
 
   Options Database Key:
-. -contact_pairs a:b,b:c - pairs
+. -contact_pairs a:b,b~c - pairs
 
   Level: beginner
+
+  Note:
+  With a tilde for the colon the first side is the implicit body, then the one with the finer mesh, then the one that is named first. The
+pair has the name in this order, and `ContactView()` says why. All bodies must have their meshes.
 
 .seealso: `Contact`, `ContactSetBodies()`, `ContactAddObstacle()`, `SurfaceCreate()`
 @*/
 PetscErrorCode ContactAddPair(Contact contact, const char pair[])
 {
   ContactPair *p;
-  char         text[512], *colon;
+  char         text[512], *colon, *tilde;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
@@ -68,8 +142,17 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
   PetscCall(PetscStrncpy(text, pair, sizeof(text)));
   PetscCall(PetscStrchr(text, ':', &colon));
+  PetscCall(PetscStrchr(text, '~', &tilde));
+  if (tilde && !colon) {
+    *tilde = 0;
+    PetscCall(AddTilde(contact, pair, text, tilde + 1));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCheck(colon, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_pairs %s: a pair is two bodies with a colon between them, Dirichlet side first, as in left:right", pair);
+             "-contact_pairs %s: a pair is two bodies with a colon between them, Dirichlet side first, as in left:right, or with a tilde, "
+             "which leaves the "
+             "order to the program",
+             pair);
   *colon = 0;
   if (contact->n_pairs == contact->max_pairs) {
     contact->max_pairs = 2 * contact->max_pairs + 4;
@@ -111,50 +194,19 @@ PetscErrorCode ContactDestroyPairs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What decides which of two bodies takes displacements */
-typedef struct {
-  PetscBool is_explicit;
-  PetscReal size; /* edge of its mean element, or of the largest that is alike [m] */
-} Preference;
-
-/* The preferences of all bodies. Sizes are compared with the largest that is alike, not two by two: of three bodies each could be alike to
-   the next, and the first not to the last, so that the order could go round in a circle. */
-static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
-{
-  PetscReal *size, level = PETSC_MAX_REAL;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_bodies, &size));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
-    PetscCall(BodyGetElementSize(contact->bodies[b], &size[b]));
-    preferences[b].size = -1;
-  }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscInt largest = -1;
-
-    for (PetscInt c = 0; c < contact->n_bodies; c++)
-      if (preferences[c].size < 0 && (largest < 0 || size[c] > size[largest])) largest = c;
-    if (size[largest] < ALIKE * level) level = size[largest];
-    preferences[largest].size = level;
-  }
-  PetscCall(PetscFree(size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds a pair of whole bodies whose sides the user has not chosen. An implicit body takes displacements rather than an explicit one; if
-   both are alike in that, the one with the finer mesh; if both are alike in that too, the one that is named first. */
+/* Adds a pair of whole bodies whose sides the user has not chosen */
 static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const Preference preferences[])
 {
-  const Preference *a = &preferences[first], *b = &preferences[second];
-  const PetscBool   turn = a->is_explicit == b->is_explicit ? (PetscBool)(b->size < a->size) : a->is_explicit;
-  char              pair[256];
+  const char     *why;
+  const PetscBool turn = ChooseSides(&preferences[first], &preferences[second], &why);
+  char            pair[256];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[turn ? second : first])->name,
                           ((PetscObject)contact->bodies[turn ? first : second])->name));
   PetscCall(ContactAddPair(contact, pair));
   contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
+  contact->pairs[contact->n_pairs - 1].why    = why;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -373,6 +373,7 @@ static PetscErrorCode CreateTransfer(Contact contact, ContactPair *pair, PetscRe
   /* in three dimensions coarse balls lose six times the energy if bends count, since normals of their nodes differ by too much */
   PetscCall(
       TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && !linear && contact->dim == 2)));
+  PetscCall(ContactSetUpBalance(contact, pair));
   PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));

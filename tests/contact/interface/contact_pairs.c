@@ -48,6 +48,22 @@ static void sides_are_chosen(void **state)
   ok(ContactStep(simulation->contact));
 }
 
+/* A tilde leaves the order to the program, also of surfaces; a colon does not, and obstacles stay second */
+static void tilde_leaves_the_order_open(void **state)
+{
+  static const char *const finer[] = {"b.xmin:a.xmax", "a:c", "b:floor"}, *const implicit[] = {"a.xmax:b.xmin", "a:c", "b:floor"};
+  Simulation *simulation = (Simulation *)*state;
+
+  AddBox("a", 2, "3,3", "0,0", "1,1", "");
+  AddBox("b", 2, "4,4", "2,0", "3,1", "");
+  AddBox("c", 2, "4,4", "0,2", "1,3", "");
+  AddOptions(FLOOR "-obstacles floor -bodies a,b,c -contact_pairs a.xmax~b.xmin,a:c,b~floor -time_step 0.01 -time_end 0.1");
+  ok(SimulationCreate(simulation));
+  check_pairs(simulation, 3, finer);
+  SimulationRepeat(simulation, "-b_ts_type centraldifference");
+  check_pairs(simulation, 3, implicit);
+}
+
 /* Each is by less than a thousandth finer than the one before, and the last by more than the first: no circle may come of it */
 static void nearly_equal_meshes_form_no_circle(void **state)
 {
@@ -196,6 +212,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       simulation_test(sides_are_chosen),
+      simulation_test(tilde_leaves_the_order_open),
       simulation_test(nearly_equal_meshes_form_no_circle),
       simulation_test(bars_touch_their_neighbours),
       simulation_test(the_order_of_the_user_stands),

@@ -1,0 +1,141 @@
+/* One row: weights that balance forces and moments, the normal, and the bend of the partner. */
+#include "interfaceimpl.h"
+
+/* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-4
+   of the face size of a line or of a point */
+#define NOTHING_NEW 1e-8
+/* Square of the chord of the angle, 50 degrees, by which the normal of a node may differ from the mean of a row if the surface is bent
+   there rather than has an edge */
+#define BENT_CHORD 0.715
+/* Cosines of the angles up to which normals of both sides belong to a bend, 10 degrees, and from which on to an edge, 18 degrees. Discs of
+   16 edges, whose faces are 22 degrees from each other, roll on their edges. */
+#define BENT 0.985
+#define EDGE 0.95
+
+/* Changes the weights by as little as possible, each in proportion to its size, such that they sum to one and sum_j P_j x_j - x is along
+   the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
+   partner's nodes do not differ nothing can be changed. */
+void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
+                PetscReal weights[])
+{
+  PetscReal tangents[2][3] = {{0}}, gram[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
+  PetscInt  thinnest = 0;
+
+  if (dim == 1) return;
+  for (PetscInt d = 1; d < dim; d++)
+    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[thinnest])) thinnest = d;
+  if (dim == 2) {
+    tangents[0][0] = -normal[1];
+    tangents[0][1] = normal[0];
+  } else {
+    tangents[1][thinnest] = 1;
+    Cross(normal, tangents[1], tangents[0]);
+    (void)Normalize(tangents[0]);
+    Cross(normal, tangents[0], tangents[1]);
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal from[3]      = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
+    const PetscReal condition[3] = {1, Dot(from, tangents[0]) / size, Dot(from, tangents[1]) / size};
+
+    for (PetscInt a = 0; a < dim; a++) {
+      rest[a] -= weights[j] * condition[a];
+      for (PetscInt b = 0; b < dim; b++) gram[a][b] += PetscAbsReal(weights[j]) * condition[a] * condition[b];
+    }
+  }
+  for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
+    if (gram[a][a] < NOTHING_NEW) {
+      for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
+      rest[a] = 0;
+      continue;
+    }
+    for (PetscInt r = a + 1; r < dim; r++) {
+      const PetscReal factor = gram[r][a] / gram[a][a];
+
+      for (PetscInt b = a; b < dim; b++) gram[r][b] -= factor * gram[a][b];
+      rest[r] -= factor * rest[a];
+    }
+  }
+  for (PetscInt a = dim - 1; a >= 0; a--) {
+    factors[a] = rest[a];
+    for (PetscInt b = a + 1; b < dim; b++) factors[a] -= gram[a][b] * factors[b];
+    factors[a] /= gram[a][a];
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal from[3] = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
+
+    weights[j] += PetscAbsReal(weights[j]) *
+                  (factors[0] + factors[1] * Dot(from, tangents[0]) / size + factors[2] * Dot(from, tangents[1]) / size);
+  }
+}
+
+/* How far a bend counts, from 1 to 0, by the cosine of the angle of the normals */
+PetscReal RowBendCounts(PetscReal cosine)
+{
+  return PetscMin(1, PetscMax(0, (cosine - EDGE) / (BENT - EDGE)));
+}
+
+/* The normal of a row is half way between that of its node and those of the partner, where they are opposed but for a bend: so it does not
+   depend on which of the surfaces has the nodes of the rows */
+void RowNormal(PetscInt dim, PetscInt n, const PetscReal node[], const PetscReal *normals[], const PetscReal weights[], PetscReal normal[])
+{
+  PetscReal partner[3] = {0}, sum[3] = {0}, square = 0, cosine = 0;
+
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt d = 0; d < dim; d++) partner[d] -= weights[j] * normals[j][d];
+  if (Normalize(partner) > 0) cosine = Dot(partner, node);
+  for (PetscInt d = 0; d < 3; d++) {
+    sum[d] = d < dim ? node[d] + RowBendCounts(cosine) * partner[d] : 0;
+    square += PetscSqr(sum[d]);
+  }
+  for (PetscInt d = 0; d < dim; d++) normal[d] = square > 0 ? sum[d] / PetscSqrtReal(square) : node[d];
+}
+
+/* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its
+   nodes and the planes through them across their normals a surface of second order is met:
+
+     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)) */
+PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
+                   const PetscReal *normals[], const PetscReal weights[])
+{
+  PetscReal bulge = 0, counts = 1;
+
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal along = 0, plane = 0, cosine = 0;
+
+    for (PetscInt d = 0; d < dim; d++) {
+      along += normal[d] * (partners[j][d] - x[d]);
+      plane += normals[j][d] * (partners[j][d] - x[d]);
+      cosine += normals[j][d] * normal[d];
+    }
+    counts = PetscMin(counts, RowBendCounts(-cosine));
+    if (counts == 0) return 0;
+    bulge += 0.5 * weights[j] * (along - plane / cosine);
+  }
+  return counts * bulge;
+}
+
+/* Depth that a row may have between surfaces that only touch [m]. The dual functions are negative at the far ends of a node's faces, so
+   that the row of the node at which two balls meet sees the partner in front of its vertex: by no more than the partner's nodes lie behind
+   the plane there, which is half the turn of their normals times their distance. */
+PetscReal RowBow(PetscInt dim, PetscInt n, const PetscReal *partners[], const PetscReal *normals[], const PetscReal weights[])
+{
+  PetscReal middle[3] = {0}, mean[3] = {0}, bow = 0;
+
+  if (dim == 1) return 0;
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt d = 0; d < dim; d++) {
+      middle[d] += weights[j] * partners[j][d];
+      mean[d] += weights[j] * normals[j][d];
+    }
+  (void)Normalize(mean);
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal turn = 0, distance = 0;
+
+    for (PetscInt d = 0; d < dim; d++) {
+      turn += PetscSqr(normals[j][d] - mean[d]);
+      distance += PetscSqr(partners[j][d] - middle[d]);
+    }
+    if (turn <= BENT_CHORD) bow += 0.5 * PetscAbsReal(weights[j]) * PetscSqrtReal(turn * distance);
+  }
+  return bow;
+}
