@@ -188,7 +188,7 @@ PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscIn
   StepFailureClear(&body->failure);
   if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyNoteInverted(body));
   PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
-  PetscCall(BodyComputeStartAcceleration(body, NULL));
+  PetscCall(BodyComputeStartAcceleration(body, PETSC_FALSE, NULL));
   PetscCall(BodyWriteTraces(body, 0));
   PetscCall(BodySetUpWork(body));
   PetscCall(BodySave(body));

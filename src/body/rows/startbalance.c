@@ -12,9 +12,9 @@
 /* Changes of the layer below this part of positions and displacements of the nodes are round-off */
 #define ROUND_OFF (16 * PETSC_MACHINE_EPSILON)
 
-/* f = forces from outside and on the rows (NULL: none) less the internal force at the present displacement, which must have been computed
- */
-static PetscErrorCode ComputeImbalance(Body body, const PetscScalar force[], Vec f)
+/* f = forces from outside, and on the rows if it is pushed there, less the internal force at the present displacement, which must have been
+   computed. A rank without rows has no forces, but takes part. */
+static PetscErrorCode ComputeImbalance(Body body, PetscBool pushed, const PetscScalar force[], Vec f)
 {
   PetscScalar *row;
 
@@ -22,7 +22,7 @@ static PetscErrorCode ComputeImbalance(Body body, const PetscScalar force[], Vec
   PetscCall(VecZeroEntries(f));
   PetscCall(VecAXPY(f, -1, body->state.internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
   PetscCall(BodyAddExternalForce(body, body->state.time, 1, f));
-  if (!force) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pushed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   PetscCall(PetscArraycpy(row, force, body->rows.local));
   PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
@@ -30,15 +30,15 @@ static PetscErrorCode ComputeImbalance(Body body, const PetscScalar force[], Vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* M a = forces, those on the rows (NULL: none) too, where there are any: the acceleration of the first state, whose internal force must
+/* M a = forces, those on the rows too if it is pushed there: the acceleration of the first state, whose internal force must
    have been computed */
-PetscErrorCode BodyComputeStartAcceleration(Body body, const PetscScalar force[])
+PetscErrorCode BodyComputeStartAcceleration(Body body, PetscBool pushed, const PetscScalar force[])
 {
   Vec       f = body->work.nodes[0];
   PetscReal norm;
 
   PetscFunctionBegin;
-  PetscCall(ComputeImbalance(body, force, f));
+  PetscCall(ComputeImbalance(body, pushed, force, f));
   PetscCall(VecNorm(f, NORM_INFINITY, &norm));
   PetscCall(VecZeroEntries(body->state.a));
   PetscCall(BodySubtractHeldInertia(body, body->state.time, f, body->state.a));
@@ -83,7 +83,7 @@ PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
   *out = PETSC_FALSE;
   PetscCall(HasLayer(body, &has));
   if (!has) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComputeImbalance(body, NULL, f));
+  PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
   PetscCall(VecGetArrayRead(f, &values));
   for (PetscInt i = 0; i < body->layer.n_dofs; i++)
     if (values[body->layer.dofs[i]] != 0) *out = PETSC_TRUE;
@@ -201,7 +201,7 @@ PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *
   if (!has) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyPrepareLayer(body, body->state.u));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(ComputeImbalance(body, NULL, f));
+  PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
   PetscCall(BodyApplyLayerCompliance(body, f, du));
   PetscCall(GetRows(body, du, displacement));
   PetscCall(MeasureChange(body, du, change));
@@ -277,7 +277,7 @@ PetscErrorCode BodyMoveLayer(Body body, const PetscScalar force[], PetscReal *ch
   *change = 0;
   PetscCall(HasLayer(body, &has));
   if (!has) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComputeImbalance(body, force, f));
+  PetscCall(ComputeImbalance(body, PETSC_TRUE, force, f));
   PetscCall(BodyApplyLayerCompliance(body, f, du));
   PetscCall(MeasureChange(body, du, change));
   PetscCall(VecAXPY(body->state.u, 1, du));
@@ -331,7 +331,7 @@ PetscErrorCode BodyStartUnderForces(Body body, const PetscScalar force[])
   PetscCheck(body->setup && !body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Call after BodySetUp(), before the first step");
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(BodyComputeStartAcceleration(body, force));
+  PetscCall(BodyComputeStartAcceleration(body, PETSC_TRUE, force));
   PetscCall(BodyWriteTraces(body, 0));
   if (body->rows.global) {
     PetscCall(TraceGetLevel(body->traces.reaction, 0, &reaction));
