@@ -7,6 +7,9 @@
 /* Bars approach each other if the difference of their mean velocities is more than this part of them: round-off of the same sums */
 #define VELOCITY_ROUND_OFF 1e-12
 
+/* Waves in a bar in space that is as many times as long as wide are those of the bar's theory to 1 %: measured with ten times */
+#define SLENDER 8.0
+
 /* Smallest and largest coordinate along the normal of all nodes [m] */
 static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal normal[], PetscReal *lower, PetscReal *upper)
 {
@@ -38,7 +41,7 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscInt  dim;
   Vec       reference, displacement, positions;
   PetscReal lower, upper, poissons_ratio;
-  PetscBool linear, loaded;
+  PetscBool linear, loaded, slender;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &bar->name));
@@ -50,10 +53,6 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
              ((PetscObject)body)->name, ((PetscObject)body)->name);
   PetscCall(BodyGetDimension(body, &dim));
   PetscCall(MaterialGetPoissonsRatio(material, &poissons_ratio));
-  PetscCheck(dim == 1 || poissons_ratio == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-exact: waves in body '%s', of %" PetscInt_FMT " dimensions, are those of a bar only if it does not get thicker where it is "
-             "pressed; leave the option out, or choose -%s_poissons_ratio 0",
-             ((PetscObject)body)->name, dim, ((PetscObject)body)->name);
   PetscCall(BodyHasForces(body, &loaded));
   PetscCheck(!loaded, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-exact: the exact solutions are those of bars without forces from outside, and body '%s' has tractions, body forces or "
@@ -65,6 +64,11 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscCall(BodyGetReferencePositions(body, &reference));
   PetscCall(GetExtent(reference, dim, normal, &lower, &upper));
   bar->length = upper - lower;
+  slender     = (PetscBool)(dim == 3 && PetscSqr(bar->length) >= PetscSqr(SLENDER) * bar->mass / (bar->density * bar->length));
+  PetscCheck(dim == 1 || poissons_ratio == 0 || slender, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-exact: waves in body '%s', of %" PetscInt_FMT " dimensions, are those of a bar only if it does not get thicker where it is "
+             "pressed, or is a bar in space %g times as long as wide; leave the option out, or choose -%s_poissons_ratio 0",
+             ((PetscObject)body)->name, dim, SLENDER, ((PetscObject)body)->name);
   PetscCall(BodyGetSolution(body, &displacement, NULL, NULL));
   PetscCall(VecDuplicate(reference, &positions));
   PetscCall(VecWAXPY(positions, 1, reference, displacement));

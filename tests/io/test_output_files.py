@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import signal
 import subprocess
 import time
 
@@ -47,6 +48,7 @@ def check_whole(folder):
 def test_two_runs_with_one_output(folder):
     """The second one ends before it computes anything, and leaves alone what is the first one's."""
     first = begin(folder, *RUN)
+    first.send_signal(signal.SIGSTOP)  # so that it does not end meanwhile
     for ranks in (1, 2):
         second = run(folder, *RUN, ranks=ranks)
         assert second.returncode > 0
@@ -54,6 +56,7 @@ def test_two_runs_with_one_output(folder):
     other = run(folder, *SHORT, "-output_history", "other.h5", "-output_summary", "d/s.json")
     assert other.returncode > 0
     check_message(other, ["-output_summary d/s.json", "another run"])
+    first.send_signal(signal.SIGCONT)
     _, stderr = first.communicate(timeout=60)
     assert first.returncode == 0, stderr
     check_whole(folder / "d")

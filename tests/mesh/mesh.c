@@ -246,30 +246,13 @@ static void bad_places(void **state)
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_scale 0|positive", "%s -scale 0", box);
 }
 
-static void more_ranks_than_elements(void **state)
-{
-  (void)state;
-  if (size_of_world() == 1) skip();
-  mesh_refused(PETSC_ERR_USER_INPUT, "'box'|1 element for|ranks", "-dm_plex_dim 1 -dm_plex_box_faces 1");
-  mesh_refused(PETSC_ERR_USER_INPUT, "'box'|1 element for|ranks", "-dm_plex_dim 3 -dm_plex_simplex 0 -dm_plex_box_faces 1,1,1");
-}
-
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(boxes_of_all_shapes),
-      cmocka_unit_test(boxes_by_default),
-      cmocka_unit_test(numbers_of_sides),
-      cmocka_unit_test(parts_of_ranks),
-      cmocka_unit_test(place_in_space),
-      cmocka_unit_test(turn_about_diagonal),
-      cmocka_unit_test(place_in_plane),
-      cmocka_unit_test(place_on_line),
-      cmocka_unit_test(nodes_of_sides),
-      cmocka_unit_test(unknown_names),
-      cmocka_unit_test(bad_boxes),
-      cmocka_unit_test(bad_places),
-      cmocka_unit_test(more_ranks_than_elements),
+      cmocka_unit_test(boxes_of_all_shapes), cmocka_unit_test(boxes_by_default), cmocka_unit_test(numbers_of_sides),
+      cmocka_unit_test(parts_of_ranks),      cmocka_unit_test(place_in_space),   cmocka_unit_test(turn_about_diagonal),
+      cmocka_unit_test(place_in_plane),      cmocka_unit_test(place_on_line),    cmocka_unit_test(nodes_of_sides),
+      cmocka_unit_test(unknown_names),       cmocka_unit_test(bad_boxes),        cmocka_unit_test(bad_places),
   };
 
   return impakt_main(argc, argv, tests);
