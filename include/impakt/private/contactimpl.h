@@ -386,6 +386,8 @@ PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
 PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
+PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *, PetscReal *);
+PETSC_INTERN PetscErrorCode ContactMarkNodes(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);

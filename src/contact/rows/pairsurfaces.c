@@ -1,0 +1,175 @@
+/* The surfaces of a pair, which of their nodes may touch, and the transfer between them. */
+#include <impakt/private/contactimpl.h>
+
+/* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
+#define FORCE_ROUND_OFF 1e-9
+
+/* A surface of a pair, and that of its partner, with the faces alone that face the partner at the start; the partner's is NULL for an
+ * obstacle */
+static PetscErrorCode CreateFacing(Contact contact, const ContactPair *pair, Surface surfaces[2])
+{
+  PetscFunctionBegin;
+  surfaces[0] = surfaces[1] = NULL;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    DM dm;
+
+    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
+    PetscCall(SurfaceCreate(dm, pair->surface[side], &surfaces[side]));
+  }
+  PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], pair->obstacle, PETSC_TRUE, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells a body whose far nodes keep their mass which of the nodes of a pair may touch: those that face the partner at the start */
+static PetscErrorCode MarkNearNodes(Contact contact, const ContactPair *pair, PetscInt side)
+{
+  const PetscInt *vertices;
+  PetscInt        n;
+  Surface         surfaces[2];
+
+  PetscFunctionBegin;
+  PetscCall(CreateFacing(contact, pair, surfaces));
+  PetscCall(SurfaceGetVertices(surfaces[side], &n, &vertices));
+  PetscCall(BodySetContactNodes(contact->bodies[pair->body[side]], n, vertices));
+  for (PetscInt s = 0; s < 2; s++) PetscCall(SurfaceDestroy(&surfaces[s]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends with an error if contact forces act on nodes that keep their mass since they faced nothing at the start: the methods count on
+   massless nodes, and such nodes would chatter without a word */
+PetscErrorCode ContactCheckNear(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool near;
+    PetscReal on_mass, largest;
+
+    PetscCall(BodyGetMassRedistributeNear(contact->bodies[b], &near));
+    if (!near) continue;
+    PetscCall(BodyGetForceOnMass(contact->bodies[b], contact->end.force, &on_mass, &largest));
+    PetscCheck(on_mass <= FORCE_ROUND_OFF * largest, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "Contact has come to nodes of body '%s' that faced nothing at the start, where -%s_mass_redistribute near leaves mass (%g "
+               "N); set it "
+               "to true",
+               ((PetscObject)contact->bodies[b])->name, ((PetscObject)contact->bodies[b])->name, (double)on_mass);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any of them may
+   come to lie opposite to the partner as bodies slide; none of a pair whose nodes are tied and keep their mass */
+PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
+{
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    const SurfaceData *data;
+    const PetscInt    *vertices;
+    PetscInt           n, rstart, body = pair->body[side];
+    PetscBool          near;
+    Vec                positions;
+
+    PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
+    PetscCall(BodyGetMassRedistributeNear(contact->bodies[body], &near));
+    if (!pair->keeps_mass) {
+      if (near) PetscCall(MarkNearNodes(contact, pair, side));
+      else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
+    }
+    if (contact->nodes.n_all[body]) continue;
+    /* the contact position and velocity of a body in the history are those of its first pair */
+    PetscCall(SurfaceGetData(pair->surfaces[side], &data));
+    PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->nodes.n_all[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+    PetscCall(VecGetOwnershipRange(positions, &rstart, NULL));
+    PetscCall(PetscMalloc1(data->n_owned, &contact->nodes.dofs[body]));
+    for (PetscInt i = 0; i < data->n_owned; i++) contact->nodes.dofs[body][i] = data->dofs[i] - rstart;
+    contact->nodes.n[body] = data->n_owned;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean normal of the rows that have a partner opposite */
+static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
+{
+  MPI_Comm     comm    = PetscObjectComm((PetscObject)contact);
+  PetscReal    sums[4] = {0};
+  TransferRows rows;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  for (PetscInt i = 0; i < rows.n; i++) {
+    if (!rows.opposite[i]) continue;
+    for (PetscInt d = 0; d < contact->dim; d++) sums[d] += rows.normals[contact->dim * i + d];
+    sums[3] += 1;
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, comm));
+  for (PetscInt d = 0; d < 3; d++) pair->normal[d] = sums[3] > 0 ? sums[d] / sums[3] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends with an error if the surfaces of a pair that the user has named have no faces that see each other. They may see each other and yet
+   not lie opposite at the start. */
+static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
+{
+  Surface surfaces[2];
+  int     any[2] = {0, 1};
+
+  PetscFunctionBegin;
+  if (pair->chosen || !contact->options.facing) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CreateFacing(contact, pair, surfaces));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    const SurfaceData *data;
+
+    PetscCall(SurfaceGetData(surfaces[side], &data));
+    any[side] = data->n_faces > 0;
+    PetscCall(ContactOr(contact, &any[side]));
+    PetscCall(SurfaceDestroy(&surfaces[side]));
+  }
+  PetscCheck(any[0] && any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Surfaces and transfer of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. */
+PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair, PetscReal *extent)
+{
+  PetscBool rebuilt;
+  PetscBool inertia = PETSC_TRUE, linear = PETSC_TRUE;
+  PetscInt  dims[2] = {contact->dim, contact->dim};
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    PetscReal lower[3], upper[3];
+    PetscBool is_static, is_linear;
+    Material  material;
+    DM        dm;
+
+    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
+    PetscCall(DMGetCoordinateDim(dm, &dims[side]));
+    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+    inertia = (PetscBool)(inertia && !is_static);
+    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
+    PetscCall(MaterialIsLinear(material, &is_linear));
+    linear = (PetscBool)(linear && is_linear);
+    PetscCall(SurfaceCreate(dm, pair->surface[side], &pair->surfaces[side]));
+    PetscCall(DMGetBoundingBox(dm, lower, upper));
+    for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
+  }
+  PetscCheck(dims[0] == dims[1] && dims[0] == contact->dim, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT
+             ", and another body has %" PetscInt_FMT,
+             pair->name, dims[0], dims[1], contact->dim);
+  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle,
+                              (PetscBool)(contact->options.facing && !pair->surface[0]),
+                              (PetscBool)(contact->options.facing && !pair->surface[1])));
+  PetscCall(CheckFacing(contact, pair));
+  PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
+  PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
+  /* in three dimensions coarse balls lose six times the energy if bends count, since normals of their nodes differ by too much */
+  PetscCall(
+      TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && !linear && contact->dim == 2)));
+  PetscCall(ContactSetUpBalance(contact, pair));
+  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
+  PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
+  PetscCall(GetPairNormal(contact, pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
