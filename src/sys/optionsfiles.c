@@ -179,22 +179,34 @@ PetscErrorCode OptionsFileCheck(const char path[], char error[], size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a file is one of the options files of the run */
-PetscErrorCode OptionsFilesInclude(const struct stat *status, PetscBool *include)
+/* All options files of the command line, up to an option of the command line that overrules them: whether there is one */
+static PetscErrorCode VisitCommandLine(Walk *walk, PetscBool *overruled)
 {
-  char   error[1024] = "";
-  Walk   walk        = {.error = error, .error_size = sizeof(error), .sought = status};
   int    argc;
   char **argv;
 
   PetscFunctionBegin;
+  *overruled = PETSC_FALSE;
   PetscCall(PetscGetArgs(&argc, &argv));
-  for (int i = 1; i + 1 < argc; i++) {
+  for (int i = 1; i < argc && !*overruled; i++) {
     PetscBool file;
 
     PetscCall(PetscStrcasecmp(argv[i], "-options_file", &file));
-    if (file) PetscCall(VisitFile(&walk, argv[i + 1], NULL));
+    if (walk->option && argv[i][0] == '-') PetscCall(PetscStrcasecmp(argv[i] + 1, walk->option, overruled));
+    if (file && i + 1 < argc) PetscCall(VisitFile(walk, argv[i + 1], NULL));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a file is one of the options files of the run */
+PetscErrorCode OptionsFilesInclude(const struct stat *status, PetscBool *include)
+{
+  char      error[1024] = "";
+  Walk      walk        = {.error = error, .error_size = sizeof(error), .sought = status};
+  PetscBool overruled;
+
+  PetscFunctionBegin;
+  PetscCall(VisitCommandLine(&walk, &overruled));
   *include = walk.found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -202,24 +214,13 @@ PetscErrorCode OptionsFilesInclude(const struct stat *status, PetscBool *include
 /* Where an option (without its dash) comes from: "the command line", a file and its line, or nothing if neither is known */
 PetscErrorCode OptionsFindOrigin(const char option[], char origin[], size_t size)
 {
-  char   error[1024] = "";
-  Walk   walk        = {.error = error, .error_size = sizeof(error), .option = option, .origin = origin, .origin_size = size};
-  int    argc;
-  char **argv;
+  char      error[1024] = "";
+  Walk      walk        = {.error = error, .error_size = sizeof(error), .option = option, .origin = origin, .origin_size = size};
+  PetscBool overruled;
 
   PetscFunctionBegin;
   origin[0] = 0;
-  PetscCall(PetscGetArgs(&argc, &argv));
-  for (int i = 1; i < argc; i++) {
-    PetscBool file, same = PETSC_FALSE;
-
-    PetscCall(PetscStrcasecmp(argv[i], "-options_file", &file));
-    if (argv[i][0] == '-') PetscCall(PetscStrcasecmp(argv[i] + 1, option, &same));
-    if (same) {
-      PetscCall(PetscStrncpy(origin, "the command line", size));
-      break; /* which overrules files */
-    }
-    if (file && i + 1 < argc) PetscCall(VisitFile(&walk, argv[i + 1], NULL));
-  }
+  PetscCall(VisitCommandLine(&walk, &overruled));
+  if (overruled) PetscCall(PetscStrncpy(origin, "the command line", size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,8 +16,8 @@
   Level: intermediate
 
   Note:
-  Refused otherwise, where contact nodes have mass: Robin and impedance conditions, and Lagrange multipliers at the end of the step without
-a stabilization. To compare with.
+  Refused otherwise, where contact nodes have mass: Robin and impedance conditions, Lagrange multipliers at the end of the step without a
+  stabilization, and in two and three dimensions `-schwarz_traction reaction` over several substeps. To compare with.
 
 .seealso: `Contact`, `ContactGetAllowUnstable()`, `ContactSetEnergyCap()`
 @*/

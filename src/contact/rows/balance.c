@@ -22,12 +22,12 @@
 
   Notes:
   Without friction they should. Where few nodes are in contact the centre of pressure hangs on where the nodes lie, which spins discs that
-hit each other off-centre: by 0.03 to 0.05 of the ratio of speed and radius for discs of 64 edges, and by less than 1e-3 with this option.
-It costs energy at the times when rows join and leave, 1e-4 to 1e-3 of it, in proportion to the controller step, which should resolve a
-tenth of the time that the contact takes to spread over a face.
+  hit each other off-centre: by up to 0.06 of the ratio of speed and radius for discs of 64 and 48 edges, and by up to 1.3e-3 with this
+  option, 6e-4 where the finer side comes first. It costs energy at the times when rows join and leave, 1e-4 to 3e-3 of it, in proportion to
+  the controller step, which should resolve a tenth of the time that the contact takes to spread over a face.
 
   It means something for rows that follow the surfaces: frictionless pairs of bodies with inertia in two dimensions that are not both
-linear. For others it is an error. A pair should touch in one place.
+  linear. For others it is an error. A pair should touch in one place.
 
 .seealso: `Contact`, `ContactGetBalance()`, `ContactSetBounds()`
 @*/
