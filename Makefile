@@ -4,6 +4,7 @@
 # then runs itself again with what it found: PETSC_ROOT, the directory of PETSc's libraries, and PYTHON, an interpreter.
 #   PETSC_DIR, PETSC_ARCH   your own PETSc, 3.21 or newer, instead of the private build
 #   DEBUG=1                 unoptimised, in build/debug          ASAN=1   address and undefined-behaviour checks, in build/asan
+#   COVERAGE=1              counts the lines that run, in build/coverage
 #   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
 #   PREFIX=/usr/local       where `make install` puts program, library and headers; DESTDIR=stage puts them under a stage
 
@@ -49,6 +50,10 @@ export ASAN_OPTIONS := detect_leaks=1:fast_unwind_on_malloc=0
 export LSAN_OPTIONS := suppressions=$(CURDIR)/tests/asan-suppressions.txt:print_suppressions=0
 export UBSAN_OPTIONS := print_stacktrace=1
 endif
+ifeq ($(COVERAGE),1)
+BUILD    := build/coverage
+OPTIMISE := -O1 -g --coverage -fprofile-update=atomic
+endif
 
 WARNINGS := -Wall -Wextra -Werror
 CFLAGS   := -std=c11 -fopenmp-simd $(WARNINGS) $(OPTIMISE)
@@ -92,7 +97,12 @@ mpi_flags  = $(shell $(CC) -show 2>/dev/null)
 pc_cflags  = $(filter-out -I/usr/include,$(PETSC_CC_INCLUDES)) $(filter -I%,$(mpi_flags))
 pc_libs    = -Wl,-rpath,$(PETSC_ROOT)/lib -L$(PETSC_ROOT)/lib -lpetsc $(filter -L% -l% -Wl%,$(mpi_flags)) -lm
 
-.PHONY: all run paper test test-all bench docs format lint install force
+# Tools that look at the code, in an environment of their own that only these goals make
+ifneq ($(filter analyse coverage,$(MAKECMDGOALS)),)
+analysis := $(dir $(shell .setup/python --analysis))
+endif
+
+.PHONY: all run paper test test-all bench docs format lint analyse coverage install force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units))
 
@@ -146,6 +156,22 @@ lint: ## clang-format, ruff, and shellcheck where there is one
 	$(bin)clang-format --dry-run -Werror $(c_files)
 	$(bin)ruff check --no-cache plots tests
 	@if [ -x $(bin)shellcheck ]; then set -x; $(bin)shellcheck -x $(sh_files); fi
+
+analyse: $(members:.o=.tidy) $(BUILD)/src/main.tidy ## clang-tidy and cppcheck over src, which have to find nothing
+	@$(analysis)cppcheck --quiet -j $(cores) --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
+	  --suppressions-list=tests/analysis/cppcheck.txt --include=tests/analysis/petsc.h -Iinclude -Isrc src
+
+# An object is older than its clang-tidy if nothing that it is made of has changed since
+$(BUILD)/%.tidy: $(BUILD)/%.o .clang-tidy
+	$(call say,TIDY) $(analysis)clang-tidy --quiet $*.c -- $(CPPFLAGS) -I$(BUILD) $(patsubst -I%,-isystem %,$(filter -I%,$(mpi_flags))) $(CFLAGS) >$@.log 2>/dev/null || { cat $@.log; exit 1; }
+	@touch $@
+
+coverage: ## the whole test-suite with counted lines of src: a report in build/coverage/report, an error below 90 %
+	@find build/coverage -name '*.gcda' -delete 2>/dev/null || true
+	@$(MAKE) --no-print-directory COVERAGE=1 PETSC_ROOT="$(PETSC_ROOT)" PYTHON="$(PYTHON)" test-all
+	@mkdir -p build/coverage/report
+	$(analysis)gcovr --root . --filter src/ --exclude '.*/tutorials/' --exclude-throw-branches --html-details build/coverage/report/index.html \
+	  --txt build/coverage/report/lines.txt --print-summary --fail-under-line 90 build/coverage
 
 $(BUILD)/impakt: $(BUILD)/src/main.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(LIBS)

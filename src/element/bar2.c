@@ -60,9 +60,9 @@ static void NoteInverted(Element element, const PetscReal strain[], const PetscR
   PetscInt        bad    = 0;
 
   element->inverted = -1;
-  for (PetscInt e = 0; e < element->count; e++) bad |= stress[e] != stress[e] || (!linear && !(1 + strain[e] > 0));
+  for (PetscInt e = 0; e < element->count; e++) bad |= isnan(stress[e]) || (!linear && !(1 + strain[e] > 0));
   for (PetscInt e = 0; bad && element->inverted < 0; e++)
-    if (stress[e] != stress[e] || (!linear && !(1 + strain[e] > 0))) element->inverted = e;
+    if (isnan(stress[e]) || (!linear && !(1 + strain[e] > 0))) element->inverted = e;
 }
 
 static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScalar u[], PetscScalar f[])

@@ -62,7 +62,7 @@ PetscErrorCode ExpressionEvaluateRates(Expression expression, const ExpressionPo
 {
   const PetscReal h      = RATE_SPACING * step;
   ExpressionPoint at     = *point;
-  PetscReal       offset = RATE_POINTS / 2, weights[3][RATE_POINTS];
+  PetscReal       offset = (RATE_POINTS - 1) / 2., weights[3][RATE_POINTS];
 
   PetscFunctionBegin;
   PetscAssertPointer(values, 5);

@@ -186,7 +186,8 @@ static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, P
    groups and along the axes. If the depth along any direction is negative, the bodies are apart (theorem of separating axes). */
 static PetscErrorCode ComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b, PetscReal *overlap)
 {
-  PetscReal(*list)[3], *support[2];
+  PetscReal *support[2];
+  PetscReal(*list)[3];
   PetscInt n = 0;
 
   PetscFunctionBegin;

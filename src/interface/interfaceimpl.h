@@ -6,7 +6,7 @@
 
 /* Two faces count as facing each other if the cosine of the angle between their outward normals is below this, which means an angle of more
    than 96 degrees: faces at right angles cannot push each other */
-#define OPPOSED -0.1
+#define OPPOSED (-0.1)
 
 struct _p_Surface {
   PETSCHEADER(int);

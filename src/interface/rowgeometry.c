@@ -56,7 +56,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     }
   }
   for (PetscInt a = dim - 1; a >= 0; a--) {
-    factors[a] = rest[a];
+    factors[a] = rest[a]; /* NOLINT(clang-analyzer-core.uninitialized.Assign): dim is at most 3 */
     for (PetscInt b = a + 1; b < dim; b++) factors[a] -= gram[a][b] * factors[b];
     factors[a] /= gram[a][a];
   }

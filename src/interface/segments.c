@@ -11,7 +11,7 @@
 #define HIDDEN_PART     0.1
 /* A partner is steep if the cosine of the angle between its normal and that of the face is above this: it is inclined to the face by more
    than 37 degrees, as the side of a block beside its edge is. Its end is not guarded. */
-#define STEEP -0.8
+#define STEEP (-0.8)
 
 /* A Dirichlet face, and what does not depend on the face that it is compared with */
 typedef struct {

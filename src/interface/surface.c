@@ -142,7 +142,7 @@ static PetscErrorCode OrientFace(Surface surface, PetscInt f, const PetscInt num
   SurfaceData    *data = &surface->data;
   const PetscInt  n    = data->face_nodes;
   const PetscInt *support;
-  PetscInt        n_vertices, vertices[8];
+  PetscInt        n_vertices, vertices[8] = {0};
   PetscReal       x[4][3], normal[3], area, out = 0, outward[3] = {0};
 
   PetscFunctionBegin;

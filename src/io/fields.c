@@ -304,7 +304,7 @@ static PetscErrorCode TakePlace(Fields fields)
 {
   PetscFunctionBegin;
   if (fields->first_rank) {
-    remove(fields->xdmf);
+    (void)remove(fields->xdmf);
     PetscCall(OutputFileReplace(fields->part, fields->path));
     PetscCall(OutputFileHold(fields->path, &fields->held));
   }
@@ -364,7 +364,7 @@ PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame
   if (frame->step % fields->interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
   HDF5SilenceBegin(&silence);
   error = WriteFrame(fields, frame->time);
-  if (error && !fields->written && fields->first_rank) remove(fields->part);
+  if (error && !fields->written && fields->first_rank) (void)remove(fields->part);
   PetscCall(error);
   HDF5SilenceEnd(&silence);
   PetscFunctionReturn(PETSC_SUCCESS);

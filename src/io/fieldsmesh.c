@@ -86,7 +86,7 @@ static PetscErrorCode CountRows(FieldsMesh *mesh)
     PetscCall(VecGetLocalSize(positions, &n_nodes));
     PetscCall(RowsAdd(comm, b, n_nodes / dim, &mesh->nodes));
   }
-  mesh->topology_type = mesh->mixed ? "Mixed" : first->name;
+  mesh->topology_type = mesh->mixed || !first ? "Mixed" : first->name;
   if (mesh->mixed) mesh->cell_nodes = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

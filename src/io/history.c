@@ -158,7 +158,7 @@ PetscErrorCode HistoryFlush(History history)
   PetscCall(PetscTime(&begin));
   HDF5SilenceBegin(&silence);
   error = WritePart(history);
-  if (error) remove(history->part);
+  if (error) (void)remove(history->part);
   PetscCall(error);
   HDF5SilenceEnd(&silence);
   history->written += history->n_records;

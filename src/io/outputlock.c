@@ -99,7 +99,7 @@ PetscErrorCode OutputLocksRelease(OutputLocks *locks)
 {
   PetscFunctionBegin;
   for (int i = 0; i < locks->n; i++) {
-    remove(locks->path[i]); /* before the lock ends, so that nobody removes what another has locked */
+    (void)remove(locks->path[i]); /* before the lock ends, so that nobody removes what another has locked */
     close(locks->file[i]);
   }
   locks->n = 0;

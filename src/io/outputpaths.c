@@ -106,7 +106,7 @@ static PetscErrorCode FindReader(const Identity *file, size_t size, char option[
 
     PetscCall(PetscOptionsValidKey(word, &key));
     if (key) PetscCall(PetscStrncpy(name, word, sizeof(name)));
-    else if (strncmp(name + 1, "output_", 7)) PetscCall(Names(word, file, &names));
+    else if (strncmp(name + 1, "output_", 7) != 0) PetscCall(Names(word, file, &names));
     if (names) PetscCall(PetscStrncpy(option, name, size));
   }
   PetscCall(PetscFree(all));

@@ -332,7 +332,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(OutputFileMakeParents(part));
   failed = json_dump_file(root, part, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
   json_decref(root);
-  if (failed) remove(part);
+  if (failed) (void)remove(part);
   PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "The summary %s cannot be written; is the disk full?", path);
   PetscCall(OutputFileReplace(part, path));
   PetscFunctionReturn(PETSC_SUCCESS);

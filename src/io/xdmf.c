@@ -150,7 +150,7 @@ PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n
   fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
   failed = ferror(out);
   failed = fclose(out) || failed;
-  if (failed) remove(part);
+  if (failed) (void)remove(part);
   PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", path);
   PetscCall(OutputFileReplace(part, path));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -136,7 +136,7 @@ static PetscErrorCode EndSection(Gmsh *gmsh, const char name[], PetscBool known)
   PetscCall(PetscStrlen(mark, &length));
   if (known) GmshSkipSpace(gmsh);
   else
-    while ((size_t)(gmsh->end - gmsh->at) >= length && (*gmsh->at != '$' || strncmp(gmsh->at, mark, length))) gmsh->at++;
+    while ((size_t)(gmsh->end - gmsh->at) >= length && (*gmsh->at != '$' || strncmp(gmsh->at, mark, length) != 0)) gmsh->at++;
   GmshCheck(gmsh, (size_t)(gmsh->end - gmsh->at) >= length && !strncmp(gmsh->at, mark, length),
             "section $%s does not end with %s here: its count is wrong, or the file is cut short", name, mark);
   gmsh->at += length;

@@ -77,7 +77,7 @@ PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_g
   PetscCall(Reserve(&file->runs, sizeof(*file->runs), file->n_runs + 1, &file->max_runs));
   PetscCall(Reserve(&file->run_groups, sizeof(*file->run_groups), file->n_run_groups + n_groups, &file->max_run_groups));
   run              = &file->runs[file->n_runs++];
-  run->shape       = shape;
+  run->shape       = shape; /* NOLINT(clang-analyzer-core.NullDereference): Reserve() has set runs, through a void pointer */
   run->dim         = DMPolytopeTypeGetDim(shape);
   run->corners     = DMPolytopeTypeGetNumVertices(shape);
   run->n           = 0;

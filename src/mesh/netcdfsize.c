@@ -14,7 +14,7 @@ static PetscInt64 ReadNumber(Header *header, int bytes)
 {
   uint64_t value = 0;
 
-  for (int i = 0; i < bytes; i++) {
+  for (int i = 0; i < bytes && !header->cut; i++) {
     const int byte = fgetc(header->stream);
 
     if (byte == EOF) header->cut = PETSC_TRUE;

@@ -142,10 +142,10 @@ static PetscReal Determinant(PetscInt dim, PetscReal J[3][3])
 /* Jacobian of a simplex: its edges from the first corner */
 static PetscReal SimplexJacobian(PetscInt dim, const PetscReal *x[])
 {
-  PetscReal J[3][3];
+  PetscReal J[3][3] = {{0}};
 
   for (PetscInt i = 0; i < dim; i++)
-    for (PetscInt j = 0; j < dim; j++) J[i][j] = x[i + 1][j] - x[0][j];
+    for (PetscInt j = 0; j < dim; j++) J[i][j] = x[i + 1][j] - x[0][j]; /* NOLINT(clang-analyzer-core.NullDereference): dim + 1 corners */
   return Determinant(dim, J);
 }
 
@@ -170,6 +170,7 @@ static PetscReal TensorJacobian(PetscInt dim, const PetscReal *x[], PetscReal *s
 
         for (PetscInt d = 0; d < dim; d++)
           if (d != i) slope *= factor[d];
+        /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): 4 or 8 corners, by dim */
         for (PetscInt j = 0; j < dim; j++) J[i][j] += slope * x[k][j];
       }
     }
@@ -194,7 +195,7 @@ static PetscErrorCode CheckCells(const MeshFile *file)
   PetscFunctionBegin;
   for (PetscInt c = 0; c < file->n_cells; c++) {
     const PetscInt  *cell = file->cells + c * file->corners;
-    const PetscReal *x[8];
+    const PetscReal *x[8] = {NULL};
     PetscReal        smallest, volume;
 
     for (PetscInt k = 0; k < file->corners; k++) {

@@ -44,7 +44,7 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
     fprintf(stderr, "impakt: error on rank %d: %s\n", rank, message ? message : "");
   } else fprintf(stderr, "impakt: error: %s\n", message ? message : "");
   if (!explained && !IsUsersBusiness(code)) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
-  fflush(stderr);
+  (void)fflush(stderr);
   return code;
 }
 

@@ -24,7 +24,7 @@ static const char *FindName(int argc, char **argv, PetscBool *asked)
 {
   *asked = PETSC_FALSE;
   for (int i = 1; i < argc; i++) {
-    if (strcmp(argv[i], "-example") && strcmp(argv[i], "--example")) continue;
+    if (strcmp(argv[i], "-example") != 0 && strcmp(argv[i], "--example") != 0) continue;
     *asked = PETSC_TRUE;
     return i + 1 < argc && argv[i + 1][0] != '-' ? argv[i + 1] : NULL;
   }

@@ -162,8 +162,10 @@ static PetscErrorCode VisitFile(Walk *walk, const char text[], Place by)
   if (walk->sought && walk->sought->st_dev == place.status.st_dev && walk->sought->st_ino == place.status.st_ino) walk->found = PETSC_TRUE;
   file = fopen(path, "r");
   if (file) {
-    PetscCall(VisitLines(walk, file, &place));
-    fclose(file);
+    const PetscErrorCode error = VisitLines(walk, file, &place);
+
+    (void)fclose(file);
+    PetscCall(error);
   } else PetscCall(PetscSNPrintf(walk->error, walk->error_size, "The options file '%s' cannot be read: %s", path, strerror(errno)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -128,7 +128,7 @@ static const Complaint *FindComplaint(const char message[], char value[], size_t
     const size_t before = strlen(complaints[i].before), after = strlen(complaints[i].after), length = strlen(message);
 
     if (length < before + after || length - before - after >= size) continue;
-    if (strncmp(message, complaints[i].before, before) || strcmp(message + length - after, complaints[i].after)) continue;
+    if (strncmp(message, complaints[i].before, before) != 0 || strcmp(message + length - after, complaints[i].after) != 0) continue;
     memcpy(value, message + before, length - before - after);
     value[length - before - after] = 0;
     return &complaints[i];

@@ -121,10 +121,10 @@ SIMD_INLINE PetscInt FindNaN(const SimdReal values)
 {
   PetscInt any = 0;
 
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++) any |= values[p] != values[p];
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) any |= values[p] != values[p]; /* NOLINT(misc-redundant-expression): the test that vectorises */
   if (any)
     for (PetscInt p = 0; p < SIMD_WIDTH; p++)
-      if (values[p] != values[p]) return p;
+      if (isnan(values[p])) return p;
   return -1;
 }
 

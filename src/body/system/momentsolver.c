@@ -136,6 +136,7 @@ static PetscErrorCode Iterate(MomentsProblem *problem, PetscReal hold, PetscReal
    bounds, by the proximal point method: solutions held near the one before, less and less */
 PetscErrorCode MomentsSolve(MomentsProblem *problem, PetscReal coefficients[], PetscBool *converged)
 {
+  PetscReal hold = 1;
   PetscBool held;
 
   PetscFunctionBegin;
@@ -143,7 +144,10 @@ PetscErrorCode MomentsSolve(MomentsProblem *problem, PetscReal coefficients[], P
   PetscCall(Iterate(problem, 0, coefficients, converged));
   if (*converged) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));
-  for (PetscReal hold = 1; hold > LEAST_HOLD; hold *= HOLD_REDUCTION) PetscCall(Iterate(problem, hold, coefficients, &held));
+  while (hold > LEAST_HOLD) {
+    PetscCall(Iterate(problem, hold, coefficients, &held));
+    hold *= HOLD_REDUCTION;
+  }
   PetscCall(Iterate(problem, 0, coefficients, converged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

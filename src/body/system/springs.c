@@ -104,7 +104,7 @@ static PetscErrorCode FindMiddle(Body body, const RigidFrame *frame, PetscInt *m
 static PetscErrorCode PlaceSpring(Body body, const RigidFrame *frame, PetscInt middle, PetscInt n_free, const PetscReal free[],
                                   PetscReal held[], PetscInt n)
 {
-  PetscReal row[BODY_MAX_RIGID], motion[BODY_MAX_RIGID], both[2 * BODY_MAX_RIGID] = {0}, norm;
+  PetscReal row[BODY_MAX_RIGID] = {0}, motion[BODY_MAX_RIGID], both[2 * BODY_MAX_RIGID] = {0}, norm;
   PetscInt  next = 0;
   struct {
     double value;

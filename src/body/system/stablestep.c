@@ -158,7 +158,7 @@ static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
 static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], PetscReal *largest)
 {
   const PetscInt count = body->model.element->count;
-  PetscReal     *eigenvalues, top = 0, exact, last = -1;
+  PetscReal     *eigenvalues, top = 0, above = PETSC_MAX_REAL, exact, last = -1;
   PetscInt       n_exact = 0;
 
   PetscFunctionBegin;
@@ -166,8 +166,9 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], Petsc
   PetscCall(EstimateEigenvalues(body, eigenvalues));
   for (PetscInt e = 0; e < count; e++) top = PetscMax(top, eigenvalues[e]);
   /* from the top down, band by band */
-  for (PetscReal above = PETSC_MAX_REAL, bound = (1 - EQUAL) * top; above > CLOSE * top && n_exact < MAX_EXACT;
-       above = bound, bound -= BAND * top)
+  while (above > CLOSE * top && n_exact < MAX_EXACT) {
+    const PetscReal bound = above < PETSC_MAX_REAL ? above - BAND * top : (1 - EQUAL) * top;
+
     for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
       if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
       last = eigenvalues[e];
@@ -175,6 +176,8 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], Petsc
       *largest = PetscMax(*largest, exact);
       n_exact++;
     }
+    above = bound;
+  }
   PetscCall(PetscFree(eigenvalues));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -85,7 +85,7 @@ static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
 {
   const PetscInt n = body->model.element->nodes;
   PetscScalar    ones[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-  PetscInt       nodes[ELEMENT_MAX_DOFS], dofs[ELEMENT_MAX_DOFS];
+  PetscInt       nodes[ELEMENT_MAX_DOFS], dofs[ELEMENT_MAX_DOFS] = {0};
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n * n; i++) ones[i] = 1;

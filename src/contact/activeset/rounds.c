@@ -66,7 +66,8 @@ PetscErrorCode RoundsNext(Rounds *rounds)
                              ROUNDS_MAX));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(PetscArraycpy(rounds->tried + rounds->n++ * n, rounds->active, n));
+  PetscCall(PetscArraycpy(rounds->tried + rounds->n * n, rounds->active, n));
+  rounds->n++;
   if (!rounds->cycled || rounds->n < LAST_ROUNDS) PetscFunctionReturn(PETSC_SUCCESS);
   rounds->single = PETSC_FALSE;
   for (PetscInt i = 0; i < n; i++) rounds->kept[i] = PETSC_TRUE;

@@ -3,14 +3,14 @@
 
 /* What is summed over the rows of a pair */
 enum {
-  SUM_FORCE,
-  SUM_ACTIVE,
-  SUM_AREA,
-  SUM_VECTOR,
+  SUM_FORCE          = 0,
+  SUM_ACTIVE         = 1,
+  SUM_AREA           = 2,
+  SUM_VECTOR         = 3,
   SUM_MOMENT         = SUM_VECTOR + 3,
   SUM_IMPULSE        = SUM_MOMENT + 3,
   SUM_NORMAL_IMPULSE = SUM_IMPULSE + 3,
-  N_SUMS
+  N_SUMS             = SUM_NORMAL_IMPULSE + 1
 };
 
 /* What is kept of a pair from step to step: its impulse and the force at the end of the last step, 3 numbers each, and the same of the

@@ -8,7 +8,7 @@
 static PetscErrorCode GetExtent(Body body, PetscReal *extent)
 {
   PetscReal          center[4] = {0}, radius = 0; /* the mean of the nodes, and their number */
-  PetscInt           dim, n;
+  PetscInt           dim, n, n_nodes;
   const PetscScalar *x;
   Vec                coordinates;
   DM                 dm;
@@ -19,7 +19,8 @@ static PetscErrorCode GetExtent(Body body, PetscReal *extent)
   PetscCall(DMGetCoordinates(dm, &coordinates));
   PetscCall(VecGetLocalSize(coordinates, &n));
   PetscCall(VecGetArrayRead(coordinates, &x));
-  center[3] = n / dim;
+  n_nodes   = n / dim;
+  center[3] = (PetscReal)n_nodes;
   for (PetscInt i = 0; i < n; i++) center[i % dim] += PetscRealPart(x[i]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, center, 4, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)dm)));
   for (PetscInt i = 0; i < n; i += dim) {

@@ -163,8 +163,8 @@ static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSum
   }
   PetscCall(VecRestoreArrayRead(positions, &x));
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, summary->n, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  for (TieState state = TIE_OVERLAPS; state <= TIE_APART; state = (TieState)(state + 1))
-    PetscCall(FindWorst(contact, worst[state], places[state], state, summary));
+  for (PetscInt state = TIE_OVERLAPS; state <= TIE_APART; state++)
+    PetscCall(FindWorst(contact, worst[state], places[state], (TieState)state, summary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -74,8 +74,8 @@ int main(int argc, char **argv)
   PetscCall(ImpaktInitialize(&argc, &argv));
   PetscCall(CreateMesh(-LENGTH, &meshes[0]));
   PetscCall(CreateMesh(0, &meshes[1]));
-  for (PetscReal modulus = 2.5e8; modulus < 5e9; modulus *= 2) {
-    const PetscReal z[2] = {PetscSqrtReal(1e9 * DENSITY), PetscSqrtReal(modulus * DENSITY)};
+  for (int doubled = 0; doubled < 5; doubled++) {
+    const PetscReal modulus = ldexp(2.5e8, doubled), z[2] = {PetscSqrtReal(1e9 * DENSITY), PetscSqrtReal(modulus * DENSITY)};
     PetscReal       force;
 
     PetscCall(Run(meshes, modulus, &force));
