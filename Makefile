@@ -54,6 +54,13 @@ ifeq ($(COVERAGE),1)
 BUILD    := build/coverage
 OPTIMISE := -O1 -g --coverage -fprofile-update=atomic
 endif
+ifeq ($(FUZZ),1) # by `make fuzz`: libFuzzer is clang's
+BUILD    := build/fuzz
+OPTIMISE := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer \
+            -Wno-pass-failed # loops that vectorise when optimised
+export OMPI_CC := clang-19
+export MPICH_CC := clang-19
+endif
 
 WARNINGS := -Wall -Wextra -Werror
 CFLAGS   := -std=c11 -fopenmp-simd $(WARNINGS) $(OPTIMISE)
@@ -65,7 +72,9 @@ CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/includ
 LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lm
 
 members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c' -not -path '*/tutorials/*'))))
-units     := $(patsubst %.c,$(BUILD)/%,$(filter-out tests/scaling/% tests/library/%,$(sort $(shell find tests -name '*.c'))))
+units     := $(patsubst %.c,$(BUILD)/%,$(filter-out tests/scaling/% tests/library/% tests/fuzz/%,$(sort $(shell find tests -name '*.c'))))
+targets   := $(filter-out replay,$(patsubst tests/fuzz/%.c,%,$(sort $(wildcard tests/fuzz/*.c))))
+replays   := $(targets:%=$(BUILD)/tests/fuzz/%)
 c_files    = $(shell find src include tests -name '*.[ch]')
 sh_files  := .setup/common .setup/debian .setup/petsc .setup/python .ci/run
 TESTS     ?= tests
@@ -102,9 +111,9 @@ ifneq ($(filter analyse coverage,$(MAKECMDGOALS)),)
 analysis := $(dir $(shell .setup/python --analysis))
 endif
 
-.PHONY: all run paper test test-all bench docs format lint analyse coverage install force
+.PHONY: all run paper test test-all bench docs format lint analyse coverage fuzz fuzzers install force
 .DELETE_ON_ERROR:
-.SECONDARY: $(addsuffix .o,$(units))
+.SECONDARY: $(addsuffix .o,$(units) $(replays))
 
 all: $(BUILD)/impakt ## the program, build/impakt (the default)
 
@@ -136,7 +145,7 @@ paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in 
 # Where TESTS does not say what is wanted, `make test` leaves out what is marked as long.
 test: ## unit tests on 1 to 3 ranks and regression tests, without the long ones; or what TESTS names
 test-all: ## all tests
-test test-all: $(BUILD)/impakt $(units)
+test test-all: $(BUILD)/impakt $(units) $(replays)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
 	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long")
 
@@ -173,6 +182,21 @@ coverage: ## the whole test-suite with counted lines of src: a report in build/c
 	$(analysis)gcovr --root . --filter src/ --exclude '.*/tutorials/' --exclude-throw-branches --html-details build/coverage/report/index.html \
 	  --txt build/coverage/report/lines.txt --print-summary --fail-under-line 90 build/coverage
 
+# Each target RUNS times, from seeds and from what was found before; an input that breaks it is kept in build/fuzz/found
+RUNS ?= 100000
+fuzz: ## libFuzzer with address and undefined-behaviour checks on all that reads files: RUNS=100000 inputs for each target
+	@.setup/debian clang-19 libclang-rt-19-dev
+	@$(MAKE) --no-print-directory FUZZ=1 PETSC_ROOT="$(PETSC_ROOT)" PYTHON="$(PYTHON)" fuzzers
+	$(PYTHON) tests/fuzz/seeds.py build/fuzz/seeds
+	@mkdir -p build/fuzz/found $(targets:%=build/fuzz/corpus/%)
+	@status=0; for t in $(targets); do \
+	  ASAN_OPTIONS=detect_leaks=0 build/fuzz/tests/fuzz/$$t -runs=$(RUNS) -seed=1 -max_len=20000 -timeout=20 -rss_limit_mb=4000 -print_final_stats=1 \
+	    -verbosity=0 -artifact_prefix=build/fuzz/found/$$t- build/fuzz/corpus/$$t build/fuzz/seeds/$$t >build/fuzz/$$t.log 2>&1 || status=1; \
+	  sed -n -e 's/^stat::number_of_executed_units: *\([0-9]*\)/  '$$t': \1 inputs/p' -e '/ERROR\|SUMMARY\|runtime error\|Test unit written/p' build/fuzz/$$t.log; \
+	done; exit $$status
+
+fuzzers: $(replays)
+
 $(BUILD)/impakt: $(BUILD)/src/main.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(LIBS)
 
@@ -187,6 +211,9 @@ $(BUILD)/libimpakt.so: $(members) $(BUILD)/members
 
 $(units): %: %.o $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
+
+$(replays): %: %.o $(if $(FUZZ),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/libimpakt.a
+	$(call say,LINK) $(CC) $(CFLAGS) $(if $(FUZZ),-fsanitize=fuzzer) -o $@ $^ $(LIBS)
 
 $(addsuffix .o,$(units)): private CPPFLAGS += -Itests/support
 $(BUILD)/src/sys/help.o: private CPPFLAGS += -DIMPAKT_OPTIMISATION='"$(OPTIMISE)"' # -version tells
@@ -219,6 +246,6 @@ $(BUILD)/examples: text = $(examples)
 $(BUILD)/flags $(BUILD)/members $(BUILD)/examples: force
 	@mkdir -p $(@D); echo '$(text)' | cmp -s - $@ || echo '$(text)' >$@
 
--include $(members:.o=.d) $(BUILD)/src/main.d $(addsuffix .d,$(units))
+-include $(members:.o=.d) $(BUILD)/src/main.d $(addsuffix .d,$(units) $(replays))
 
 endif

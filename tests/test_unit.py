@@ -1,4 +1,4 @@
-"""The CMocka programs, which are the C files of all folders here but scaling and library, each on 1, 2 and 3 ranks or on those that a comment
+"""The CMocka programs, which are the C files of all folders here but fuzz, scaling and library, each on 1, 2 and 3 ranks or on those that a comment
 in it names: /* ranks: 1 2 */. On those that another one names, /* long: 3 */, only where long tests are run; on all, if it names none: /* long */"""
 
 import os
@@ -15,7 +15,7 @@ def cases():
     tests = ROOT / "tests"
     for source in sorted(tests.rglob("*.c")):
         program = source.relative_to(tests).with_suffix("")
-        if program.parts[0] in ("scaling", "library"):
+        if program.parts[0] in ("scaling", "library", "fuzz"):
             continue
         text = source.read_text()
         named, long = RANKS.search(text), LONG.search(text)

@@ -15,7 +15,7 @@ static PetscErrorCode ReadFormat(Gmsh *gmsh)
   gmsh->at = after;
   PetscCall(GmshReadText(gmsh, 1, &type));
   PetscCall(GmshReadText(gmsh, 1, &size));
-  gmsh->version = (int)(10 * version + 0.5);
+  gmsh->version = version > 0 && version < 100 ? (int)(10 * version + 0.5) : 0;
   PetscCheck(gmsh->version == 22 || gmsh->version == 41, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "version %g of Gmsh's format is not supported: save it as 2.2 or 4.1 (gmsh -format msh41)", version);
   GmshCheck(gmsh, type == 0 || type == 1, "file type %" PetscInt64_FMT " is neither 0 (ASCII) nor 1 (binary)", type);

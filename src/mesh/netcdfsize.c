@@ -62,7 +62,7 @@ static void SkipAttributes(Header *header)
 }
 
 /* Finds where the data of the file end, from the place and the dimensions of each variable. A dimension of length 0 is that of records: the
-   header tells the place of the first record. */
+   header tells the place of the first record. Only the first of a variable may be that; with another one NetCDF divides by zero. */
 static PetscErrorCode FindEnd(Header *header, PetscInt64 records, double *end)
 {
   PetscInt64 n, *lengths;
@@ -82,19 +82,21 @@ static PetscErrorCode FindEnd(Header *header, PetscInt64 records, double *end)
   for (PetscInt64 v = ReadLength(header); v > 0 && !header->cut; v--) {
     PetscInt64 rank, offset;
     PetscBool  is_record = PETSC_FALSE;
-    double     size      = 1;
+    double     size      = 1, entry;
 
     Skip(header, ReadLength(header));
     rank = ReadLength(header);
     for (PetscInt64 d = 0; d < rank && !header->cut; d++) {
       const PetscInt64 dimension = ReadNumber(header, header->count_bytes);
 
-      if (dimension < 0 || dimension >= n) header->cut = PETSC_TRUE;
+      if (dimension < 0 || dimension >= n || lengths[dimension] < 0 || (d && !lengths[dimension])) header->cut = PETSC_TRUE;
       else if (!lengths[dimension]) is_record = PETSC_TRUE;
       else size *= (double)lengths[dimension];
     }
     SkipAttributes(header);
-    size *= (double)TypeSize(ReadNumber(header, 4));
+    entry = (double)TypeSize(ReadNumber(header, 4));
+    if (!(entry > 0)) header->cut = PETSC_TRUE;
+    size *= entry;
     (void)ReadNumber(header, header->count_bytes);
     offset = ReadNumber(header, header->offset_bytes);
     if (is_record) {

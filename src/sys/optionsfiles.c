@@ -34,6 +34,39 @@ typedef struct {
 
 static PetscErrorCode VisitFile(Walk *, const char[], Place);
 
+/* Whether a text has a `${` without its `}`, with which PetscStrreplace() crashes. PETSc calls that for the paths of all files and viewers.
+ */
+PetscBool OptionsIsUnclosed(const char text[])
+{
+  const char *open = strstr(text, "${");
+
+  while (open && strchr(open, '}')) open = strstr(strchr(open, '}'), "${");
+  return open ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* What is wrong with the variables ${NAME} in a path, if anything. PETSc's own mean something where the environment has none of that name.
+ */
+static PetscErrorCode CheckVariables(const char text[], char problem[], size_t size)
+{
+  const char *const own[] = {"PETSC_ARCH",       "PETSC_DIR", "PETSC_LIB_DIR", "DISPLAY",   "HOMEDIRECTORY",
+                             "WORKINGDIRECTORY", "USERNAME",  "HOSTNAME",      "PETSC_MAKE"};
+
+  PetscFunctionBegin;
+  problem[0] = 0;
+  if (OptionsIsUnclosed(text)) PetscCall(PetscStrncpy(problem, "has a ${ without its } in its path", size));
+  for (const char *open = strstr(text, "${"); open && !problem[0]; open = strstr(open + 2, "${")) {
+    const size_t length = (size_t)(strchr(open, '}') - open) - 2;
+    char         name[PETSC_MAX_PATH_LEN];
+    PetscBool    known = PETSC_FALSE;
+
+    PetscCall(PetscStrncpy(name, open + 2, PetscMin(length + 1, sizeof(name))));
+    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(own) && !known; i++) PetscCall(PetscStrcmp(name, own[i], &known));
+    if (!known && !getenv(name))
+      PetscCall(PetscSNPrintf(problem, size, "has ${%s} in its path, which is not set in the environment", name));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The path as PETSc opens it */
 static PetscErrorCode Expand(const char text[], char path[PETSC_MAX_PATH_LEN])
 {
@@ -147,13 +180,19 @@ static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
 
 static PetscErrorCode VisitFile(Walk *walk, const char text[], Place by)
 {
-  char         path[PETSC_MAX_PATH_LEN];
+  char         path[PETSC_MAX_PATH_LEN], problem[PETSC_MAX_PATH_LEN + 64], name[2 * PETSC_MAX_PATH_LEN];
   struct Place place = {.path = path, .line = 0, .by = by};
   PetscBool    fine, yaml = PETSC_FALSE;
   const char  *endings[] = {".yaml", ".yml", ".json", ":yaml"};
   FILE        *file;
 
   PetscFunctionBegin;
+  PetscCall(CheckVariables(text, problem, sizeof(problem)));
+  if (problem[0]) {
+    PetscCall(Describe(text, by, name, sizeof(name)));
+    PetscCall(PetscSNPrintf(walk->error, walk->error_size, "The options file %s %s", name, problem));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(Expand(text, path));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(endings) && !yaml; i++) PetscCall(PetscStrendswith(path, endings[i], &yaml));
   if (yaml) PetscFunctionReturn(PETSC_SUCCESS); /* these are not made of lines, and cannot include others */

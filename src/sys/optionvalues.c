@@ -101,6 +101,7 @@ PetscErrorCode OptionsCheckValues(void)
     char name[2 * PETSC_MAX_PATH_LEN], text[1024] = "";
 
     if (!values[i] || !values[i][0]) PetscCall(OptionsDescribeMissing(names[i], text, sizeof(text)));
+    else if (OptionsIsUnclosed(values[i])) PetscCall(PetscSNPrintf(text, sizeof(text), "'%s': a ${ without its }", values[i]));
     if (!text[0]) continue;
     PetscCall(NameWithOrigin(names[i], name, sizeof(name)));
     SETERRQ(PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s %s", name, text);
