@@ -159,10 +159,10 @@ docs: $(BUILD)/impakt ## the table of options in options/README.md, as the progr
 	@sed -i -e '/^<!-- what lies between/,/^<!-- end of what/{/^<!--/!d}' -e '/^<!-- what lies between/r $(BUILD)/options.md' options/README.md
 
 format: ## clang-format over all C
-	$(bin)clang-format -i $(c_files)
+	@$(bin)clang-format -i $(c_files)
 
 lint: ## clang-format, ruff, and shellcheck where there is one
-	$(bin)clang-format --dry-run -Werror $(c_files)
+	@$(bin)clang-format --dry-run -Werror $(c_files)
 	$(bin)ruff check --no-cache plots tests
 	@if [ -x $(bin)shellcheck ]; then set -x; $(bin)shellcheck -x $(sh_files); fi
 

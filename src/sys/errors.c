@@ -1,12 +1,15 @@
 /* How errors reach the user of the program, and the exit code that goes with them. */
 #include <impakt.h>
+#include <string.h>
 #include <unistd.h>
 #include "errors.h"
 #include "optionvalues.h"
 
-/* Errors whose message says all that the user can do about them */
-static PetscBool IsUsersBusiness(PetscErrorCode code)
+/* Errors whose message says all that the user can do about them: those too that PETSc has with the words of an option */
+static PetscBool IsUsersBusiness(const char *function, PetscErrorCode code)
 {
+  if (function && strncmp(function, "PetscOptions", strlen("PetscOptions")) == 0 && code != PETSC_ERR_PLIB && code != PETSC_ERR_MEM)
+    return PETSC_TRUE;
   switch (code) {
   case PETSC_ERR_USER_INPUT:
   case PETSC_ERR_ARG_UNKNOWN_TYPE:
@@ -43,7 +46,8 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     fprintf(stderr, "impakt: error on rank %d: %s\n", rank, message ? message : "");
   } else fprintf(stderr, "impakt: error: %s\n", message ? message : "");
-  if (!explained && !IsUsersBusiness(code)) fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
+  if (!explained && !IsUsersBusiness(function, code))
+    fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
   (void)fflush(stderr);
   return code;
 }

@@ -112,12 +112,22 @@ static PetscErrorCode CheckFile(Walk *walk, const char path[], Place by, struct 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PushPrefix(Walk *walk, const char prefix[])
+/* Notes what is wrong with the line of a file that is read */
+static PetscErrorCode Blame(Walk *walk, Place place, const char problem[])
+{
+  PetscFunctionBegin;
+  PetscCall(
+      PetscSNPrintf(walk->error, walk->error_size, "The options file '%s', line %" PetscInt_FMT ": %s", place->path, place->line, problem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PushPrefix(Walk *walk, const char prefix[], Place place)
 {
   const int n = walk->n_prefixes;
 
   PetscFunctionBegin;
-  if (n < (int)PETSC_STATIC_ARRAY_LENGTH(walk->prefixes)) {
+  if (!prefix) PetscCall(Blame(walk, place, "-prefix_push needs the prefix that the options after it have")); /* PETSc crashes */
+  else if (n < (int)PETSC_STATIC_ARRAY_LENGTH(walk->prefixes)) {
     PetscCall(PetscSNPrintf(walk->prefixes[n], sizeof(walk->prefixes[n]), "%s%s", n ? walk->prefixes[n - 1] : "", prefix));
     walk->n_prefixes++;
   }
@@ -134,8 +144,9 @@ static PetscErrorCode VisitOption(Walk *walk, const char name[], const char valu
   PetscCall(PetscStrcasecmp(name, "-prefix_push", &push));
   PetscCall(PetscStrcasecmp(name, "-prefix_pop", &pop));
   if (file && value) PetscCall(VisitFile(walk, value, place));
-  else if (push && value) PetscCall(PushPrefix(walk, value));
+  else if (push) PetscCall(PushPrefix(walk, value, place));
   else if (pop && walk->n_prefixes) walk->n_prefixes--;
+  else if (pop) PetscCall(Blame(walk, place, "-prefix_pop without a -prefix_push before it"));
   else if (walk->option && name[0] == '-') {
     char full[PETSC_MAX_OPTION_NAME];
 
@@ -163,13 +174,18 @@ static char *NextWord(char **rest)
 
 static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
 {
-  char  *text = NULL;
-  size_t size = 0;
+  char   *text = NULL;
+  size_t  size = 0;
+  ssize_t length;
 
   PetscFunctionBegin;
-  for (place->line = 1; getline(&text, &size, file) >= 0 && !walk->error[0]; place->line++) {
+  for (place->line = 1; (length = getline(&text, &size, file)) >= 0 && !walk->error[0]; place->line++) {
     char *rest = text, *comment = strchr(text, '#'), *name;
 
+    if (strlen(text) < (size_t)length) {
+      PetscCall(Blame(walk, place, "there is a zero byte in it: is it a text file?"));
+      break;
+    }
     if (comment) *comment = 0;
     name = NextWord(&rest);
     if (name) PetscCall(VisitOption(walk, name, NextWord(&rest), place));

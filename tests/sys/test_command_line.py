@@ -77,6 +77,25 @@ def test_pipe(words, tmp_path):
     refused(words("pipe.opts"), ["'pipe.opts'", "pipe"])
 
 
+# Lines of an options file, and what is told of them
+LINES = {
+    "prefix without value": ("-prefix_push", ["line 1", "-prefix_push needs the prefix"]),
+    "prefix never pushed": ("-time_end 1\n-prefix_pop", ["line 2", "without a -prefix_push"]),
+    "no prefix": ("-prefix_push 1", ['"1"', "first character must be a letter"]),
+    "second value": ("-time_end 1 2", ["line 1", "extra token 2"]),
+    "two options": ("-time_end 1\n-left_density -right_density", ["line 2", "two options per line"]),
+    "word": ("time_end 1", ["line 1", "time_end"]),
+    "zero byte": ("-time_end 1\n-time_\0", ["line 2", "zero byte"]),
+}
+
+
+@pytest.mark.parametrize("case", list(LINES))
+def test_wrong_lines(case, words, tmp_path):
+    text, named = LINES[case]
+    (tmp_path / "wrong.opts").write_text(text + "\n")
+    refused(words("wrong.opts"), ["wrong.opts" if "line" in str(named) else "", *named])
+
+
 @pytest.mark.parametrize("ring", [1, 3])
 def test_file_that_includes_itself(ring, words, tmp_path):
     for i in range(ring):
