@@ -69,7 +69,7 @@ SHARED   := -fPIC -fvisibility=hidden -fno-semantic-interposition
 # Other people's headers are system headers: their warnings are not ours to mend.
 CPPFLAGS := -Iinclude -Isrc $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(PETSC_CC_INCLUDES) $(shell pkg-config --cflags jansson muparser netcdf-mpi))) \
             -isystem $(shell pkg-config --variable=prefix netcdf-mpi)/include # Debian's netcdf-mpi.pc does not name it
-LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lm
+LIBS     := -Wl,--as-needed $(PETSC_LIB) $(shell pkg-config --libs jansson muparser netcdf-mpi) -lpthread -lm
 
 members   := $(patsubst %.c,$(BUILD)/%.o,$(filter-out src/main.c,$(sort $(shell find src -name '*.c' -not -path '*/tutorials/*'))))
 units     := $(patsubst %.c,$(BUILD)/%,$(filter-out tests/scaling/% tests/library/% tests/fuzz/%,$(sort $(shell find tests -name '*.c'))))

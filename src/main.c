@@ -36,9 +36,9 @@ static PetscErrorCode Run(void)
   PetscCall(CheckOptions(controller));
   PetscCall(ControllerView(controller, PETSC_VIEWER_STDOUT_WORLD));
   error = ControllerSolve(controller);
+  if (!error) error = OutputReport(output);
   if (error) (void)OutputDestroy(&output); /* what was recorded until then helps to find out why */
   PetscCall(error);
-  PetscCall(OutputReport(output));
   PetscCall(OutputDestroy(&output));
   PetscCall(ControllerDestroy(&controller));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -67,6 +67,7 @@ static PetscErrorCode Start(CommandLine *line)
   PetscCall(ImpaktInitialize(&n, &words));
   PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
   (void)signal(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
+  (void)signal(SIGXFSZ, SIG_IGN); /* a file that becomes larger than the shell allows is an error with a message, not the end */
   PetscCall(CommandLineInsert(line));
   PetscCall(OptionsCheckValues());
   return PETSC_SUCCESS;

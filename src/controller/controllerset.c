@@ -2,6 +2,7 @@
 #include "controllerimpl.h"
 #include <sys/names.h>
 #include <sys/package.h>
+#include <sys/statusline.h>
 
 PetscClassId CONTROLLER_CLASSID = 0;
 
@@ -106,7 +107,10 @@ static PetscErrorCode ReadBodies(Controller controller)
   }
   PetscCall(NamesDestroy(n, &names));
   PetscCall(error);
-  for (PetscInt b = first; b < controller->n_bodies; b++) PetscCall(BodySetFromOptions(controller->bodies[b]));
+  for (PetscInt b = first; b < controller->n_bodies; b++) {
+    StatusLineTell("mesh of body %s", ((PetscObject)controller->bodies[b])->name);
+    PetscCall(BodySetFromOptions(controller->bodies[b]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

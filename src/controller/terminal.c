@@ -1,20 +1,11 @@
 /* What a run shows on the terminal while it goes on. */
 #include "controllerimpl.h"
-#include <unistd.h>
-
-/* A bar is worth its lines for runs that last */
-#define PROGRESS_AFTER 1.0 /* s */
-#define PROGRESS_EVERY 0.2 /* s */
+#include <sys/statusline.h>
 
 typedef struct {
   PetscInt  interval;
   PetscReal initial_energy;
 } Lines;
-
-typedef struct {
-  PetscLogDouble begin, last;
-  PetscBool      shown;
-} Progress;
 
 static PetscErrorCode FreeContext(void **ctx)
 {
@@ -51,25 +42,32 @@ static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *fr
 
 static PetscErrorCode ShowProgress(Controller controller, const ControllerFrame *frame, void *ctx)
 {
-  Progress      *progress = (Progress *)ctx;
-  PetscLogDouble now;
-  PetscReal      share = (PetscReal)frame->step / frame->steps;
-  char           bar[41];
-
   PetscFunctionBegin;
   (void)controller;
-  PetscCall(PetscTime(&now));
-  if (!frame->step) progress->begin = progress->last = now;
-  if (frame->step == frame->steps) {
-    if (progress->shown) fprintf(stderr, "\r%79s\r", "");
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (now - progress->begin < PROGRESS_AFTER || now - progress->last < PROGRESS_EVERY) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int i = 0; i < 40; i++) bar[i] = i < 40 * share ? '#' : '.';
-  bar[40] = 0;
-  fprintf(stderr, "\r[%s] %3.0f %%  %.0f s to go  ", bar, (double)(100 * share), (double)((now - progress->begin) * (1 - share) / share));
-  progress->last  = now;
-  progress->shown = PETSC_TRUE;
+  (void)ctx;
+  if (frame->step < frame->steps) StatusLineSetSteps(frame->step, frame->steps);
+  else StatusLineEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EndProgress(void **ctx)
+{
+  PetscFunctionBegin;
+  (void)ctx;
+  StatusLineEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells on standard error how far the run is: with a bar, or with lines for a log */
+static PetscErrorCode TellProgress(Controller controller, PetscBool bar)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)controller), &rank));
+  if (rank) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StatusLineBegin(bar));
+  PetscCall(ControllerMonitorSet(controller, ShowProgress, NULL, EndProgress));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,26 +111,24 @@ PetscErrorCode ControllerSetMonitorInterval(Controller controller, PetscInt inte
 . controller - the `Controller`, before its first step
 
   Options Database Key:
-. -progress (true|false) - whether there is one, default where standard error is a terminal
+. -progress (true|false) - whether there is one; default: where standard error, or that of `mpiexec`, is a terminal. Else a line after one
+                           minute, two minutes, four minutes, ...
 
   Level: beginner
 
-  Note:
-  The first rank draws it, of runs that take more than a second.
+  Notes:
+  The first rank draws it, of runs that take more than a second, as wide as the terminal, from this call to the last step: call it before
+  `ControllerSetUp()`, or before meshes are made, to see what the set-up does. Messages that PETSc's functions print get lines of their own.
+
+  It is drawn by a thread, which calls neither MPI nor PETSc.
 
 .seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetMonitorInterval()`
 @*/
 PetscErrorCode ControllerSetProgress(Controller controller)
 {
-  Progress   *progress;
-  PetscMPIInt rank;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)controller), &rank));
-  if (rank) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscNew(&progress));
-  PetscCall(ControllerMonitorSet(controller, ShowProgress, progress, FreeContext));
+  PetscCall(TellProgress(controller, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,17 +136,17 @@ PetscErrorCode ControllerSetProgress(Controller controller)
 PetscErrorCode ControllerSetUpTerminal(Controller controller)
 {
   PetscInt  interval = 0;
-  PetscBool show     = (PetscBool)isatty(STDERR_FILENO);
+  PetscBool bar      = StatusLineHasTerminal(), set;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)controller);
   PetscCall(PetscOptionsInt("-monitor_interval", "Steps from line to line on the terminal, 0 for none", "ControllerSetMonitorInterval",
                             interval, &interval, NULL));
-  PetscCall(PetscOptionsBool("-progress", "Progress bar on standard error", "ControllerSetProgress", show, &show, NULL));
+  PetscCall(PetscOptionsBool("-progress", "Progress bar on standard error", "ControllerSetProgress", bar, &bar, &set));
   PetscOptionsEnd();
   PetscCheck(interval >= 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT,
              "-monitor_interval %" PetscInt_FMT " must not be negative", interval);
   if (interval) PetscCall(ControllerSetMonitorInterval(controller, interval));
-  if (show) PetscCall(ControllerSetProgress(controller));
+  if (bar || !set) PetscCall(TellProgress(controller, bar));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

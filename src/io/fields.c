@@ -32,7 +32,8 @@ struct _n_Fields {
   PetscReal      *nodal;                    /* of each node of this rank, what ContactFieldsCompute() gives */
   void           *buffer;                   /* one field of a frame, in the file's precision */
   hid_t           file;                     /* -1 until it is begun */
-  int             held;                     /* the file with its final name, see OutputFileHold(); on the first rank */
+  PetscBool       failed;                   /* a frame could not be written */
+  int             held;                     /* the file with its final name, see OutputFilePlace(); on the first rank */
   PetscInt        listed;                   /* frames in the XDMF file */
   PetscLogDouble  list_ended, list_seconds; /* when the XDMF file was written last, and how long that took [s] */
 };
@@ -130,7 +131,8 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscCall(XdmfCheckPath(f->comm, path));
   PetscCall(OutputFileCheck(f->comm, "-output_fields", path));
   PetscCall(PetscStrncpy(f->path, path, sizeof(f->path)));
-  PetscCall(OutputFileGetPart(path, sizeof(f->part), f->part));
+  if (f->first_rank) PetscCall(OutputFileGetPart(path, sizeof(f->part), f->part));
+  PetscCallMPI(MPI_Bcast(f->part, (PetscMPIInt)sizeof(f->part), MPI_CHAR, 0, f->comm));
   PetscCall(XdmfGetPath(path, sizeof(f->xdmf), f->xdmf));
   PetscCall(OutputFileCheck(f->comm, "-output_fields, beside it,", f->xdmf));
   PetscCall(ControllerGetTimes(controller, NULL, NULL, &steps));
@@ -171,7 +173,8 @@ static PetscErrorCode WriteMesh(Fields fields)
   PetscFunctionBegin;
   if (fields->first_rank) {
     PetscCall(PetscOptionsGetAll(NULL, &options));
-    error = FieldsFileCreate(fields->part, mesh, fields->n_fields, fields->n_frames, fields->precision, options);
+    error = OutputFileMakeParents(fields->part); /* which may be gone since they were checked */
+    if (!error) error = FieldsFileCreate(fields->part, mesh, fields->n_fields, fields->n_frames, fields->precision, options);
     PetscCall(PetscFree(options));
   }
   PetscCall(Share(fields, error));
@@ -302,12 +305,14 @@ static PetscErrorCode WriteTime(Fields fields, PetscReal time)
 /* Gives the file its final name; the XDMF file of an earlier run, which does not fit it, is removed */
 static PetscErrorCode TakePlace(Fields fields)
 {
+  PetscBool placed = PETSC_TRUE;
+
   PetscFunctionBegin;
   if (fields->first_rank) {
-    (void)remove(fields->xdmf);
-    PetscCall(OutputFileReplace(fields->part, fields->path));
-    PetscCall(OutputFileHold(fields->path, &fields->held));
+    remove(fields->xdmf);
+    PetscCall(OutputFilePlace(fields->part, fields->path, &fields->held, &placed));
   }
+  PetscCheck(placed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s has vanished while it was written", fields->part);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -363,8 +368,9 @@ PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame
   (void)controller;
   if (frame->step % fields->interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
   HDF5SilenceBegin(&silence);
-  error = WriteFrame(fields, frame->time);
-  if (error && !fields->written && fields->first_rank) (void)remove(fields->part);
+  error          = WriteFrame(fields, frame->time);
+  fields->failed = (PetscBool)(error != PETSC_SUCCESS);
+  if (error && !fields->written && fields->first_rank) remove(fields->part);
   PetscCall(error);
   HDF5SilenceEnd(&silence);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -417,11 +423,15 @@ PetscErrorCode FieldsGetPaths(Fields fields, const char *path[], const char *xdm
 */
 PetscErrorCode FieldsDestroy(Fields *fields)
 {
-  Fields f = *fields;
+  Fields         f = *fields;
+  PetscErrorCode error;
 
   PetscFunctionBegin;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(List(f, PETSC_TRUE));
+  if (f->failed) PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL)); /* the failure has been told */
+  error = List(f, PETSC_TRUE);
+  if (f->failed) PetscCall(PetscPopErrorHandler());
+  if (!f->failed) PetscCall(error);
   PetscCall(OutputFileRelease(&f->held));
   PetscCall(ContactFieldsDestroy(&f->contact));
   PetscCall(FieldsMeshDestroy(&f->mesh));

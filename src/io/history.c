@@ -1,10 +1,12 @@
 /* The history of a run: records of all controller steps, collected in memory and added to the file from time to time. */
+#define _POSIX_C_SOURCE 200809L
 #include "history.h"
 #include "hdf5file.h"
 #include "outputfile.h"
 #include "series.h"
 #include <petsctime.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #define BUFFER_BYTES      ((size_t)1 << 16) /* of records that wait for writing, at first */
 #define BUFFER_BYTES_MOST ((size_t)1 << 26) /* at most: then they are written at once */
@@ -15,8 +17,9 @@
 #define FLUSH_SHARE    50.0
 
 struct _n_History {
-  char           path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  char           path[PETSC_MAX_PATH_LEN];
   PetscBool      writes; /* this is rank 0; the members below are used there alone */
+  PetscBool      failed; /* the file could not be written, and is as it was before */
   char          *options;
   PetscInt       n_bodies, *dims; /* space dimension of each body */
   PetscInt       n_series, width;
@@ -24,7 +27,7 @@ struct _n_History {
   PetscInt       n_records, capacity;
   PetscReal     *records;                /* those that are not in the file yet, `width` numbers each */
   PetscInt64     written;                /* records in the file */
-  int            held;                   /* the file, see OutputFileHold() */
+  int            held;                   /* the file, see OutputFilePlace() */
   PetscLogDouble flushed, flush_seconds; /* when the last flush ended, and how long it took [s] */
 };
 
@@ -112,7 +115,6 @@ PetscErrorCode HistoryCreate(Controller controller, const char path[], History *
   h->held   = -1;
   h->writes = rank ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscStrncpy(h->path, path, sizeof(h->path)));
-  PetscCall(OutputFileGetPart(path, sizeof(h->part), h->part));
   if (h->writes) {
     PetscCall(PetscOptionsGetAll(NULL, &h->options));
     PetscCall(AddAllSeries(h, controller));
@@ -123,21 +125,22 @@ PetscErrorCode HistoryCreate(Controller controller, const char path[], History *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes the next version of the file beside the present one, and puts it in its place */
-static PetscErrorCode WritePart(History history)
+/* Writes the next version of the file, see OutputFileWrite() */
+static PetscErrorCode WritePart(const char part[], void *ctx)
 {
+  History history = (History)ctx;
+
   PetscFunctionBegin;
-  if (history->written) PetscCall(OutputFileCopy(history->held, history->part));
-  else PetscCall(SeriesFileCreate(history->part, history->n_series, history->series, history->options));
-  PetscCall(SeriesFileAppend(history->part, history->n_series, history->series, history->written, history->n_records, history->width,
-                             history->records));
-  PetscCall(OutputFileReplace(history->part, history->path));
-  PetscCall(OutputFileHold(history->path, &history->held));
+  if (history->written) PetscCall(OutputFileCopy(history->held, part));
+  else PetscCall(SeriesFileCreate(part, history->n_series, history->series, history->options));
+  if (access(part, F_OK)) PetscFunctionReturn(PETSC_SUCCESS); /* it has vanished */
+  PetscCall(
+      SeriesFileAppend(part, history->n_series, history->series, history->written, history->n_records, history->width, history->records));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
-  HistoryFlush - adds what was recorded since the last time to the file
+  HistoryFlush - adds what was recorded since the last time to the file, and writes it again where somebody has taken it away
 
   Not Collective
 
@@ -154,11 +157,15 @@ PetscErrorCode HistoryFlush(History history)
   HDF5Silence    silence;
 
   PetscFunctionBegin;
-  if (!history->writes || !history->n_records) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!history->writes) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!history->n_records) {
+    PetscCall(OutputFileRestore(history->held, history->path));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscTime(&begin));
   HDF5SilenceBegin(&silence);
-  error = WritePart(history);
-  if (error) (void)remove(history->part);
+  error           = OutputFileWrite(history->path, WritePart, history, &history->held);
+  history->failed = (PetscBool)(error != PETSC_SUCCESS);
   PetscCall(error);
   HDF5SilenceEnd(&silence);
   history->written += history->n_records;
@@ -242,12 +249,12 @@ PetscErrorCode HistoryGetPath(History history, const char *path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* HistoryDestroy - writes what is left and frees a history */
+/* HistoryDestroy - writes what is left, unless writing has failed before, and frees a history */
 PetscErrorCode HistoryDestroy(History *history)
 {
   PetscFunctionBegin;
   if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(HistoryFlush(*history));
+  if (!(*history)->failed) PetscCall(HistoryFlush(*history));
   PetscCall(PetscFree((*history)->options));
   PetscCall(PetscFree((*history)->dims));
   PetscCall(PetscFree((*history)->series));

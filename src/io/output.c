@@ -281,6 +281,8 @@ PetscErrorCode OutputViewFromOptions(Output output, PetscObject object, const ch
 @*/
 PetscErrorCode OutputDestroy(Output *output)
 {
+  PetscErrorCode errors[2];
+
   PetscFunctionBegin;
   if (!*output) PetscFunctionReturn(PETSC_SUCCESS);
   PetscValidHeaderSpecific(*output, OUTPUT_CLASSID, 1);
@@ -289,11 +291,13 @@ PetscErrorCode OutputDestroy(Output *output)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(StatisticsDestroy(&(*output)->statistics));
-  PetscCall(HistoryDestroy(&(*output)->history));
-  PetscCall(FieldsDestroy(&(*output)->fields));
+  errors[0] = HistoryDestroy(&(*output)->history);
+  errors[1] = FieldsDestroy(&(*output)->fields);
   PetscCall(ExactDestroy(&(*output)->exact));
   PetscCall(DeviationDestroy(&(*output)->deviation));
-  PetscCall(OutputLocksRelease(&(*output)->locks));
+  PetscCall(OutputLocksRelease(&(*output)->locks)); /* even where the files cannot be written, so that no lock is left beside them */
+  PetscCall(errors[0]);
+  PetscCall(errors[1]);
   PetscCall(PetscHeaderDestroy(output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #define COPY_BYTES ((size_t)1 << 20) /* copied at a time */
+#define MOST_TRIES 3                 /* to write a file that somebody takes away while it is written */
 
 /* Makes the directories that `path` needs; returns errno, or 0 */
 static int MakeParents(const char path[])
@@ -47,7 +48,7 @@ static int TryToWrite(const char path[], const char part[])
 /*
   OutputFileGetPart - the name under which a file is written until it is whole
 
-  Not Collective
+  Not Collective; one rank calls it, since it follows symbolic links on the disk
 
   Input Parameters:
 + path - where the file will be
@@ -91,31 +92,14 @@ PetscErrorCode OutputFileCheck(MPI_Comm comm, const char option[], const char pa
 
   PetscFunctionBegin;
   PetscCheck(path[0], comm, PETSC_ERR_USER_INPUT, "%s needs the path of the file to write", option);
-  PetscCall(OutputFileGetPart(path, sizeof(part), part));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) error = TryToWrite(path, part);
+  if (!rank) {
+    PetscCall(OutputFileGetPart(path, sizeof(part), part));
+    error = TryToWrite(path, part);
+  }
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
   PetscCheck(!error, comm, PETSC_ERR_FILE_WRITE,
              "%s %s cannot be written: %s; give the path of a file in a directory that you may write to", option, path, strerror(error));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*
-  OutputFileReplace - puts a whole file in its place, in one step
-
-  Not Collective
-
-  Input Parameters:
-+ part - the file, whole
-- path - its final name; a file with that name is replaced
-*/
-PetscErrorCode OutputFileReplace(const char part[], const char path[])
-{
-  char resolved[PETSC_MAX_PATH_LEN];
-
-  PetscFunctionBegin;
-  PetscCall(OutputPathResolve(path, sizeof(resolved), resolved)); /* else a link would be replaced by the file */
-  PetscCheck(!rename(part, resolved), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be renamed to %s: %s", part, path, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -151,28 +135,7 @@ PetscErrorCode OutputFileMakeParents(const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileHold - keeps the contents of a file at hand, even if somebody moves or deletes it
-
-  Not Collective
-
-  Input Parameters:
-+ path - the file, whole
-- held - what was held before, or -1
-
-  Output Parameter:
-. held - an open file
-*/
-PetscErrorCode OutputFileHold(const char path[], int *held)
-{
-  PetscFunctionBegin;
-  PetscCall(OutputFileRelease(held));
-  *held = open(path, O_RDONLY | O_CLOEXEC);
-  PetscCheck(*held >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s, just written by this run, cannot be read: %s", path, strerror(errno));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* OutputFileRelease - ends OutputFileHold(); -1: nothing is held */
+/* OutputFileRelease - ends what OutputFilePlace() began; -1: nothing is held */
 PetscErrorCode OutputFileRelease(int *held)
 {
   PetscFunctionBegin;
@@ -187,8 +150,8 @@ PetscErrorCode OutputFileRelease(int *held)
   Not Collective
 
   Input Parameters:
-+ held - from OutputFileHold()
-- part - the copy, replaced if it exists; its folder is made where it is missing
++ held - from OutputFilePlace()
+- part - the copy, replaced if it exists
 */
 PetscErrorCode OutputFileCopy(int held, const char part[])
 {
@@ -196,7 +159,6 @@ PetscErrorCode OutputFileCopy(int held, const char part[])
   int   to, error;
 
   PetscFunctionBegin;
-  PetscCall(OutputFileMakeParents(part));
   PetscCall(PetscMalloc1(COPY_BYTES, &buffer));
   to    = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   error = to < 0 || lseek(held, 0, SEEK_SET) < 0 ? errno : CopyBytes(held, to, COPY_BYTES, buffer);
@@ -207,24 +169,110 @@ PetscErrorCode OutputFileCopy(int held, const char part[])
 }
 
 /*
+  OutputFilePlace - puts a whole file in its place, in one step, and keeps its contents at hand even if somebody moves or deletes it then
+
+  Not Collective
+
+  Input Parameters:
++ part - the file, whole
+. path - its final name; a file with that name is replaced
+- held - what was held before, or -1; `NULL`: nothing is to be held
+
+  Output Parameters:
++ held   - the file, open
+- placed - whether it is there: not if somebody has taken `part` away
+
+  Note:
+  End with OutputFileRelease().
+*/
+PetscErrorCode OutputFilePlace(const char part[], const char path[], int *held, PetscBool *placed)
+{
+  char resolved[PETSC_MAX_PATH_LEN];
+  int  file;
+
+  PetscFunctionBegin;
+  *placed = PETSC_FALSE;
+  PetscCall(OutputPathResolve(path, sizeof(resolved), resolved)); /* else a link would be replaced by the file */
+  file = open(part, O_RDONLY | O_CLOEXEC);
+  if (file < 0 && errno == ENOENT) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s, just written by this run, cannot be read: %s", part, strerror(errno));
+  if (rename(part, resolved)) {
+    const int error = errno;
+
+    close(file);
+    if (error == ENOENT) PetscFunctionReturn(PETSC_SUCCESS);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be renamed to %s: %s", part, path, strerror(error));
+  }
+  *placed = PETSC_TRUE;
+  if (held) {
+    PetscCall(OutputFileRelease(held));
+    *held = file;
+  } else close(file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileWrite - writes a whole file, and puts it in its place; again where somebody takes it or its folder away meanwhile
+
+  Not Collective
+
+  Input Parameters:
++ path  - where the file will be; its folder is made where it is missing
+. write - writes the file under the name that it is given
+. ctx   - for `write`
+- held  - what was held before, or -1; `NULL`: nothing is to be held
+
+  Output Parameter:
+. held - the file, see OutputFilePlace()
+
+  Note:
+  A `write` that finds that its file has vanished may return before it is done.
+*/
+PetscErrorCode OutputFileWrite(const char path[], OutputWriteFn *write, void *ctx, int *held)
+{
+  char      part[PETSC_MAX_PATH_LEN];
+  PetscBool placed = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (int i = 0; i < MOST_TRIES && !placed; i++) {
+    PetscErrorCode error;
+
+    PetscCall(OutputFileGetPart(path, sizeof(part), part));
+    PetscCall(OutputFileMakeParents(part));
+    error = (*write)(part, ctx);
+    if (error) remove(part);
+    PetscCall(error);
+    PetscCall(OutputFilePlace(part, path, held, &placed));
+  }
+  PetscCheck(placed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: somebody takes it away, or its folder, time and again",
+             path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A file that is held, see OutputFileWrite() */
+static PetscErrorCode WriteCopy(const char part[], void *ctx)
+{
+  PetscFunctionBegin;
+  PetscCall(OutputFileCopy(*(int *)ctx, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
   OutputFileRestore - writes a file again if it is not any more where it was put
 
   Not Collective
 
   Input Parameters:
-+ held - from OutputFileHold(), whole
++ held - from OutputFilePlace(), whole
 - path - where the file belongs
 */
 PetscErrorCode OutputFileRestore(int held, const char path[])
 {
-  char        part[PETSC_MAX_PATH_LEN];
   struct stat own, there;
 
   PetscFunctionBegin;
   if (held < 0 || fstat(held, &own)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!stat(path, &there) && there.st_ino == own.st_ino && there.st_dev == own.st_dev) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OutputFileGetPart(path, sizeof(part), part));
-  PetscCall(OutputFileCopy(held, part));
-  PetscCall(OutputFileReplace(part, path));
+  PetscCall(OutputFileWrite(path, WriteCopy, &held, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

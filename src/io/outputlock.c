@@ -3,6 +3,7 @@
    Beside an output lies <path>.lock, locked in the kernel, so that the lock ends with the process however that ends. */
 #define _DEFAULT_SOURCE /* flock() */
 #include "outputlock.h"
+#include "outputfile.h"
 #include "outputpaths.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -76,6 +77,7 @@ PetscErrorCode OutputLocksTake(MPI_Comm comm, OutputLocks *locks, const char opt
   if (!rank) {
     int file;
 
+    PetscCall(OutputFileMakeParents(path)); /* which may be gone since they were checked */
     PetscCall(OutputPathResolve(path, sizeof(resolved), resolved));
     PetscCall(PetscSNPrintf(locks->path[locks->n], sizeof(locks->path[0]), "%s.lock", resolved));
     error = LockFile(locks->path[locks->n], &file);

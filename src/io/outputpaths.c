@@ -21,7 +21,7 @@ static size_t FolderLength(const char path[])
 /*
   OutputPathResolve - the path of the file itself where a path is a symbolic link: what is written goes through the link
 
-  Not Collective
+  Not Collective; one rank calls it, so that not all of them ask the file system
 
   Input Parameters:
 + path - as given

@@ -291,6 +291,15 @@ static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Writes the object, see OutputFileWrite() */
+static PetscErrorCode WriteObject(const char part[], void *ctx)
+{
+  PetscFunctionBegin;
+  PetscCheck(!json_dump_file((json_t *)ctx, part, JSON_INDENT(2) | JSON_REAL_PRECISION(17)), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "The summary %s cannot be written; is the disk full?", part);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   SummaryWrite - writes the summary of a run
 
@@ -305,13 +314,12 @@ static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact con
 */
 PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const Verdict *verdict, const char path[])
 {
-  char        part[PETSC_MAX_PATH_LEN];
-  json_t     *root;
-  Contact     contact;
-  const Body *bodies;
-  PetscInt    n;
-  PetscMPIInt rank;
-  int         failed;
+  PetscErrorCode error;
+  json_t        *root;
+  Contact        contact;
+  const Body    *bodies;
+  PetscInt       n;
+  PetscMPIInt    rank;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)controller), &rank));
@@ -328,12 +336,8 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   if (exact) PetscCall(AddErrors(root, exact));
   PetscCall(AddWarnings(root, verdict));
   PetscCall(AddTiming(root, controller, contact, n, bodies));
-  PetscCall(OutputFileGetPart(path, sizeof(part), part));
-  PetscCall(OutputFileMakeParents(part));
-  failed = json_dump_file(root, part, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+  error = OutputFileWrite(path, WriteObject, root, NULL);
   json_decref(root);
-  if (failed) (void)remove(part);
-  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "The summary %s cannot be written; is the disk full?", path);
-  PetscCall(OutputFileReplace(part, path));
+  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -118,6 +118,36 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What a file lists, see XdmfWrite() */
+typedef struct {
+  const char       *file; /* name of the HDF5 file */
+  const FieldsMesh *mesh;
+  PetscInt          n_fields, n_frames;
+  OutputPrecision   precision;
+  const PetscReal  *times;
+} List;
+
+/* See OutputFileWrite() */
+static PetscErrorCode WriteList(const char part[], void *ctx)
+{
+  List *list = (List *)ctx;
+  FILE *out;
+  int   failed;
+
+  PetscFunctionBegin;
+  out = fopen(part, "w");
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
+  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" "
+               "CollectionType=\"Temporal\">\n");
+  for (PetscInt k = 0; k < list->n_frames; k++)
+    PetscCall(WriteFrame(out, list->mesh, list->n_fields, list->precision, k, list->times[k], list->file));
+  fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
+  failed = ferror(out);
+  failed = fclose(out) || failed;
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", part);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   XdmfWrite - writes the XDMF file of an HDF5 file of fields, replacing what is there as a whole
 
@@ -134,24 +164,11 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
 PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, OutputPrecision precision, PetscInt n_frames,
                          const PetscReal times[])
 {
-  char  path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
-  FILE *out;
-  int   failed;
+  List list = {FileName(fields), mesh, n_fields, n_frames, precision, times};
+  char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
   PetscCall(XdmfGetPath(fields, sizeof(path), path));
-  PetscCall(OutputFileGetPart(path, sizeof(part), part));
-  PetscCall(OutputFileMakeParents(part));
-  out = fopen(part, "w");
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
-  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" "
-               "CollectionType=\"Temporal\">\n");
-  for (PetscInt k = 0; k < n_frames; k++) PetscCall(WriteFrame(out, mesh, n_fields, precision, k, times[k], FileName(fields)));
-  fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
-  failed = ferror(out);
-  failed = fclose(out) || failed;
-  if (failed) (void)remove(part);
-  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", path);
-  PetscCall(OutputFileReplace(part, path));
+  PetscCall(OutputFileWrite(path, WriteList, &list, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

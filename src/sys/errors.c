@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include "errors.h"
 #include "optionvalues.h"
+#include "statusline.h"
 
 /* Errors whose message says all that the user can do about them: those too that PETSc has with the words of an option */
 static PetscBool IsUsersBusiness(const char *function, PetscErrorCode code)
@@ -33,6 +34,7 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
 
   (void)ctx;
   if (type != PETSC_ERROR_INITIAL) return code;
+  StatusLineEnd();
   if (function && message && OptionsExplain(function, message, text, sizeof(text), &explained)) explained = PETSC_FALSE;
   if (explained) { /* all ranks read the same options */
     message = text;

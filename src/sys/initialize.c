@@ -1,5 +1,6 @@
 /* Start and end of the library: the packages of its classes. */
 #include <impakt.h>
+#include <hdf5.h>
 #include "errors.h"
 #include "petsccompat.h"
 
@@ -84,6 +85,7 @@ PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
   PetscCall(PetscInitialized(&running));
   if (!running) {
     PetscCall(PetscPushErrorHandler(ImpaktReportError, NULL)); /* first, for what is wrong with the options file */
+    (void)H5dont_atexit(); /* at exit HDF5 would try to finish a file that a full disk has left unfinished, and crash */
     PetscCall(PetscInitialize(argc, argv, NULL, help));
     began = PETSC_TRUE;
   }

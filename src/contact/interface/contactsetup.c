@@ -1,6 +1,7 @@
 /* Set-up, and what contact tells of itself. */
 #include <impakt/private/contactimpl.h>
 #include <sys/citations.h>
+#include <sys/statusline.h>
 
 /* Arrays with an entry for each body; traces have one more, for all obstacles */
 static PetscErrorCode AllocateBodies(Contact contact)
@@ -89,8 +90,12 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactOrderBodies(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    StatusLineTell("elements of body %s", ((PetscObject)contact->bodies[b])->name);
+    PetscCall(BodySetUpDiscretization(contact->bodies[b]));
+  }
   PetscCall(ContactFindDimension(contact));
+  StatusLineTell("contact surfaces");
   PetscCall(ContactSetUpRows(contact));
   contact->surfaces_known = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -120,9 +125,11 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpScales(contact));
   PetscCall(ShareControllerStep(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    StatusLineTell("matrices of body %s", ((PetscObject)contact->bodies[b])->name);
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
+  StatusLineTell("contact method");
   PetscCall(ContactSetUpFloating(contact));
   PetscCall(ContactSetUpObstacleTraces(contact));
   PetscCall(ContactSetUpResultants(contact));
@@ -131,6 +138,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
   if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";
   contact->setup = PETSC_TRUE;
+  StatusLineTell("first state");
   PetscCall(ContactCheckInitialGap(contact));
   PetscCall(ContactViewFromOptions(contact, NULL, "-contact_view"));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

@@ -1,0 +1,75 @@
+"""A disk that is full, or a file that becomes larger than the shell allows: an error in words, and what was written before can be read."""
+
+import resource
+import subprocess
+import time
+from functools import partial
+
+import h5py
+import numpy as np
+import pytest
+from conftest import IMPAKT, MPIEXEC, ROOT, run_command
+from messages import check_message
+
+RUN = [IMPAKT, "-options_file", ROOT / "options/bars-high-speed.opts"]
+OUTPUTS = {"history": ("h.h5", 20, 300), "fields": ("f.h5", 100, 3000), "summary": ("s.json", 1, 2)}  # kB
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_size_limit(output, tmp_path):
+    """Whatever part of the file has been written, HDF5 is not asked to finish it: that crashed at exit."""
+    name, *sizes = OUTPUTS[output]
+    for size in sizes:
+        limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (1024 * size, 1024 * size))
+        run = run_command([*RUN, f"-output_{output}", name], 1, 60, cwd=tmp_path, preexec_fn=limit)
+        assert run.returncode == 67, run.stderr  # PETSC_ERR_FILE_WRITE
+        check_message(run, [name, "disk full"])
+        left = {path.name for path in tmp_path.iterdir()}
+        assert not left & {f"{name}.part", f"{name}.lock"}  # what is not whole has gone, and the lock too
+        assert (name in left) == (output == "history" and size > 100)
+        if name in left:
+            with h5py.File(tmp_path / name) as history:
+                assert len(history["time"]) == 1  # the version before the one that had no room
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of 2 MB, where this machine lets us have one."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", disk], check=False, capture_output=True).returncode:
+        pytest.skip("file systems can be mounted by root alone")
+    yield disk
+    subprocess.run(["umount", disk], check=True)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_disk_that_fills_up(ranks, small_disk, tmp_path, take_cores):
+    """Frames before the one that had no room are whole, and the XDMF file lists them."""
+    take_cores(ranks)
+    path = small_disk / "f.h5"
+    command = [*(MPIEXEC + ["-n", "2"] if ranks > 1 else []), *RUN, "-output_fields", path, "-output_history", "h.h5", "-time_step", "4e-8", "-output_fields_interval", "600"]
+    process = subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while not (small_disk / "f.xdmf").exists():
+        assert process.poll() is None
+        time.sleep(0.005)
+    with open(small_disk / "other", "wb", buffering=0) as other, pytest.raises(OSError, match="No space"):
+        while True:
+            other.write(bytes(4096))
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 67, stderr
+    errors = [line for line in stderr.splitlines() if line.startswith("impakt: error")]
+    assert "/displacement/00" in errors[0]
+    assert "disk full" in errors[0]
+    assert "SEGV" not in stderr
+    with h5py.File(path) as fields, h5py.File(tmp_path / "h.h5") as history:
+        frames = np.flatnonzero(~np.isnan(fields["time"]))
+        assert len(frames) > 0
+        assert list(frames) == list(range(len(frames)))
+        if ranks == 1:  # with more, MPI ends all of them before the history has its last records
+            assert len(errors) == 1
+            assert set(fields["time"][frames]) <= set(history["time"])
+        speed = [np.abs(fields[f"velocity/{frame:04d}"]).max() for frame in frames]
+        assert min(speed) > 90  # of bars that fly at 100 m/s, and would be 0 in a hole
+    assert (small_disk / "f.xdmf").read_text().count("<Time ") <= len(frames)
+    assert not list(small_disk.glob("*.part"))
