@@ -47,17 +47,19 @@ static PetscErrorCode AddSeries(History history, const char group[], const char 
 /* The series of a run, in the order in which HistoryMonitor() fills a record */
 static PetscErrorCode AddAllSeries(History history, Controller controller)
 {
-  const Body *bodies;
-  const char *name;
-  Contact     contact;
-  PetscInt    n_pairs;
+  const Body              *bodies;
+  const char              *name;
+  Contact                  contact;
+  PetscInt                 n_pairs, n_supports;
+  const ControllerSupport *supports;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, &history->n_bodies, &bodies));
+  PetscCall(ControllerGetSupports(controller, &n_supports, &supports));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
   PetscCall(PetscMalloc1(history->n_bodies, &history->dims));
-  PetscCall(PetscCalloc1(2 + 7 * n_pairs + 8 * history->n_bodies, &history->series));
+  PetscCall(PetscCalloc1(2 + 7 * n_pairs + 8 * history->n_bodies + 2 * n_supports, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -83,6 +85,17 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(AddSeries(history, "/body/", name, "external_work", "J", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/body/", name, "momentum", "kg m/s", *dim, PETSC_FALSE));
     if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_momentum", "kg m^2/s", 3, PETSC_FALSE));
+  }
+  for (PetscInt i = 0; i < n_supports; i++) {
+    const ControllerSupport *support = &supports[i];
+    char                     group[128];
+
+    if (support->body >= 0) {
+      PetscCall(PetscObjectGetName((PetscObject)bodies[support->body], &name));
+      PetscCall(PetscSNPrintf(group, sizeof(group), "/body/%s/reaction/", name));
+    } else PetscCall(PetscSNPrintf(group, sizeof(group), "/obstacle/"));
+    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "force" : "reaction/force", "N", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "moment" : "reaction/moment", "N m", 3, PETSC_FALSE));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -204,6 +217,10 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], Pets
     *next++ = frame->bodies[i].external_work;
     for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
     for (PetscInt d = 0; d < 3 && dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
+  }
+  for (PetscInt i = 0; i < frame->n_supports; i++) {
+    for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
+    for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].moment[d];
   }
 }
 

@@ -159,3 +159,23 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodyMeasuresGetBalance - the energy that only contact and errors of the integrator change
+
+  Not Collective
+
+  Input Parameter:
+. measures - of a body, by `BodyGetMeasures()`
+
+  Level: intermediate
+
+  Note:
+  Kinetic and potential energy less the work of loads and of held displacements [J].
+
+.seealso: `Body`, `BodyMeasures`, `BodyGetMeasures()`
+@*/
+PetscReal BodyMeasuresGetBalance(const BodyMeasures *measures)
+{
+  return measures->kinetic + measures->potential - measures->external_work;
+}

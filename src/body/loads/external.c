@@ -52,13 +52,15 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* To be called when the initial state is there */
+/* To be called when the initial state is there. A static body need not be in balance there: its loads grow in the first step from what
+   would hold it as it is to what they are at the end, however suddenly they come. */
 PetscErrorCode BodySetUpWork(Body body)
 {
   PetscFunctionBegin;
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
   body->state.external_work = body->saved.external_work = 0;
-  PetscCall(ComputeApplied(body, body->state.applied));
+  if (body->integrator->has_inertia) PetscCall(ComputeApplied(body, body->state.applied));
+  else PetscCall(VecCopy(body->state.internal_force, body->state.applied));
   PetscCall(VecCopy(body->state.applied, body->saved.applied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -285,7 +285,7 @@ PetscErrorCode BodyMoveLayer(Body body, const PetscScalar force[], PetscReal *ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reactions of held dofs do no work against contact forces, which come from the partner */
+/* Reactions of held dofs do no work against contact forces, which come from the partner; nor does what holds a static body as it is */
 static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[])
 {
   Vec                on_nodes = body->work.nodes[0];
@@ -293,11 +293,15 @@ static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[]
   PetscScalar       *row, *applied;
 
   PetscFunctionBegin;
-  if (!body->loads || !body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->loads || (body->integrator->has_inertia && !body->held.any)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   PetscCall(PetscArraycpy(row, force, body->rows.local));
   PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
   PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], on_nodes));
+  if (!body->integrator->has_inertia) {
+    PetscCall(VecAXPY(body->state.applied, -1, on_nodes));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecGetArrayRead(on_nodes, &contact));
   PetscCall(VecGetArray(body->state.applied, &applied));
   for (PetscInt i = 0; i < body->held.n; i++) applied[body->held.dofs[i]] -= contact[body->held.dofs[i]];
