@@ -31,6 +31,21 @@ typedef struct {
 } ControllerSupport;
 
 /*S
+   ControllerProbe - what a point of a body that is observed does at the end of an accepted controller step
+
+   Level: intermediate
+
+.seealso: `ControllerFrame`, `BodyAddProbe()`, `BodyGetProbes()`
+S*/
+typedef struct {
+  PetscInt  body, number;    /* of the body, and of the point among the body's, from 0 */
+  PetscReal position[3];     /* where it is now; zeros beyond the space dimension [m] */
+  PetscReal displacement[3]; /* m */
+  PetscReal velocity[3];     /* m/s */
+  PetscReal stress[6];       /* Cauchy stress xx, yy, zz, xy, yz, xz of the elements that have it [Pa] */
+} ControllerProbe;
+
+/*S
    ControllerFrame - the state of everything at the end of an accepted controller step, as observers see it
 
    Level: intermediate
@@ -54,6 +69,8 @@ typedef struct {
   PetscInt                 step_cuts;          /* how often a step had to be cut in halves in this controller step */
   PetscInt                 n_supports;
   const ControllerSupport *supports; /* held surfaces body by body, then obstacles */
+  PetscInt                 n_probes;
+  const ControllerProbe   *probes; /* body by body */
 } ControllerFrame;
 
 /*S
@@ -94,6 +111,7 @@ PETSC_EXTERN PetscErrorCode ControllerViewFromOptions(Controller, PetscObject, c
 PETSC_EXTERN PetscErrorCode ControllerDestroy(Controller *);
 PETSC_EXTERN PetscErrorCode ControllerGetBodies(Controller, PetscInt *, const Body *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetContact(Controller, Contact *);
+PETSC_EXTERN PetscErrorCode ControllerGetProbes(Controller, PetscInt *, const ControllerProbe *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetSupports(Controller, PetscInt *, const ControllerSupport *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetTimes(Controller, PetscReal *, PetscReal *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerGetTimings(Controller, PetscLogDouble *, PetscLogDouble *, PetscLogDouble *);

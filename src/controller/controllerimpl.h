@@ -42,7 +42,10 @@ struct _p_Controller {
   ContactPairState  *pair_states;
   PetscInt           n_supports;
   ControllerSupport *supports;
-  PetscReal         *reactions; /* work space: forces and moments of the held surfaces of one body */
+  PetscInt           n_probes;
+  ControllerProbe   *probes;
+  PetscReal         *probe_values; /* work space: what the points of one body do */
+  PetscReal         *reactions;    /* work space: forces and moments of the held surfaces of one body */
   /* energy guard */
   struct {
     PetscReal  part;    /* of the energy, that a run may gain; 0: no guard */
@@ -60,6 +63,8 @@ struct _p_Controller {
 PETSC_INTERN PetscErrorCode ControllerReadEnergyGuard(Controller);
 PETSC_INTERN PetscErrorCode ControllerGuardEnergy(Controller, const ControllerFrame *);
 PETSC_INTERN PetscErrorCode ControllerNotify(Controller, PetscInt);
+PETSC_INTERN PetscErrorCode ControllerSetUpProbes(Controller);
+PETSC_INTERN PetscErrorCode ControllerFindProbes(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpSupports(Controller);
 PETSC_INTERN PetscErrorCode ControllerFindReactions(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);

@@ -162,6 +162,7 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
     body->kinetic        = measures->kinetic;
     body->potential      = measures->potential;
     body->external_work  = measures->external_work;
+    body->damping_work   = measures->damping_work;
     body->peak_potential = PetscMax(body->peak_potential, measures->potential);
     NoteChange(s->body_change + 2 * i, energy - start);
     body->energy_error_min = Relative(s->body_change[2 * i], Scale(start, scale));

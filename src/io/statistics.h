@@ -27,6 +27,7 @@ typedef struct {
   PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
   PetscReal displacement_error;                 /* at the end, relative L2, against an exact displacement; not-a-number without one */
   PetscReal external_work;                      /* at the end, by loads [J] */
+  PetscReal damping_work;                       /* at the end, taken by Rayleigh damping [J] */
   PetscReal rotation_max;                       /* largest mean rotation of a linear body, 0 for others [rad] */
   PetscReal energy_error_min,
       energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */

@@ -63,6 +63,7 @@ SUMMARY = {
             "potential": float,
             "peak_potential": float,
             "external_work": float,
+            "damping_work": float,
             "rotation_max": float,
             "total_energy_error_min": float,
             "total_energy_error_max": float,
