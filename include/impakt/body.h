@@ -47,12 +47,13 @@ typedef struct {
   PetscReal kinetic;             /* J; staggered, for central differences */
   PetscReal potential;           /* J */
   PetscReal external_work;       /* done since the start by forces from outside and by held displacements, J */
+  PetscReal damping_work;        /* taken since the start by Rayleigh damping, J */
   PetscReal momentum[3];         /* kg m/s */
   PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
   PetscReal mean_velocity[3];    /* mass-averaged, m/s */
   PetscReal rotation[3]; /* mean rotation of a linear body since its undeformed state, about each axis, as long as it is small: zero for
                             bodies that are nonlinear, whose rotation is not limited [rad] */
-  PetscBool loaded;      /* whether forces from outside, held displacements or obstacles act at all */
+  PetscBool loaded;      /* whether forces from outside, held displacements, obstacles or damping by the mass act at all */
 } BodyMeasures;
 
 /*E
@@ -128,6 +129,11 @@ PETSC_EXTERN PetscErrorCode BodyGetMassRedistributeNear(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetForceOnMass(Body, const PetscReal[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetMassMoments(Body, BodyMassMoments);
 PETSC_EXTERN PetscErrorCode BodyGetMassMoments(Body, BodyMassMoments *);
+PETSC_EXTERN PetscErrorCode BodyAddProbe(Body, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetNumProbes(Body, PetscInt *);
+PETSC_EXTERN PetscErrorCode BodyGetProbes(Body, PetscReal[], PetscReal[], PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodySetDamping(Body, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode BodyGetDamping(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetArtificialStiffness(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodyGetArtificialStiffness(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetMassRedistribution(Body, PetscReal *, PetscReal *, PetscReal[], PetscReal *);
@@ -143,6 +149,10 @@ PETSC_EXTERN PetscErrorCode BodyPrescribesMass(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyRequestsControllerStep(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIntegratesLike(Body, Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetMeasures(Body, BodyMeasures *);
+PETSC_EXTERN PetscReal      BodyMeasuresGetBalance(const BodyMeasures *);
+PETSC_EXTERN PetscErrorCode BodyGetNumReactions(Body, PetscInt *);
+PETSC_EXTERN PetscErrorCode BodyGetReactionSurface(Body, PetscInt, const char *[]);
+PETSC_EXTERN PetscErrorCode BodyGetReactions(Body, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);

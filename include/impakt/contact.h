@@ -203,7 +203,7 @@ typedef struct {
   PetscReal force;   /* resultant of the normal contact forces, compression positive [N] */
   PetscReal gap;     /* smallest normal gap [m] */
   PetscInt  active;  /* nodes in contact */
-  PetscReal tension; /* largest tensile force of an active node, 0 if there is none [N] */
+  PetscReal tension; /* largest tensile force of a node along its normal, of ties too; 0 if there is none [N] */
   PetscReal area;    /* of the active nodes; of bars, the cross-section of the first body [m^2] */
   /* on the second body; on the first act their opposites; zeros beyond the space dimension */
   PetscReal force_vector[3]; /* resultant [N] */
@@ -256,6 +256,9 @@ PETSC_EXTERN PetscErrorCode ContactRegisterAll(void);
 PETSC_EXTERN PetscErrorCode ContactCreate(MPI_Comm, Contact *);
 PETSC_EXTERN PetscErrorCode ContactSetBodies(Contact, PetscInt, const Body[]);
 PETSC_EXTERN PetscErrorCode ContactAddObstacle(Contact, Obstacle);
+PETSC_EXTERN PetscErrorCode ContactGetNumObstacles(Contact, PetscInt *);
+PETSC_EXTERN PetscErrorCode ContactGetObstacle(Contact, PetscInt, Obstacle *);
+PETSC_EXTERN PetscErrorCode ContactGetPairObstacle(Contact, PetscInt, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
 PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);

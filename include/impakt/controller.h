@@ -14,6 +14,38 @@ typedef struct _p_Controller *Controller;
 PETSC_EXTERN PetscClassId CONTROLLER_CLASSID;
 
 /*S
+   ControllerSupport - what holds the bodies at a surface with prescribed displacements, or at an obstacle
+
+   Level: intermediate
+
+   Note:
+   Forces are those on the bodies, at the end of an accepted controller step.
+
+.seealso: `ControllerFrame`, `BodyGetReactions()`
+S*/
+typedef struct {
+  PetscInt    body;      /* number of the body; -1: an obstacle */
+  const char *name;      /* of the surface, or of the obstacle */
+  PetscReal   force[3];  /* zeros beyond the space dimension [N] */
+  PetscReal   moment[3]; /* about the origin, where the nodes are now [N m] */
+} ControllerSupport;
+
+/*S
+   ControllerProbe - what a point of a body that is observed does at the end of an accepted controller step
+
+   Level: intermediate
+
+.seealso: `ControllerFrame`, `BodyAddProbe()`, `BodyGetProbes()`
+S*/
+typedef struct {
+  PetscInt  body, number;    /* of the body, and of the point among the body's, from 0 */
+  PetscReal position[3];     /* where it is now; zeros beyond the space dimension [m] */
+  PetscReal displacement[3]; /* m */
+  PetscReal velocity[3];     /* m/s */
+  PetscReal stress[6];       /* Cauchy stress xx, yy, zz, xy, yz, xz of the elements that have it [Pa] */
+} ControllerProbe;
+
+/*S
    ControllerFrame - the state of everything at the end of an accepted controller step, as observers see it
 
    Level: intermediate
@@ -24,17 +56,21 @@ PETSC_EXTERN PetscClassId CONTROLLER_CLASSID;
 .seealso: `ControllerMonitorSet()`
 S*/
 typedef struct {
-  PetscInt                step;  /* 0: the initial state */
-  PetscInt                steps; /* of the whole run */
-  PetscReal               time;  /* s */
-  PetscInt                n_bodies, n_pairs;
-  const BodyMeasures     *bodies;             /* per body */
-  const PetscReal        *contact_positions;  /* per body: mean position of its contact nodes, 3 numbers [m] */
-  const PetscReal        *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
-  const ContactPairState *pairs;              /* per pair */
-  PetscInt                sweeps;             /* of this step, or of that part of it which took most */
-  PetscReal               penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
-  PetscInt                step_cuts;          /* how often a step had to be cut in halves in this controller step */
+  PetscInt                 step;  /* 0: the initial state */
+  PetscInt                 steps; /* of the whole run */
+  PetscReal                time;  /* s */
+  PetscInt                 n_bodies, n_pairs;
+  const BodyMeasures      *bodies;             /* per body */
+  const PetscReal         *contact_positions;  /* per body: mean position of its contact nodes, 3 numbers [m] */
+  const PetscReal         *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
+  const ContactPairState  *pairs;              /* per pair */
+  PetscInt                 sweeps;             /* of this step, or of that part of it which took most */
+  PetscReal                penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
+  PetscInt                 step_cuts;          /* how often a step had to be cut in halves in this controller step */
+  PetscInt                 n_supports;
+  const ControllerSupport *supports; /* held surfaces body by body, then obstacles */
+  PetscInt                 n_probes;
+  const ControllerProbe   *probes; /* body by body */
 } ControllerFrame;
 
 /*S
@@ -75,5 +111,7 @@ PETSC_EXTERN PetscErrorCode ControllerViewFromOptions(Controller, PetscObject, c
 PETSC_EXTERN PetscErrorCode ControllerDestroy(Controller *);
 PETSC_EXTERN PetscErrorCode ControllerGetBodies(Controller, PetscInt *, const Body *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetContact(Controller, Contact *);
+PETSC_EXTERN PetscErrorCode ControllerGetProbes(Controller, PetscInt *, const ControllerProbe *[]);
+PETSC_EXTERN PetscErrorCode ControllerGetSupports(Controller, PetscInt *, const ControllerSupport *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetTimes(Controller, PetscReal *, PetscReal *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerGetTimings(Controller, PetscLogDouble *, PetscLogDouble *, PetscLogDouble *);

@@ -74,6 +74,8 @@ PetscErrorCode ControllerSetUp(Controller controller)
     for (PetscInt b = 0; b < n && !second; b++)
       if (controller->bodies[b] == first) controller->has_obstacle[b] = PETSC_TRUE;
   }
+  PetscCall(ControllerSetUpSupports(controller));
+  PetscCall(ControllerSetUpProbes(controller));
   PetscCall(PetscTime(&end));
   controller->setup_seconds += end - begin;
   controller->setup = PETSC_TRUE;
@@ -211,6 +213,8 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   for (PetscInt b = 0; b < c->n_bodies; b++) PetscCall(BodyDestroy(&c->bodies[b]));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree2(c->guard.start, c->energies));
+  PetscCall(PetscFree2(c->supports, c->reactions));
+  PetscCall(PetscFree2(c->probes, c->probe_values));
   PetscCall(PetscFree5(c->measures, c->has_obstacle, c->contact_positions, c->contact_velocities, c->pair_states));
   PetscCall(PetscHeaderDestroy(controller));
   PetscFunctionReturn(PETSC_SUCCESS);

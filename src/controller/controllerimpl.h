@@ -35,11 +35,17 @@ struct _p_Controller {
   void                *monitor_ctx[MAX_MONITORS];
   PetscErrorCode (*monitor_destroy[MAX_MONITORS])(void **);
   /* what they are shown, see ControllerFrame */
-  BodyMeasures     *measures;
-  PetscReal        *energies;     /* per body: what contact alone is to change [J] */
-  PetscBool        *has_obstacle; /* per body: it may touch an obstacle, whose force is one from outside */
-  PetscReal        *contact_positions, *contact_velocities;
-  ContactPairState *pair_states;
+  BodyMeasures      *measures;
+  PetscReal         *energies;     /* per body: what contact alone is to change [J] */
+  PetscBool         *has_obstacle; /* per body: it may touch an obstacle, whose force is one from outside */
+  PetscReal         *contact_positions, *contact_velocities;
+  ContactPairState  *pair_states;
+  PetscInt           n_supports;
+  ControllerSupport *supports;
+  PetscInt           n_probes;
+  ControllerProbe   *probes;
+  PetscReal         *probe_values; /* work space: what the points of one body do */
+  PetscReal         *reactions;    /* work space: forces and moments of the held surfaces of one body */
   /* energy guard */
   struct {
     PetscReal  part;    /* of the energy, that a run may gain; 0: no guard */
@@ -57,6 +63,10 @@ struct _p_Controller {
 PETSC_INTERN PetscErrorCode ControllerReadEnergyGuard(Controller);
 PETSC_INTERN PetscErrorCode ControllerGuardEnergy(Controller, const ControllerFrame *);
 PETSC_INTERN PetscErrorCode ControllerNotify(Controller, PetscInt);
+PETSC_INTERN PetscErrorCode ControllerSetUpProbes(Controller);
+PETSC_INTERN PetscErrorCode ControllerFindProbes(Controller);
+PETSC_INTERN PetscErrorCode ControllerSetUpSupports(Controller);
+PETSC_INTERN PetscErrorCode ControllerFindReactions(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);
 /* autostep.c */
 PETSC_INTERN PetscErrorCode ControllerChooseStep(Controller);

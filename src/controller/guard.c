@@ -77,11 +77,6 @@ PetscErrorCode ControllerReadEnergyGuard(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal BodyEnergy(const BodyMeasures *measures)
-{
-  return measures->kinetic + measures->potential - measures->external_work;
-}
-
 /* The body that has gained most since the start, and the pair with the largest force, for whoever looks for the cause */
 static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame, PetscReal gain)
 {
@@ -90,7 +85,8 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
 
   PetscFunctionBegin;
   for (PetscInt b = 1; b < frame->n_bodies; b++)
-    if (BodyEnergy(&frame->bodies[b]) - controller->guard.start[b] > BodyEnergy(&frame->bodies[body]) - controller->guard.start[body])
+    if (BodyMeasuresGetBalance(&frame->bodies[b]) - controller->guard.start[b] >
+        BodyMeasuresGetBalance(&frame->bodies[body]) - controller->guard.start[body])
       body = b;
   for (PetscInt p = 1; p < frame->n_pairs; p++)
     if (PetscAbsReal(frame->pairs[p].force) > PetscAbsReal(frame->pairs[pair].force)) pair = p;
@@ -115,8 +111,8 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
 
     PetscCall(BodyIsStatic(controller->bodies[b], &without_inertia));
     if (without_inertia) PetscFunctionReturn(PETSC_SUCCESS);
-    if (frame->step == 0) controller->guard.start[b] = BodyEnergy(&frame->bodies[b]);
-    now += BodyEnergy(&frame->bodies[b]);
+    if (frame->step == 0) controller->guard.start[b] = BodyMeasuresGetBalance(&frame->bodies[b]);
+    now += BodyMeasuresGetBalance(&frame->bodies[b]);
     start += controller->guard.start[b];
     work += PetscAbsReal(frame->bodies[b].external_work);
     size += frame->bodies[b].kinetic + frame->bodies[b].potential;

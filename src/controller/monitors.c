@@ -38,7 +38,11 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .bodies             = controller->measures,
                            .contact_positions  = controller->contact_positions,
                            .contact_velocities = controller->contact_velocities,
-                           .pairs              = controller->pair_states};
+                           .pairs              = controller->pair_states,
+                           .n_supports         = controller->n_supports,
+                           .supports           = controller->supports,
+                           .n_probes           = controller->n_probes,
+                           .probes             = controller->probes};
 
   PetscFunctionBegin;
   /* not summed up, so that round-off does not pile up over many steps */
@@ -51,6 +55,8 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   }
   PetscCall(ControllerNoteEnergies(controller, step));
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
+  PetscCall(ControllerFindReactions(controller));
+  PetscCall(ControllerFindProbes(controller));
   frame.sweeps    = step ? controller->step_sweeps : 0;
   frame.step_cuts = step ? controller->step_cuts : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));

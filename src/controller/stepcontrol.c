@@ -164,7 +164,7 @@ PetscErrorCode ControllerNoteEnergies(Controller controller, PetscInt step)
   for (PetscInt b = 0; b < controller->n_bodies; b++) {
     const BodyMeasures *body = &controller->measures[b];
 
-    controller->energies[b] = body->kinetic + body->potential - body->external_work;
+    controller->energies[b] = BodyMeasuresGetBalance(body);
     size += body->kinetic + body->potential + PetscAbsReal(body->external_work);
     energy += controller->energies[b];
   }

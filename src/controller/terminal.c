@@ -1,10 +1,11 @@
 /* What a run shows on the terminal while it goes on. */
 #include "controllerimpl.h"
 #include <sys/statusline.h>
+#include "energyscale.h"
 
 typedef struct {
-  PetscInt  interval;
-  PetscReal initial_energy;
+  PetscInt    interval;
+  EnergyScale scale;
 } Lines;
 
 static PetscErrorCode FreeContext(void **ctx)
@@ -16,22 +17,23 @@ static PetscErrorCode FreeContext(void **ctx)
 
 static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *frame, void *ctx)
 {
-  Lines    *lines  = (Lines *)ctx;
-  MPI_Comm  comm   = PetscObjectComm((PetscObject)controller);
-  PetscReal energy = 0, force = 0, gap = PETSC_MAX_REAL;
+  Lines    *lines = (Lines *)ctx;
+  MPI_Comm  comm  = PetscObjectComm((PetscObject)controller);
+  PetscReal force = 0, gap = PETSC_MAX_REAL, change, scale;
   PetscInt  active = 0;
 
   PetscFunctionBegin;
+  PetscCall(EnergyScaleAdd(&lines->scale, controller, frame));
   if (frame->step % lines->interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < frame->n_bodies; b++) energy += frame->bodies[b].kinetic + frame->bodies[b].potential;
   for (PetscInt p = 0; p < frame->n_pairs; p++) {
     force += frame->pairs[p].force;
     gap = PetscMin(gap, frame->pairs[p].gap);
     active += frame->pairs[p].active;
   }
-  if (!frame->step) lines->initial_energy = energy;
+  change = EnergyScaleChange(&lines->scale, frame);
+  scale  = EnergyScaleGet(&lines->scale);
   PetscCall(PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e s  energy error %10.3e", frame->step, (double)frame->time,
-                        (double)(lines->initial_energy > 0 ? energy / lines->initial_energy - 1 : energy)));
+                        (double)(scale > 0 ? change / scale : change)));
   if (frame->n_pairs)
     PetscCall(PetscPrintf(comm, "  gap %10.3e m  active %" PetscInt_FMT "  force %12.5e N  sweeps %" PetscInt_FMT, (double)gap, active,
                           (double)force, frame->sweeps));
@@ -84,6 +86,10 @@ static PetscErrorCode TellProgress(Controller controller, PetscBool bar)
 . -monitor_interval n - the interval; 0 (default): no lines
 
   Level: beginner
+
+  Note:
+  The energy error is that of the summary: the change of all energies less the work of loads, relative to the energy at the start or, where
+  all starts at rest without strain, to the largest so far.
 
 .seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetProgress()`
 @*/

@@ -113,6 +113,34 @@ static PetscErrorCode ElementStiffness_Bar2(Element element, PetscInt e, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* (1 + e)^2 E de/dt, with the elongation e: Green and Lagrange's strain grows by (1 + e) de/dt, and the force is that stress times 1 + e */
+static PetscErrorCode ElementViscousForce_Bar2(Element element, const PetscScalar u[], const PetscScalar v[], PetscScalar f[])
+{
+  Bar2           *bar   = (Bar2 *)element->data;
+  const PetscInt *nodes = element->connectivity;
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < element->count; e++) bar->strain[e] = GetStrain(bar, nodes, e, v);
+  PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
+  for (PetscInt e = 0; e < element->count; e++) {
+    const PetscReal pull = PetscSqr(1 + GetStrain(bar, nodes, e, u)) * bar->pull_area[e] * bar->stress[e];
+
+    f[nodes[2 * e]] -= pull;
+    f[nodes[2 * e + 1]] += pull;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementViscosity_Bar2(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
+{
+  const PetscReal stretch = 1 + GetStrain((const Bar2 *)element->data, element->connectivity, e, u);
+
+  PetscFunctionBegin;
+  PetscCall(ElementStiffness_Bar2(element, e, u, C));
+  for (PetscInt i = 0; i < 4; i++) C[i] *= PetscSqr(stretch);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* How much a bar with free sides is wider than undeformed, less 1: the strain across that leaves no stress there, by Newton's method */
 static PetscReal FindWidening(const MaterialKernels *kernels, PetscReal strain)
 {
@@ -165,6 +193,18 @@ static PetscErrorCode ElementPoints_Bar2(Element element, PetscInt e, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ElementNearest_Bar2(Element element, PetscInt e, const PetscReal x[], PetscReal N[], PetscReal *distance)
+{
+  const Bar2     *bar   = (const Bar2 *)element->data;
+  const PetscReal start = bar->coordinates[element->connectivity[2 * e]], part = (x[0] - start) * bar->inverse_length[e];
+
+  PetscFunctionBegin;
+  N[1]      = PetscMin(1, PetscMax(0, part));
+  N[0]      = 1 - N[1];
+  *distance = PetscAbsReal((part - N[1]) / bar->inverse_length[e]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ElementMass_Bar2(Element element, PetscInt e, PetscScalar M[])
 {
   const Bar2 *bar = (const Bar2 *)element->data;
@@ -206,6 +246,9 @@ PetscErrorCode ElementCreate_Bar2(Element element)
   element->ops->stress         = ElementStress_Bar2;
   element->ops->points         = ElementPoints_Bar2;
   element->ops->stiffness      = ElementStiffness_Bar2;
+  element->ops->nearest        = ElementNearest_Bar2;
+  element->ops->viscousforce   = ElementViscousForce_Bar2;
+  element->ops->viscosity      = ElementViscosity_Bar2;
   element->ops->mass           = ElementMass_Bar2;
   element->ops->destroy        = ElementDestroy_Bar2;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -146,8 +146,26 @@ static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K_(a i)(b k) = sum over the points of w dN_a/dX_j (dP_ij/dH_kl) dN_b/dX_l */
-static PetscErrorCode ElementStiffness_Solid(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+/* Of a linear material: tangent_ijkl = F_im C_mjnl F_kn with F = 1 + H, in place of C */
+static void TurnTangent(const PetscReal H[9], PetscReal tangent[81])
+{
+  PetscReal half[81];
+
+  for (PetscInt i = 0; i < 3; i++)
+    for (PetscInt jkl = 0; jkl < 27; jkl++) {
+      half[27 * i + jkl] = tangent[27 * i + jkl];
+      for (PetscInt m = 0; m < 3; m++) half[27 * i + jkl] += H[3 * i + m] * tangent[27 * m + jkl];
+    }
+  for (PetscInt ij = 0; ij < 9; ij++)
+    for (PetscInt k = 0; k < 3; k++)
+      for (PetscInt l = 0; l < 3; l++) {
+        tangent[9 * ij + 3 * k + l] = half[9 * ij + 3 * k + l];
+        for (PetscInt n = 0; n < 3; n++) tangent[9 * ij + 3 * k + l] += H[3 * k + n] * half[9 * ij + 3 * n + l];
+      }
+}
+
+/* K_(a i)(b k) = sum over the points of w dN_a/dX_j (dP_ij/dH_kl) dN_b/dX_l; `viscous`: of the stress F C : dE/dt, by the velocity */
+static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid      *solid = (const Solid *)element->data;
   const SolidShape *shape = solid->shape;
@@ -165,6 +183,7 @@ static PetscErrorCode ElementStiffness_Solid(Element element, PetscInt e, const 
       for (PetscInt i = 0; i < dim; i++)
         for (PetscInt j = 0; j < dim; j++) H[3 * i + j] += u[dim * nodes[a] + i] * gradient[dim * a + j];
     (*solid->kernels.tangent)(solid->kernels.data, H, tangent);
+    if (viscous) TurnTangent(H, tangent);
     for (PetscInt b = 0; b < element->nodes; b++)
       for (PetscInt k = 0; k < dim; k++) {
         PetscReal stress[3][3]; /* for a displacement of this degree of freedom */
@@ -179,6 +198,20 @@ static PetscErrorCode ElementStiffness_Solid(Element element, PetscInt e, const 
             for (PetscInt j = 0; j < dim; j++) K[(dim * a + i) * n + dim * b + k] += stress[i][j] * gradient[dim * a + j];
       }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementStiffness_Solid(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+{
+  PetscFunctionBegin;
+  PetscCall(ComputeStiffness(element, e, PETSC_FALSE, u, K));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementViscosity_Solid(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
+{
+  PetscFunctionBegin;
+  PetscCall(ComputeStiffness(element, e, PETSC_TRUE, u, C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,6 +233,69 @@ static PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal
       for (PetscInt a = 0; a < element->nodes; a++) positions[dim * g + i] += N[a] * solid->coordinates[dim * nodes[a] + i];
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves a point of the reference coordinates into the reference element: a cube from -1 to 1, or a simplex from 0 to 1 */
+static void MoveInside(Element element, PetscReal xi[])
+{
+  const PetscInt  dim     = element->dim;
+  const PetscBool simplex = (PetscBool)(element->nodes == dim + 1);
+  PetscReal       sum     = 0;
+
+  for (PetscInt i = 0; i < dim; i++) {
+    xi[i] = PetscMin(1, PetscMax(simplex ? 0 : -1, xi[i]));
+    sum += xi[i];
+  }
+  for (PetscInt i = 0; i < dim && simplex && sum > 1; i++) xi[i] /= sum;
+}
+
+/* Shape functions at reference coordinates, and what is missing from there to a position [m]; with `change`, the step of the reference
+   coordinates by which Newton's method goes there */
+static void GetMiss(Element element, PetscInt e, const PetscReal xi[], const PetscReal x[], PetscReal N[], PetscReal miss[3],
+                    PetscReal change[3])
+{
+  const Solid    *solid = (const Solid *)element->data;
+  const PetscInt *nodes = element->connectivity + e * element->nodes;
+  const PetscInt  dim   = element->dim;
+  PetscReal       dN[SOLID_MAX_NODES * 3], gradient[SOLID_MAX_NODES * 3];
+
+  (*solid->shape->shape)(xi, N, dN);
+  for (PetscInt d = 0; d < 3; d++) {
+    miss[d] = d < dim ? x[d] : 0;
+    for (PetscInt a = 0; a < element->nodes && d < dim; a++) miss[d] -= N[a] * solid->coordinates[dim * nodes[a] + d];
+  }
+  if (!change) return;
+  /* the gradients of the reference coordinates by the position, from those of the shape functions: xi_i is sum_a N_a corner_a,i */
+  (void)GetShape(element, e, xi, N, gradient);
+  for (PetscInt i = 0; i < dim; i++) {
+    change[i] = 0;
+    for (PetscInt a = 0; a < element->nodes; a++)
+      for (PetscInt d = 0; d < dim; d++) change[i] += solid->shape->corners[dim * a + i] * gradient[dim * a + d] * miss[d];
+  }
+}
+
+/* Newton's method for the reference coordinates, and then into the reference element */
+static PetscErrorCode ElementNearest_Solid(Element element, PetscInt e, const PetscReal x[], PetscReal N[], PetscReal *distance)
+{
+  const Solid *solid = (const Solid *)element->data;
+  PetscReal    xi[3] = {0}, miss[3], change[3] = {0};
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < element->dim; d++) xi[d] = solid->shape->points[d];
+  for (PetscInt iteration = 0; iteration < 50; iteration++) {
+    PetscReal largest = 0;
+
+    GetMiss(element, e, xi, x, N, miss, change);
+    for (PetscInt d = 0; d < element->dim; d++) {
+      xi[d]   = PetscMin(2, PetscMax(-2, xi[d] + change[d])); /* beyond, a distorted element may fold over */
+      largest = PetscMax(largest, PetscAbsReal(change[d]));
+    }
+    if (largest < 1e-14) break;
+  }
+  MoveInside(element, xi);
+  GetMiss(element, e, xi, x, N, miss, NULL);
+  *distance = PetscSqrtReal(miss[0] * miss[0] + miss[1] * miss[1] + miss[2] * miss[2]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -276,6 +372,8 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   element->ops->setfromoptions = ElementSetFromOptions_Solid;
   element->ops->setup          = ElementSetUp_Solid;
   element->ops->stiffness      = ElementStiffness_Solid;
+  element->ops->nearest        = ElementNearest_Solid;
+  element->ops->viscosity      = ElementViscosity_Solid;
   element->ops->mass           = ElementMass_Solid;
   element->ops->points         = ElementPoints_Solid;
   element->ops->destroy        = ElementDestroy_Solid;

@@ -22,6 +22,7 @@ struct _n_History {
   PetscBool      failed; /* the file could not be written, and is as it was before */
   char          *options;
   PetscInt       n_bodies, *dims; /* space dimension of each body */
+  PetscBool     *damped;          /* per body: it has Rayleigh damping */
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
@@ -50,17 +51,21 @@ static PetscErrorCode AddSeries(History history, const char group[], const char 
 /* The series of a run, in the order in which HistoryMonitor() fills a record */
 static PetscErrorCode AddAllSeries(History history, Controller controller)
 {
-  const Body *bodies;
-  const char *name;
-  Contact     contact;
-  PetscInt    n_pairs;
+  const Body              *bodies;
+  const char              *name;
+  Contact                  contact;
+  PetscInt                 n_pairs, n_supports, n_probes;
+  const ControllerSupport *supports;
+  const ControllerProbe   *probes;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, &history->n_bodies, &bodies));
+  PetscCall(ControllerGetSupports(controller, &n_supports, &supports));
+  PetscCall(ControllerGetProbes(controller, &n_probes, &probes));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(PetscMalloc1(history->n_bodies, &history->dims));
-  PetscCall(PetscCalloc1(2 + 7 * n_pairs + 8 * history->n_bodies, &history->series));
+  PetscCall(PetscMalloc2(history->n_bodies, &history->dims, history->n_bodies, &history->damped));
+  PetscCall(PetscCalloc1(2 + 7 * n_pairs + 9 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -75,6 +80,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   }
   for (PetscInt i = 0; i < history->n_bodies; i++) {
     PetscInt *dim = &history->dims[i];
+    PetscReal mass, stiffness;
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
     PetscCall(BodyGetDimension(bodies[i], dim));
@@ -86,6 +92,32 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(AddSeries(history, "/body/", name, "external_work", "J", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/body/", name, "momentum", "kg m/s", *dim, PETSC_FALSE));
     if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_momentum", "kg m^2/s", 3, PETSC_FALSE));
+    PetscCall(BodyGetDamping(bodies[i], &mass, &stiffness));
+    history->damped[i] = (PetscBool)(mass > 0 || stiffness > 0);
+    if (history->damped[i]) PetscCall(AddSeries(history, "/body/", name, "damping_work", "J", 1, PETSC_FALSE));
+  }
+  for (PetscInt i = 0; i < n_supports; i++) {
+    const ControllerSupport *support = &supports[i];
+    char                     group[128];
+
+    if (support->body >= 0) {
+      PetscCall(PetscObjectGetName((PetscObject)bodies[support->body], &name));
+      PetscCall(PetscSNPrintf(group, sizeof(group), "/body/%s/reaction/", name));
+    } else PetscCall(PetscSNPrintf(group, sizeof(group), "/obstacle/"));
+    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "force" : "reaction/force", "N", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "moment" : "reaction/moment", "N m", 3, PETSC_FALSE));
+  }
+  for (PetscInt i = 0; i < n_probes; i++) {
+    const PetscInt dim = history->dims[probes[i].body];
+    char           group[128], number[16];
+
+    PetscCall(PetscObjectGetName((PetscObject)bodies[probes[i].body], &name));
+    PetscCall(PetscSNPrintf(group, sizeof(group), "/body/%s/probe/", name));
+    PetscCall(PetscSNPrintf(number, sizeof(number), "%" PetscInt_FMT, probes[i].number));
+    PetscCall(AddSeries(history, group, number, "position", "m", dim, PETSC_FALSE));
+    PetscCall(AddSeries(history, group, number, "displacement", "m", dim, PETSC_FALSE));
+    PetscCall(AddSeries(history, group, number, "velocity", "m/s", dim, PETSC_FALSE));
+    PetscCall(AddSeries(history, group, number, "stress", "Pa", 6, PETSC_FALSE));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -189,7 +221,7 @@ static PetscErrorCode MakeRoom(History history)
 }
 
 /* Fills a record, in the order of AddAllSeries() */
-static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], PetscReal *next)
+static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], const PetscBool damped[], PetscReal *next)
 {
   *next++ = frame->time;
   *next++ = (PetscReal)frame->sweeps;
@@ -211,6 +243,19 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], Pets
     *next++ = frame->bodies[i].external_work;
     for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
     for (PetscInt d = 0; d < 3 && dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
+    if (damped[i]) *next++ = frame->bodies[i].damping_work;
+  }
+  for (PetscInt i = 0; i < frame->n_supports; i++) {
+    for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
+    for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].moment[d];
+  }
+  for (PetscInt i = 0; i < frame->n_probes; i++) {
+    const ControllerProbe *probe = &frame->probes[i];
+
+    for (PetscInt d = 0; d < dims[probe->body]; d++) *next++ = probe->position[d];
+    for (PetscInt d = 0; d < dims[probe->body]; d++) *next++ = probe->displacement[d];
+    for (PetscInt d = 0; d < dims[probe->body]; d++) *next++ = probe->velocity[d];
+    for (PetscInt k = 0; k < 6; k++) *next++ = probe->stress[k];
   }
 }
 
@@ -233,7 +278,7 @@ PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *fram
   (void)controller;
   if (!history->writes) PetscFunctionReturn(PETSC_SUCCESS);
   if (history->n_records == history->capacity) PetscCall(MakeRoom(history));
-  FillRecord(frame, history->dims, history->records + history->n_records * history->width);
+  FillRecord(frame, history->dims, history->damped, history->records + history->n_records * history->width);
   history->n_records++;
   PetscCall(PetscTime(&now));
   if (!history->written || now - history->flushed > PetscMax(FLUSH_INTERVAL, FLUSH_SHARE * history->flush_seconds))
@@ -256,7 +301,7 @@ PetscErrorCode HistoryDestroy(History *history)
   if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(*history)->failed) PetscCall(HistoryFlush(*history));
   PetscCall(PetscFree((*history)->options));
-  PetscCall(PetscFree((*history)->dims));
+  PetscCall(PetscFree2((*history)->dims, (*history)->damped));
   PetscCall(PetscFree((*history)->series));
   PetscCall(PetscFree((*history)->records));
   PetscCall(OutputFileRelease(&(*history)->held));

@@ -31,13 +31,25 @@ static PetscErrorCode PrintPercent(PetscViewer viewer, const char name[], PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *results, Exact exact, PetscViewer viewer)
+/* Whether no body has inertia: then the time of the run means nothing, nor does the impulse of a force */
+static PetscErrorCode AllStatic(PetscInt n, const Body bodies[], PetscBool *all)
+{
+  PetscFunctionBegin;
+  *all = PETSC_TRUE;
+  for (PetscInt i = 0; i < n && *all; i++) PetscCall(BodyIsStatic(bodies[i], all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ViewContact(Contact contact, const Body bodies[], const StatisticsResults *results, Exact exact, PetscViewer viewer)
 {
   const ContactStatistics *c     = &results->contact;
   PetscReal                onset = c->times.onset, impact = NAN, release = NAN, force = NAN, impulse = NAN;
   ContactType              type;
+  ContactLaw               law;
+  PetscBool                all_static;
 
   PetscFunctionBegin;
+  PetscCall(AllStatic(results->n_bodies, bodies, &all_static));
   if (exact) {
     PetscCall(ExactGetTimes(exact, &impact, &release));
     PetscCall(ExactGetForce(exact, &force));
@@ -55,7 +67,9 @@ static PetscErrorCode ViewContact(Contact contact, const StatisticsResults *resu
   PetscCall(PrintValue(viewer, "force, mean", c->force_mean, "N", force));
   PetscCall(PrintValue(viewer, "force, standard deviation", c->force_std, "N", NAN));
   PetscCall(PrintValue(viewer, "force, peak", c->force_peak, "N", NAN));
-  PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", impulse));
+  PetscCall(ContactGetLaw(contact, &law));
+  if (law != CONTACT_LAW_FRICTIONLESS) PetscCall(PrintValue(viewer, "tension of a node, peak", c->tension_max, "N", NAN));
+  if (!all_static) PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", impulse));
   PetscCall(PrintValue(viewer, "largest penetration", c->max_penetration, "m", NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,6 +97,7 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
 {
   const PetscReal worst = -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
   const char     *name;
+  PetscInt        dim;
 
   PetscFunctionBegin;
   PetscCall(PetscViewerASCIIPrintf(viewer, "energy and momentum\n"));
@@ -97,13 +112,48 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
     if (body->rotation_max > STATISTICS_FAR_TURN)
       PetscCall(PrintValue(viewer, "    rotation, far for linear", body->rotation_max, "rad", NAN));
     if (body->external_work != 0) PetscCall(PrintValue(viewer, "    work of its loads", body->external_work, "J", NAN));
+    if (body->damping_work != 0) PetscCall(PrintValue(viewer, "    taken by its damping", body->damping_work, "J", NAN));
   }
   PetscCall(PrintPercent(viewer, "system energy error, worst", worst));
   PetscCall(PrintPercent(viewer, "system energy error, final", results->energy_error_final));
   if (!PetscIsInfOrNanReal(results->momentum_error_max))
     PetscCall(PrintPercent(viewer, "momentum error, worst", results->momentum_error_max));
+  PetscCall(BodyGetDimension(bodies[0], &dim));
+  if (dim > 1 && !PetscIsInfOrNanReal(results->angular_momentum_error_max))
+    PetscCall(PrintPercent(viewer, "angular momentum error, worst", results->angular_momentum_error_max));
   if (results->penalty_energy_max > 0)
     PetscCall(PrintValue(viewer, "energy in penalty springs, most", results->penalty_energy_max, "J", NAN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What holds the bodies at the end */
+static PetscErrorCode ViewReactions(const Body bodies[], const StatisticsResults *results, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  if (results->n_supports) PetscCall(PetscViewerASCIIPrintf(viewer, "reactions at the end\n"));
+  for (PetscInt i = 0; i < results->n_supports; i++) {
+    const SupportStatistics *support = &results->supports[i];
+    const char              *owner   = "";
+    char                     name[128];
+    PetscInt                 dim = 0;
+
+    for (PetscInt b = 0; b < results->n_bodies && dim < 3; b++) {
+      PetscInt of_body;
+
+      PetscCall(BodyGetDimension(bodies[b], &of_body));
+      if (b == support->body || support->body < 0) dim = of_body;
+    }
+    if (support->body >= 0) PetscCall(PetscObjectGetName((PetscObject)bodies[support->body], &owner));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s%s%s", owner, owner[0] ? "." : "", support->name));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g", name, (double)support->force[0]));
+    for (PetscInt d = 1; d < dim; d++) PetscCall(PetscViewerASCIIPrintf(viewer, ", %.6g", (double)support->force[d]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, " N"));
+    if (dim == 2) PetscCall(PetscViewerASCIIPrintf(viewer, "; moment %.6g N m", (double)support->moment[2]));
+    if (dim == 3)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "; moment %.6g, %.6g, %.6g N m", (double)support->moment[0], (double)support->moment[1],
+                                       (double)support->moment[2]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -146,10 +196,11 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
   if (results->n_pairs) {
-    PetscCall(ViewContact(contact, results, exact, viewer));
+    PetscCall(ViewContact(contact, bodies, results, exact, viewer));
     PetscCall(ViewSweeps(controller, contact, results, viewer));
   }
   PetscCall(ViewEnergies(bodies, results, viewer));
+  PetscCall(ViewReactions(bodies, results, viewer));
   if (exact) PetscCall(ViewErrors(exact, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -7,8 +7,9 @@ _Static_assert(sizeof(PetscReal) == sizeof(double), "series are stored in double
 /* Values in a chunk: few enough for the file of a short run to be small, and enough for the index of a long run to be small */
 #define CHUNK 1024
 
-/* Records of a series that are written at a time */
-#define BLOCK 4096
+/* Records of a series that are written at a time, and most components of one */
+#define BLOCK           2048
+#define MOST_COMPONENTS 6
 
 static PetscErrorCode CreateDataset(hid_t file, const Series *series, const char path[])
 {
@@ -66,7 +67,7 @@ static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt
 {
   const PetscInt components = series->components;
   const hsize_t  start[2] = {(hsize_t)length, 0}, count[2] = {(hsize_t)n, (hsize_t)components};
-  PetscReal      values[3 * BLOCK];
+  PetscReal      values[MOST_COMPONENTS * BLOCK];
   hid_t          to, from;
 
   PetscFunctionBegin;

@@ -1,15 +1,11 @@
 /* Gathers the figures of the summary, step by step. Only contact forces are kept as series, from the first contact on. */
 #include "statistics.h"
+#include <controller/energyscale.h>
 #include <math.h>
 
 /* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
    compared with it */
 #define NOTHING_AT_START 1e-9
-/* A body starts at rest if no node is faster than this part of its wave speed, and without strain if its energy is below that of this
-   strain everywhere: both are round-off of what the user gave, of velocities by formulas and of displacements that move the body as a whole
- */
-#define NO_SPEED  1e-14
-#define NO_STRAIN 1e-10
 /* Mean, scatter and minimum of a force are those of the time from first contact to release without this part at either end, where the force
    rises and falls. Steps at the ends of what remains belong to it, within round-off of the time. */
 #define FORCE_MARGIN   0.2
@@ -31,9 +27,7 @@ struct _n_Statistics {
   PetscReal        *initial_energy; /* of each body [J] */
   PetscReal        *body_change;    /* least and largest change of the energy of each body since the start [J] */
   PetscReal         system_change[2];
-  PetscReal         system_energy;             /* at the start [J] */
-  PetscReal         largest_energy;            /* energies and work of all bodies, so far: used where all start from rest [J] */
-  PetscBool         from_rest;                 /* all bodies start at rest without strain */
+  EnergyScale       scale;                     /* of energies */
   PetscBool         loaded;                    /* forces from outside, or held displacements, act on some body */
   PetscReal         momentum[3];               /* of the system at the start [kg m/s] */
   PetscReal         momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
@@ -82,9 +76,10 @@ static void ContactStatisticsInitialize(ContactStatistics *contact)
 */
 PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
 {
-  const Body *bodies;
-  Contact     contact;
-  Statistics  s;
+  const Body              *bodies;
+  Contact                  contact;
+  Statistics               s;
+  const ControllerSupport *supports;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
@@ -93,6 +88,12 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
   PetscCall(ContactTimesCreate(controller, &s->times));
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
+  PetscCall(ControllerGetSupports(controller, &s->results.n_supports, &supports));
+  PetscCall(PetscCalloc1(s->results.n_supports, &s->results.supports));
+  for (PetscInt i = 0; i < s->results.n_supports; i++) {
+    s->results.supports[i].body = supports[i].body;
+    s->results.supports[i].name = supports[i].name;
+  }
   PetscCall(PetscCalloc3(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change));
   for (PetscInt i = 0; i < s->results.n_bodies; i++) {
     PetscReal arm = 0;
@@ -109,47 +110,16 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Energy of a body less the work of its loads: constant but for errors and exchange with other bodies [J] */
-static PetscReal BodyEnergy(const BodyMeasures *body)
-{
-  return body->kinetic + body->potential - body->external_work;
-}
-
 static PetscReal Norm(const PetscReal x[3])
 {
   return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* Whether a body starts at rest and without strain */
-static PetscErrorCode StartsFromRest(Body body, const BodyMeasures *measures, PetscBool *rest)
-{
-  PetscReal density, modulus, mass, speed;
-  Material  material;
-  Vec       v;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetMaterial(body, &material));
-  PetscCall(MaterialGetDensity(material, &density));
-  PetscCall(MaterialGetWaveModulus(material, &modulus));
-  PetscCall(BodyGetMass(body, &mass));
-  PetscCall(BodyGetSolution(body, NULL, &v, NULL));
-  PetscCall(VecNorm(v, NORM_INFINITY, &speed));
-  *rest = (PetscBool)(speed <= NO_SPEED * PetscSqrtReal(modulus / density) &&
-                      measures->potential <= 0.5 * modulus * mass / density * PetscSqr(NO_STRAIN));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Notes the initial energies and momenta, which later ones are compared with */
-static PetscErrorCode NoteInitialState(Statistics s, Controller controller, const ControllerFrame *frame)
+static void NoteInitialState(Statistics s, const ControllerFrame *frame)
 {
-  const Body *bodies;
-
-  PetscFunctionBegin;
-  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
-  s->from_rest = PETSC_TRUE;
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
-    s->initial_energy[i] = BodyEnergy(&frame->bodies[i]);
-    s->system_energy += s->initial_energy[i];
+    s->initial_energy[i] = BodyMeasuresGetBalance(&frame->bodies[i]);
     s->momentum_scale += Norm(frame->bodies[i].momentum);
     s->angular_scale += Norm(frame->bodies[i].angular_momentum);
     for (PetscInt d = 0; d < 3; d++) {
@@ -157,9 +127,7 @@ static PetscErrorCode NoteInitialState(Statistics s, Controller controller, cons
       s->angular[d] += frame->bodies[i].angular_momentum[d];
     }
     s->loaded = (PetscBool)(s->loaded || frame->bodies[i].loaded);
-    if (s->from_rest) PetscCall(StartsFromRest(bodies[i], &frame->bodies[i], &s->from_rest));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscReal Relative(PetscReal value, PetscReal scale)
@@ -181,36 +149,31 @@ static void NoteChange(PetscReal change[2], PetscReal energy)
 
 static void AddEnergies(Statistics s, const ControllerFrame *frame)
 {
-  StatisticsResults *r             = &s->results;
-  PetscReal          momentum[3]   = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
-  PetscReal          angular[3]    = {-s->angular[0], -s->angular[1], -s->angular[2]};
-  PetscReal          system_energy = 0, size = 0, scale;
+  StatisticsResults *r      = &s->results;
+  const PetscReal    change = EnergyScaleChange(&s->scale, frame), scale = EnergyScaleGet(&s->scale);
+  PetscReal          momentum[3] = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
+  PetscReal          angular[3]  = {-s->angular[0], -s->angular[1], -s->angular[2]};
 
-  for (PetscInt i = 0; i < frame->n_bodies; i++)
-    size += frame->bodies[i].kinetic + frame->bodies[i].potential + PetscAbsReal(frame->bodies[i].external_work);
-  s->largest_energy = PetscMax(s->largest_energy, size);
-  /* only where there is nothing at the start: an energy that grows must not raise what it is compared with */
-  scale = s->from_rest || s->system_energy <= 0 ? s->largest_energy : s->system_energy;
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     const BodyMeasures *measures = &frame->bodies[i];
     BodyStatistics     *body     = &r->bodies[i];
-    const PetscReal     energy = BodyEnergy(measures), start = s->initial_energy[i];
+    const PetscReal     energy = BodyMeasuresGetBalance(measures), start = s->initial_energy[i];
 
     body->kinetic        = measures->kinetic;
     body->potential      = measures->potential;
     body->external_work  = measures->external_work;
+    body->damping_work   = measures->damping_work;
     body->peak_potential = PetscMax(body->peak_potential, measures->potential);
     NoteChange(s->body_change + 2 * i, energy - start);
     body->energy_error_min = Relative(s->body_change[2 * i], Scale(start, scale));
     body->energy_error_max = Relative(s->body_change[2 * i + 1], Scale(start, scale));
-    system_energy += energy;
     for (PetscInt d = 0; d < 3; d++) {
       momentum[d] += measures->momentum[d];
       angular[d] += measures->angular_momentum[d];
     }
   }
-  NoteChange(s->system_change, system_energy - s->system_energy);
-  r->energy_error_final = Relative(system_energy - s->system_energy, scale);
+  NoteChange(s->system_change, change);
+  r->energy_error_final = Relative(change, scale);
   r->energy_error_min   = Relative(s->system_change[0], scale);
   r->energy_error_max   = Relative(s->system_change[1], scale);
   /* with loads momenta change, and there is nothing to compare them with */
@@ -273,6 +236,19 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   memory->force      = state->force;
 }
 
+static void AddSupports(Statistics s, const ControllerFrame *frame)
+{
+  for (PetscInt i = 0; i < frame->n_supports; i++) {
+    SupportStatistics *support = &s->results.supports[i];
+
+    for (PetscInt d = 0; d < 3; d++) {
+      support->force[d]  = frame->supports[i].force[d];
+      support->moment[d] = frame->supports[i].moment[d];
+    }
+    support->force_peak = PetscMax(support->force_peak, Norm(support->force));
+  }
+}
+
 /* Appends time, forces and nodes in contact of a step to the series */
 static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
 {
@@ -310,8 +286,10 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   ContactPairState   any = {.gap = PETSC_INFINITY};
 
   PetscFunctionBegin;
-  if (frame->step == 0) PetscCall(NoteInitialState(s, controller, frame));
+  PetscCall(EnergyScaleAdd(&s->scale, controller, frame));
+  if (frame->step == 0) NoteInitialState(s, frame);
   AddEnergies(s, frame);
+  AddSupports(s, frame);
   PetscCall(ContactTimesAdd(s->times, frame));
   PetscCall(AddRotations(s, controller, frame));
   if (frame->step > 0) {
@@ -423,6 +401,7 @@ PetscErrorCode StatisticsDestroy(Statistics *statistics)
   PetscFunctionBegin;
   if (!*statistics) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactTimesDestroy(&(*statistics)->times));
+  PetscCall(PetscFree((*statistics)->results.supports));
   PetscCall(PetscFree2((*statistics)->results.pairs, (*statistics)->results.bodies));
   PetscCall(PetscFree3((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change));
   PetscCall(PetscFree((*statistics)->series));

@@ -27,10 +27,19 @@ typedef struct {
   PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
   PetscReal displacement_error;                 /* at the end, relative L2, against an exact displacement; not-a-number without one */
   PetscReal external_work;                      /* at the end, by loads [J] */
+  PetscReal damping_work;                       /* at the end, taken by Rayleigh damping [J] */
   PetscReal rotation_max;                       /* largest mean rotation of a linear body, 0 for others [rad] */
   PetscReal energy_error_min,
       energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;
+
+/* What holds the bodies at a held surface or an obstacle */
+typedef struct {
+  PetscInt    body;                /* number of the body; -1: an obstacle */
+  const char *name;                /* of the surface, or of the obstacle; borrowed */
+  PetscReal   force[3], moment[3]; /* at the end; the latter about the origin [N, N m] */
+  PetscReal   force_peak;          /* largest magnitude over the whole run [N] */
+} SupportStatistics;
 
 typedef struct {
   PetscInt           steps;
@@ -38,6 +47,8 @@ typedef struct {
   ContactStatistics  contact; /* of any pair; the force's mean, scatter, minimum and peak are the first pair's */
   ContactStatistics *pairs;
   BodyStatistics    *bodies;
+  PetscInt           n_supports;
+  SupportStatistics *supports;                                               /* in the order of ControllerGetSupports() */
   PetscInt           max_sweeps;                                             /* in one step */
   PetscReal          mean_sweeps;                                            /* over all steps */
   PetscReal          mean_sweeps_contact;                                    /* over steps that end in contact */

@@ -147,9 +147,37 @@ static PetscErrorCode AddMass(json_t *object, Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The reactions at the held surfaces of a body, or, with -1 for its number, at all obstacles */
+static PetscErrorCode AddReactions(json_t *object, PetscInt body, const StatisticsResults *results)
+{
+  json_t *member;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < results->n_supports; i++) {
+    const SupportStatistics *support = &results->supports[i];
+
+    if (support->body != body) continue;
+    PetscCall(SetObject(object, support->name, &member));
+    PetscCall(SetVector(member, "force", support->force));
+    PetscCall(SetVector(member, "moment", support->moment));
+    PetscCall(SetReal(member, "force_peak", support->force_peak));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddObstacles(json_t *root, const StatisticsResults *results)
+{
+  json_t *object;
+
+  PetscFunctionBegin;
+  PetscCall(SetObject(root, "obstacles", &object));
+  PetscCall(AddReactions(object, -1, results));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const StatisticsResults *results)
 {
-  json_t     *objects, *object;
+  json_t     *objects, *object, *reactions;
   const char *name;
   PetscInt    dofs;
   PetscInt64  substeps;
@@ -171,11 +199,14 @@ static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const Statist
     PetscCall(SetReal(object, "potential", body->potential));
     PetscCall(SetReal(object, "peak_potential", body->peak_potential));
     PetscCall(SetReal(object, "external_work", body->external_work));
+    PetscCall(SetReal(object, "damping_work", body->damping_work));
     PetscCall(SetReal(object, "rotation_max", body->rotation_max));
     if (!PetscIsNanReal(body->displacement_error)) PetscCall(SetReal(object, "displacement_error", body->displacement_error));
     PetscCall(SetReal(object, "total_energy_error_min", body->energy_error_min));
     PetscCall(SetReal(object, "total_energy_error_max", body->energy_error_max));
     PetscCall(SetInteger(object, "substeps", substeps));
+    PetscCall(SetObject(object, "reactions", &reactions));
+    PetscCall(AddReactions(reactions, i, results));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -332,6 +363,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(AddSchwarz(root, contact, results));
   PetscCall(AddStepControl(root, controller));
   PetscCall(AddBodies(root, bodies, results));
+  PetscCall(AddObstacles(root, results));
   PetscCall(AddSystem(root, results));
   if (exact) PetscCall(AddErrors(root, exact));
   PetscCall(AddWarnings(root, verdict));

@@ -28,6 +28,11 @@ static const KnownOption options[] = {
      "alone that face a partner at the start, and an error where contact comes to others"},
     {"bodies", OPTION_OF_BODY, "mass_moments", "total|centre|inertia",
      "what that keeps: the total mass, its centre too, or (default) the moments of inertia too, where positive masses allow"},
+    {"bodies", OPTION_OF_BODY, "damping_mass", "alpha",
+     "Rayleigh damping: forces alpha M v against the velocity [1/s]; damping ratio alpha/(2 omega) of angular frequency omega; default 0"},
+    {"bodies", OPTION_OF_BODY, "damping_stiffness", "beta",
+     "Rayleigh damping: forces beta K v against the rate of strain [s]; damping ratio beta omega/2; not of elements at massless contact "
+     "nodes; default 0"},
 
     {"meshes", OPTION_OF_BODY, "dm_plex_dim", "1|2|3", "space dimension of the mesh"},
     {"meshes", OPTION_OF_BODY, "dm_plex_shape", "box|ball", "shape of the mesh, default box; a ball in 2-D is a disc"},
@@ -199,6 +204,8 @@ static const KnownOption options[] = {
      "more options from a file, which those of the command line overrule; a FILE.opts may stand alone"},
     {"files", OPTION_OF_RUN, "output_history", "file.h5", "history of every controller step"},
     {"files", OPTION_OF_RUN, "output_summary", "file.json", "summary of the run"},
+    {"files", OPTION_OF_BODY, "probe", "x,y[,z];x,y[,z]",
+     "points of the undeformed body [m] whose position, displacement, velocity and stress are in the history"},
     {"files", OPTION_OF_RUN, "output_fields", "file.h5",
      "displacement, velocity, stress, ... of all bodies over time, with file.xdmf for ParaView"},
     {"files", OPTION_OF_RUN, "output_fields_interval", "n",

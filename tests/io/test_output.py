@@ -63,13 +63,16 @@ SUMMARY = {
             "potential": float,
             "peak_potential": float,
             "external_work": float,
+            "damping_work": float,
             "rotation_max": float,
             "total_energy_error_min": float,
             "total_energy_error_max": float,
             "substeps": int,
+            "reactions": {},
         }
         for name in ("left", "right")
     },
+    "obstacles": {},
     "system": {key: float for key in ("energy_error_min", "energy_error_max", "energy_error_final", "momentum_error_max", "angular_momentum_error_max", "penalty_energy_max")},
     "errors": {
         **{

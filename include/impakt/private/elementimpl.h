@@ -13,11 +13,20 @@ struct _ElementOps {
   PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);          /* stored by all elements of this rank [J] */
   PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[],
                               PetscScalar[]); /* tangent of one element at the displacement of the rank's nodes, row by row [N/m] */
+  /* For Rayleigh damping of nonlinear bodies, of elements with a linear material; they may be missing. Adds to the third the forces of the
+     stress S = C : dE/dt at the displacement that is first and the velocity that is second, with the rate of Green and Lagrange's strain
+     and the material's C [N/s] */
+  PetscErrorCode (*viscousforce)(Element, const PetscScalar[], const PetscScalar[], PetscScalar[]);
+  PetscErrorCode (*viscosity)(Element, PetscInt, const PetscScalar[],
+                              PetscScalar[]);               /* its derivative by the velocity, of one element, row by row [N/m] */
   PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]); /* consistent mass of one element [kg] */
   PetscErrorCode (*stress)(Element, const PetscScalar[],
                            PetscReal[]); /* Cauchy stress, mean of each element: xx yy zz xy yz xz, 6 x count [Pa] */
   PetscErrorCode (*points)(Element, PetscInt, PetscReal[], PetscReal[]); /* of one element: reference positions of its load points, n_points
                                                                             x dim [m], and their weights [m^3, m^2 x thickness] */
+  PetscErrorCode (*nearest)(Element, PetscInt, const PetscReal[], PetscReal[],
+                            PetscReal *); /* shape functions at a position in the undeformed element, and its distance [m], 0 inside; of a
+                                             position outside those at a point of the element near to it. May be missing. */
   PetscErrorCode (*view)(Element, PetscViewer);
   PetscErrorCode (*destroy)(Element);
 };

@@ -174,6 +174,71 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
   return inverted;
 }
 
+/* rate = (F^T dH + dH^T F) / 2 with F = 1 + H */
+SIMD_INLINE void RateOfStrain(const SimdReal H[9], const SimdReal dH[9], SimdReal rate[9])
+{
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++)
+    for (PetscInt i = 0; i < 3; i++)
+      for (PetscInt j = 0; j < 3; j++) {
+        PetscReal sum = dH[3 * i + j][p] + dH[3 * j + i][p];
+
+        for (PetscInt k = 0; k < DIM; k++) sum += H[3 * k + i][p] * dH[3 * k + j][p] + H[3 * k + j][p] * dH[3 * k + i][p];
+        rate[3 * i + j][p] = 0.5 * sum;
+      }
+}
+
+/* P = F S with F = 1 + H */
+SIMD_INLINE void PullBack(const SimdReal H[9], const SimdReal S[9], SimdReal P[9])
+{
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++)
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt j = 0; j < DIM; j++) {
+        PetscReal sum = S[3 * i + j][p];
+
+        for (PetscInt k = 0; k < DIM; k++) sum += H[3 * i + k][p] * S[3 * k + j][p];
+        P[3 * i + j][p] = sum;
+      }
+}
+
+/* The forces of the stress F C : dE/dt */
+SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[],
+                                         const PetscReal u[], const PetscReal v[], PetscReal f[])
+{
+  Gradients at = {0}, rate = {0};
+
+  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
+    const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], V[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
+    SimdReal       strain[9], S[9], P[9] = {{0}}, nodal[DIM][NODES];
+
+    GetModes(connectivity, first, count, solid->coordinates, X);
+    GetModes(connectivity, first, count, u, U);
+    GetModes(connectivity, first, count, v, V);
+    for (PetscInt g = 0; g < POINTS; g++) {
+      GetGradients(X, U, points[g], &at);
+      GetGradients(X, V, points[g], &rate);
+      RateOfStrain(at.H, rate.H, strain);
+      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])strain, S);
+      PullBack(at.H, S, P);
+      for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at.cofactor[part], points[g], F[part]);
+    }
+    for (PetscInt part = 0; part < SIMD_PARTS; part++)
+      for (PetscInt i = 0; i < DIM; i++) {
+        SimdVector n[NODES];
+
+        for (PetscInt k = 0; k < MODES; k++) F[part][i][k] *= scale;
+        NodesOfModes(F[part][i], n);
+        for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
+      }
+    for (PetscInt p = 0; p < in_batch; p++) {
+      const PetscInt *nodes = connectivity + NODES * (first + p);
+
+      for (PetscInt a = 0; a < NODES; a++)
+        for (PetscInt i = 0; i < DIM; i++) f[DIM * nodes[a] + i] += nodal[i][a][p];
+    }
+  }
+}
+
 SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
                                       PetscReal *energy)
 {
@@ -260,6 +325,13 @@ static PetscErrorCode InternalForce(Element element, const PetscScalar u[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ViscousForce(Element element, const PetscScalar u[], const PetscScalar v[], PetscScalar f[])
+{
+  PetscFunctionBegin;
+  AddViscousForces((const Solid *)element->data, WEIGHT * element->cross_section, element->count, element->connectivity, u, v, f);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Energy(Element element, const PetscScalar u[], PetscReal *energy)
 {
   PetscFunctionBegin;
@@ -281,6 +353,7 @@ static PetscErrorCode Create(Element element, const SolidShape *shape)
   PetscFunctionBegin;
   PetscCall(ElementCreate_Solid(element, shape));
   element->ops->internalforce = InternalForce;
+  element->ops->viscousforce  = ViscousForce;
   element->ops->energy        = Energy;
   element->ops->stress        = Stress;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -52,24 +52,28 @@ static PetscErrorCode SolveMassPrescribed(Body body, Vec f, PetscReal position, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `TSCentralDifferenceFn`: held and contact conditions on U, then the acceleration it brings about */
-static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
+/* Held and contact conditions on U, then the acceleration it brings about. Dashpots feel the velocity V at mid-step; NULL: their forces are
+   known. */
+static PetscErrorCode FindAcceleration(Body body, PetscReal t, Vec U, Vec V, Vec A)
 {
-  Body               body       = (Body)ctx;
   const LayerBalance layer      = GetLayer(body);
   const PetscReal    position   = (PetscReal)(body->time.substep + 1) / body->time.substeps;
   const PetscBool    prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
-  const PetscBool    outside    = BodyHasOutsideForce(body, PETSC_TRUE);
+  PetscBool          outside    = BodyHasOutsideForce(body, PETSC_TRUE);
   Vec                force      = body->work.nodes[0];
 
   PetscFunctionBegin;
-  (void)ts;
-  (void)V;
   PetscCall(BodyPrescribeHeld(body, t, U, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
   if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, PETSC_TRUE, U, force));
   /* Robin rows have moved with the layer */
   if (outside && (!layer || body->rows.n_robin)) PetscCall(BodyComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
+  if (body->state.damping) {
+    if (V) PetscCall(BodyMultiplyDamping(body, U, V, body->state.damping));
+    if (!outside) PetscCall(VecZeroEntries(force));
+    PetscCall(VecAXPY(force, -1, body->state.damping));
+    outside = PETSC_TRUE;
+  }
   PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   if (body->mass.inverse) {
     PetscCall(DivideByMass(body, outside ? force : NULL, A));
@@ -83,6 +87,15 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
     else PetscCall(BodySolveMass(body, force, A));
     PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* `TSCentralDifferenceFn` */
+static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
+{
+  PetscFunctionBegin;
+  (void)ts;
+  PetscCall(FindAcceleration((Body)ctx, t, U, V, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,8 +156,9 @@ static PetscErrorCode RepeatForces(Body body, const PetscScalar force[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A linear body: the displacement of nodes with mass is known before the end of the substep; the massless layer and prescribed rows are put
-   in place anew, and the acceleration that follows replaces the one before in the velocity */
+/* A linear body: the displacement of nodes with mass is known before the end of the substep, and so is the velocity at mid-step, which
+   dashpots feel; the massless layer and prescribed rows are put in place anew, and the acceleration that follows replaces the one before in
+   the velocity */
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   const PetscReal half = 0.5 * body->time.step;
@@ -156,7 +170,7 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   }
   body->time.substep = 0;
   PetscCall(VecAXPY(body->state.v, -half, body->state.a));
-  PetscCall(ComputeAcceleration(body->time.ts, body->state.time, body->state.u, body->state.v, body->state.a, body));
+  PetscCall(FindAcceleration(body, body->state.time, body->state.u, NULL, body->state.a));
   PetscCall(VecAXPY(body->state.v, half, body->state.a));
   PetscCall(FinishSubstep(body));
   PetscFunctionReturn(PETSC_SUCCESS);

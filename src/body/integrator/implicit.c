@@ -7,22 +7,36 @@
 #define GAMMA   0.5
 #define BETA    0.25
 
-/* F = M A + internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */
+/* Adds the forces of the dashpots at the stage, where held dofs and prescribed rows have the velocity that they are given */
+static PetscErrorCode AddDamping(Body body, PetscReal t, PetscReal position, Vec U, Vec V, Vec F)
+{
+  Vec force = body->work.nodes[0];
+
+  PetscFunctionBegin;
+  if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->held.any) PetscCall(BodyPrescribeHeld(body, t, NULL, V, NULL));
+  if (body->rows.n_prescribed && body->rows.have_mass) PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, V));
+  PetscCall(BodyMultiplyDamping(body, U, V, force));
+  PetscCall(VecAXPY(F, 1, force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = M A + C V + internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */
 static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
 {
   Body                body       = (Body)ctx;
   const BodyImplicit *implicit   = (const BodyImplicit *)body->integrator->data;
   const PetscBool     prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
+  const PetscReal     position   = (body->time.substep + implicit->alpha_f) / body->time.substeps;
 
   PetscFunctionBegin;
   (void)ts;
-  (void)V;
   PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's, or the load's */
   if (body->held.any && (prescribed || !body->mass.diagonal)) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
-  if (prescribed)
-    PetscCall(BodyPrescribe(body, body->traces.acceleration_in, (body->time.substep + implicit->alpha_f) / body->time.substeps, A));
+  if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
   PetscCall(BodyMultiplyMass(body, A, F));
+  PetscCall(AddDamping(body, t, position, U, V, F));
   PetscCall(BodyImplicitAddForces(body, t, U, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,6 +134,7 @@ static PetscErrorCode FinishSubstep(Body body)
   }
   /* the last residual was evaluated at the stage, not at the end of the substep */
   if (implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(BodyNoteDamping(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,6 +171,7 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));
   }
+  PetscCall(BodyNoteDamping(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -230,7 +246,8 @@ static PetscErrorCode StartFromRest(Body body)
 static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
 {
   BodyImplicit      *implicit = (BodyImplicit *)body->integrator->data;
-  const PetscReal    dt = body->time.step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
+  const PetscReal    dt = body->time.step, beta = implicit->beta, gamma = implicit->gamma;
+  const PetscReal    c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
   const PetscScalar *rows;
 
   PetscFunctionBegin;
@@ -242,6 +259,14 @@ static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScal
     PetscCall(VecCopy(implicit->a, body->work.nodes[1]));
     PetscCall(VecAXPBYPCZ(body->work.nodes[1], c2, c1, c0, implicit->u, implicit->v));
     PetscCall(BodyMultiplyMass(body, body->work.nodes[1], body->work.nodes[0]));
+    if (BodyIsDamped(body)) {
+      /* what the velocity at the end has but for the displacement there, against the motion */
+      PetscCall(VecCopy(implicit->a, body->work.nodes[1]));
+      PetscCall(
+          VecAXPBYPCZ(body->work.nodes[1], gamma / (beta * dt), gamma / beta - 1, dt * (gamma / (2 * beta) - 1), implicit->u, implicit->v));
+      PetscCall(BodyMultiplyDamping(body, NULL, body->work.nodes[1], body->work.nodes[2]));
+      PetscCall(VecAXPY(body->work.nodes[0], 1, body->work.nodes[2]));
+    }
     PetscCall(BodyZeroHeld(body, body->work.nodes[0]));
     PetscCall(ConstrainedSolverSolveFree(body->solver, body->work.nodes[0], implicit->next));
     PetscCall(MatMult(body->rows.matrix, implicit->next, body->work.rows[0]));

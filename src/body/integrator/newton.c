@@ -125,7 +125,8 @@ PetscErrorCode BodyImplicitPrescribe(Body body, Vec U)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The effective matrix K + shift M, with the artificial springs of a body that contact alone holds; its held dofs eliminated */
+/* The effective matrix K + shift M + shift_velocity C, with the artificial springs of a body that contact alone holds; its held dofs
+ * eliminated */
 static PetscErrorCode AssembleMatrix(Body body, Vec u)
 {
   const BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
@@ -137,6 +138,7 @@ static PetscErrorCode AssembleMatrix(Body body, Vec u)
     PetscCall(VecScale(body->work.nodes[0], implicit->shift));
     PetscCall(MatDiagonalSet(implicit->matrix, body->work.nodes[0], ADD_VALUES));
   } else if (implicit->shift > 0) PetscCall(MatAXPY(implicit->matrix, implicit->shift, body->mass.matrix, SAME_NONZERO_PATTERN));
+  PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, implicit->matrix));
   PetscCall(BodyAddSpringStiffness(body, implicit->matrix));
   PetscCall(BodyEliminateHeld(body, implicit->matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -272,14 +274,24 @@ static PetscErrorCode SetUpNewton(Body body, SNES snes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* By how much acceleration and velocity at the stage change with the displacement there */
+static void SetShifts(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  if (!body->integrator->has_inertia) return;
+  implicit->shift          = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
+  implicit->shift_velocity = implicit->gamma / (implicit->beta * body->time.step);
+}
+
 /* The effective matrix at a displacement, with its factors in body->solver, for controller steps of the present level. It is K + alpha_m /
-   (alpha_f beta dt^2) M, and K alone without inertia. */
+   (alpha_f beta dt^2) M + gamma / (beta dt) C, with the dashpots C, and K alone without inertia. */
 static PetscErrorCode CreateSolver(Body body, Vec u)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  if (body->integrator->has_inertia) implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
+  SetShifts(body);
   PetscCall(BodyCreateMatrix(body, &implicit->matrix));
   implicit->matrices[body->time.level] = implicit->matrix;
   if (!body->model.linear && implicit->unit_strain == 0) PetscCall(ComputeUnitStrainForce(body));
@@ -304,7 +316,7 @@ PetscErrorCode BodyImplicitSetLevel(Body body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   implicit->matrix = implicit->matrices[level];
-  if (body->integrator->has_inertia) implicit->shift = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
+  SetShifts(body);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

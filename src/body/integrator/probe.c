@@ -3,13 +3,13 @@
 
 #define N_BACKUP 7
 
-/* What probing overwrites: present and saved state, internal force; forces from outside, NULL without loads; all traces; where the body is
-   in time */
+/* What probing overwrites: present and saved state, internal force; forces from outside and of dashpots, NULL without any; all traces;
+   where the body is in time */
 struct _BodyProbe {
-  Vec          vecs[N_BACKUP], applied;
+  Vec          vecs[N_BACKUP], applied, damping;
   PetscScalar *traces;
   PetscScalar *column; /* displacement of this rank's rows, for each substep */
-  PetscReal    time, saved_time, work;
+  PetscReal    time, saved_time, work, damping_work;
   PetscInt     step, saved_step;
 };
 
@@ -19,6 +19,7 @@ PetscErrorCode BodyDestroyProbe(Body body)
   if (!body->probe) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDestroy(&body->probe->vecs[k]));
   PetscCall(VecDestroy(&body->probe->applied));
+  PetscCall(VecDestroy(&body->probe->damping));
   PetscCall(PetscFree2(body->probe->traces, body->probe->column));
   PetscCall(PetscFree(body->probe));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -53,19 +54,22 @@ static PetscErrorCode BeginProbe(Body body)
                            &body->probe->column));
     for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDuplicate(body->state.u, &body->probe->vecs[k]));
     if (body->state.applied) PetscCall(VecDuplicate(body->state.applied, &body->probe->applied));
+    if (body->state.damping) PetscCall(VecDuplicate(body->state.damping, &body->probe->damping));
   }
   for (PetscInt k = 0; k < N_BACKUP; k++) {
     PetscCall(VecCopy(vecs[k], body->probe->vecs[k]));
     PetscCall(VecZeroEntries(vecs[k]));
   }
   if (body->state.applied) PetscCall(VecCopy(body->state.applied, body->probe->applied));
+  if (body->state.damping) PetscCall(VecCopy(body->state.damping, body->probe->damping));
   PetscCall(CopyTraces(body, PETSC_TRUE));
-  body->probe->time       = body->state.time;
-  body->probe->saved_time = body->saved.time;
-  body->probe->step       = body->state.step;
-  body->probe->saved_step = body->saved.step;
-  body->probe->work       = body->state.external_work;
-  body->unloaded          = PETSC_TRUE;
+  body->probe->time         = body->state.time;
+  body->probe->saved_time   = body->saved.time;
+  body->probe->step         = body->state.step;
+  body->probe->saved_step   = body->saved.step;
+  body->probe->work         = body->state.external_work;
+  body->probe->damping_work = body->state.damping_work;
+  body->unloaded            = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,12 +96,14 @@ static PetscErrorCode EndProbe(Body body)
   PetscFunctionBegin;
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecCopy(body->probe->vecs[k], vecs[k]));
   if (body->state.applied) PetscCall(VecCopy(body->probe->applied, body->state.applied));
+  if (body->state.damping) PetscCall(VecCopy(body->probe->damping, body->state.damping));
   PetscCall(CopyTraces(body, PETSC_FALSE));
   body->state.time          = body->probe->time;
   body->saved.time          = body->probe->saved_time;
   body->state.step          = body->probe->step;
   body->saved.step          = body->probe->saved_step;
   body->state.external_work = body->probe->work;
+  body->state.damping_work  = body->probe->damping_work;
   body->unloaded            = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscFunctionReturn(PETSC_SUCCESS);

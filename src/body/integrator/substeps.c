@@ -31,6 +31,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
+    if (body->substep_start.damping) PetscCall(VecCopy(body->state.damping, body->substep_start.damping));
     if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyTurnToMeanForce(body));
     PetscCall(TSStep(body->time.ts));
     body->state.step++;
@@ -39,7 +40,10 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     if (body->failure.reason < 0) break;
     PetscCall((*body->integrator->ops.finishsubstep)(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));
-    if (body->time.substeps > 1) PetscCall(BodyAddWork(body, body->substep_start.u));
+    if (body->time.substeps > 1) {
+      PetscCall(BodyAddWork(body, body->substep_start.u));
+      PetscCall(BodyAddDampingWork(body));
+    }
   }
   body->statistics.substeps += body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -31,6 +31,7 @@ PetscErrorCode BodySave(Body body)
   }
   /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
   if (body->loads && body->time.substeps == 1 && stepped) PetscCall(BodyAddWork(body, body->substep_start.u));
+  if (body->time.substeps == 1 && stepped) PetscCall(BodyAddDampingWork(body));
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
   if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
   PetscCall(BodyStateCopy(&body->state, &body->saved));

@@ -251,12 +251,15 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpSteps(body));
   PetscCall(CreateTraces(body));
   PetscCall(BodyCreateCompliance(body));
+  PetscCall(BodySetUpDamping(body));
+  PetscCall(BodySetUpPoints(body));
   PetscCall(BodySetUpTime(body));
   PetscCall(BodySetUpRepeat(body));
-  if (body->integrator->reads_start || body->loads) {
+  if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) {
     PetscCall(BodyCreateVec(body, &body->substep_start.u));
     PetscCall(BodyCreateVec(body, &body->substep_start.v));
   }
+  if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &body->substep_start.damping));
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));
   PetscCall(MaterialViewFromOptions(body->model.material, (PetscObject)body, "-material_view"));
   PetscCall(ElementViewFromOptions(body->model.element, (PetscObject)body, "-element_view"));
@@ -302,6 +305,8 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscCall(BodyDestroyLevels(b));
     PetscCall(BodyDestroyProbe(b));
     PetscCall(BodyLoadsDestroy(b));
+    PetscCall(BodyDestroyDamping(b));
+    PetscCall(BodyDestroyPoints(b));
     for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
     for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) PetscCall(BodyStateDestroy(states[i]));
     for (size_t i = 0; i < sizeof(traces) / sizeof(traces[0]); i++) PetscCall(TraceDestroy(traces[i]));

@@ -75,6 +75,30 @@ static PetscErrorCode ReadMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads what only bodies with inertia have, so that it is an unused option of others */
+static PetscErrorCode ReadDamping(Body body)
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  PetscReal   mass, stiffness;
+  PetscBool   set[2];
+
+  PetscFunctionBegin;
+  if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetDamping(body, &mass, &stiffness));
+  PetscObjectOptionsBegin((PetscObject)body);
+  PetscCall(PetscOptionsReal("-damping_mass", "Rayleigh damping: forces against the velocity in parts of the mass [1/s]", "BodySetDamping",
+                             mass, &mass, &set[0]));
+  PetscCall(PetscOptionsReal("-damping_stiffness", "Rayleigh damping: forces against the rate of strain in parts of the stiffness [s]",
+                             "BodySetDamping", stiffness, &stiffness, &set[1]));
+  PetscOptionsEnd();
+  PetscCheck(mass >= 0 && !PetscIsInfReal(mass), PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sdamping_mass %g 1/s must not be negative: it takes energy", prefix, (double)mass);
+  PetscCheck(stiffness >= 0 && !PetscIsInfReal(stiffness), PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sdamping_stiffness %g s must not be negative: it takes energy", prefix, (double)stiffness);
+  if (set[0] || set[1]) PetscCall(BodySetDamping(body, mass, stiffness));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads what only static bodies have, so that it is an unused option of others */
 static PetscErrorCode ReadStatic(Body body)
 {
@@ -108,7 +132,10 @@ static PetscErrorCode ReadStatic(Body body)
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
 . -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step; auto: 0.9 of the stable explicit step
+. -<body>_damping_mass alpha                         - Rayleigh damping by the mass [1/s], default 0
+. -<body>_damping_stiffness beta                     - Rayleigh damping by the stiffness [s], default 0
 . -<body>_artificial_stiffness part                  - of a static body that contact or ties alone hold, default 1e-2, nonlinear 1
+. -<body>_probe x,y,z;x,y,z                          - points whose motion and stress are observed, see `BodyAddProbe()`
 . -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
 - -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
 
@@ -142,6 +169,8 @@ PetscErrorCode BodySetFromOptions(Body body)
   PetscCall(BodySetTimeFromOptions(body));
   PetscCall(ReadMass(body));
   PetscCall(ReadStatic(body));
+  PetscCall(ReadDamping(body));
+  PetscCall(BodyReadPoints(body));
   PetscCall(BodyLoadsSetFromOptions(body));
   PetscCall(BodyNoteHeld(body));
   PetscFunctionReturn(PETSC_SUCCESS);

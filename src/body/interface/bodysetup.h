@@ -7,3 +7,4 @@ PETSC_INTERN PetscErrorCode BodySetTimeFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodySetUpIntegrator(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassType(Body);
 PETSC_INTERN PetscErrorCode BodyNoteHeld(Body);
+PETSC_INTERN PetscErrorCode BodyReadPoints(Body);

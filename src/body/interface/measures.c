@@ -134,7 +134,7 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  PetscReal sums[14] = {0};
+  PetscReal sums[14] = {0}, drag;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -150,12 +150,34 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   measures->kinetic       = sums[0];
   measures->potential     = sums[1];
   measures->external_work = body->state.external_work;
+  measures->damping_work  = body->state.damping_work;
   BodyFinishRotation(body, sums + 11, measures->rotation);
-  measures->loaded = (PetscBool)(body->loads != NULL);
+  PetscCall(BodyGetDamping(body, &drag, NULL)); /* which takes momentum */
+  measures->loaded = (PetscBool)(body->loads != NULL || drag > 0);
   for (PetscInt d = 0; d < 3; d++) {
     measures->momentum[d]         = sums[2 + d];
     measures->angular_momentum[d] = sums[5 + d];
     measures->mean_velocity[d]    = sums[8 + d] / body->mass.total;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyMeasuresGetBalance - the energy that only contact and errors of the integrator change
+
+  Not Collective
+
+  Input Parameter:
+. measures - of a body, by `BodyGetMeasures()`
+
+  Level: intermediate
+
+  Note:
+  Kinetic and potential energy, with what dashpots have taken, less the work of loads and of held displacements [J].
+
+.seealso: `Body`, `BodyMeasures`, `BodyGetMeasures()`
+@*/
+PetscReal BodyMeasuresGetBalance(const BodyMeasures *measures)
+{
+  return measures->kinetic + measures->potential + measures->damping_work - measures->external_work;
 }

@@ -85,7 +85,9 @@ typedef struct {
   Vec       u, v, a;
   Vec       internal_force; /* at u [N]; not of the saved state, since the next step computes it */
   Vec       applied;        /* forces from outside and reactions of held dofs; NULL without loads [N] */
-  PetscReal external_work;  /* done by them since the start [J] */
+  Vec       damping;        /* forces of the dashpots, against the velocity; NULL without any [N] */
+  PetscReal external_work;  /* done by the applied forces since the start [J] */
+  PetscReal damping_work;   /* taken by the dashpots since the start [J] */
   PetscReal time;
   PetscInt  step; /* substeps since the start */
 } BodyState;
@@ -196,10 +198,12 @@ struct _p_Body {
   StepFailure             failure; /* of the last integration */
   PetscBool repeats; /* the present end state is that of an integration from the saved state, under the present conditions and inputs */
   /* loads */
-  struct _BodyLoads *loads; /* conditions on surfaces and forces from outside; NULL: none */
-  BodyHeld           held;
-  BodySprings        springs;
-  PetscBool          unloaded; /* while its compliance is probed: no forces from outside, held dofs at zero */
+  struct _BodyLoads   *loads; /* conditions on surfaces and forces from outside; NULL: none */
+  BodyHeld             held;
+  BodySprings          springs;
+  struct _BodyPoints  *points;   /* that are observed, see src/body/interface/points.c; NULL: none */
+  struct _BodyDamping *damping;  /* dashpots, see src/body/system/damping.c; NULL: none */
+  PetscBool            unloaded; /* while its compliance is probed: no forces from outside, held dofs at zero */
   /* what BodyGetPositionChange() compares with */
   struct {
     Vec       u;
@@ -247,6 +251,16 @@ PETSC_INTERN PetscErrorCode BodyNoteInverted(Body);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
 PETSC_INTERN PetscErrorCode BodyDescribeMotions(PetscInt, const PetscReal[], size_t, char[]);
+PETSC_INTERN PetscBool      BodyIsDamped(Body);
+PETSC_INTERN PetscErrorCode BodySetUpDamping(Body);
+PETSC_INTERN PetscErrorCode BodySetUpPoints(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyPoints(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyDamping(Body);
+PETSC_INTERN PetscErrorCode BodyMultiplyDamping(Body, Vec, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyNoteDamping(Body);
+PETSC_INTERN PetscErrorCode BodyAddDampingMatrix(Body, Vec, PetscReal, Mat);
+PETSC_INTERN PetscErrorCode BodyAddDampingWork(Body);
+PETSC_INTERN PetscErrorCode BodyGetPendingDampingWork(Body, PetscReal *);
 PETSC_INTERN PetscErrorCode BodySetUpSprings(Body, PetscInt, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyAddSpringForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddSpringStiffness(Body, Mat);

@@ -38,6 +38,7 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
   else {
     PetscCall(BodyMultiplyMass(body, body->state.a, body->work.nodes[0]));
     PetscCall(VecAXPY(body->work.nodes[0], 1, body->state.internal_force));
+    if (body->state.damping) PetscCall(VecAXPY(body->work.nodes[0], 1, body->state.damping));
   }
   /* contact forces on held dofs come from the partner */
   if (body->rows.n_prescribed || body->rows.n_forced) {
@@ -52,13 +53,15 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* To be called when the initial state is there */
+/* To be called when the initial state is there. A static body need not be in balance there: its loads grow in the first step from what
+   would hold it as it is to what they are at the end, however suddenly they come. */
 PetscErrorCode BodySetUpWork(Body body)
 {
   PetscFunctionBegin;
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
   body->state.external_work = body->saved.external_work = 0;
-  PetscCall(ComputeApplied(body, body->state.applied));
+  if (body->integrator->has_inertia) PetscCall(ComputeApplied(body, body->state.applied));
+  else PetscCall(VecCopy(body->state.internal_force, body->state.applied));
   PetscCall(VecCopy(body->state.applied, body->saved.applied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,7 +95,7 @@ PetscErrorCode BodyAddWork(Body body, Vec start)
 }
 
 /*@
-  BodyComputeEnergy - kinetic and potential energy, less the work of loads, of the present state
+  BodyComputeEnergy - kinetic and potential energy, less the work of loads, with what dashpots took, of the present state
 
   Collective
 
@@ -111,7 +114,7 @@ PetscErrorCode BodyAddWork(Body body, Vec start)
 @*/
 PetscErrorCode BodyComputeEnergy(Body body, PetscReal *energy)
 {
-  PetscReal    pending = 0;
+  PetscReal    pending = 0, damped = 0;
   BodyMeasures measures;
 
   PetscFunctionBegin;
@@ -122,6 +125,7 @@ PetscErrorCode BodyComputeEnergy(Body body, PetscReal *energy)
   PetscCall(BodyGetMeasures(body, &measures));
   if (body->loads && body->time.substeps == 1 && body->state.step != body->saved.step)
     PetscCall(ComputeWork(body, body->substep_start.u, body->work.nodes[2], &pending));
-  *energy = measures.kinetic + measures.potential - measures.external_work - pending;
+  if (body->time.substeps == 1 && body->state.step != body->saved.step) PetscCall(BodyGetPendingDampingWork(body, &damped));
+  *energy = BodyMeasuresGetBalance(&measures) - pending + damped;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,6 +59,7 @@ static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt p
   PetscInt       count = 0;
 
   PetscFunctionBegin;
+  group->prescription = prescription;
   group->displacement = body->loads->prescribed[prescription].component[component];
   PetscCall(ExpressionIsSteady(group->displacement, &group->steady));
   PetscCall(ExpressionIsUniform(group->displacement, &group->uniform));
@@ -117,6 +118,7 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body)
       if (loads->prescribed[i].component[d]) PetscCall(FillGroup(body, mark, i, d, &loads->groups[loads->n_groups++]));
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(VecDestroy(&marks));
+  PetscCall(BodyLoadsSetUpReactions(body));
   count[0] = loads->n_held;
   count[1] = n_dofs;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT64, MPI_SUM, PetscObjectComm((PetscObject)body)));
@@ -188,5 +190,6 @@ PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *loads)
     for (int d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&loads->prescribed[i].component[d]));
   }
   PetscCall(PetscFree(loads->prescribed));
+  PetscCall(PetscFree(loads->reactions));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -32,6 +32,7 @@ typedef struct {
 
 /* Owned dofs with the same component of the same prescribed displacement */
 typedef struct {
+  PetscInt   prescription; /* of the surface whose prescription holds */
   Expression displacement; /* borrowed */
   PetscBool  steady, uniform;
   DofValues  held; /* values: of steady ones only [m] */
@@ -48,6 +49,7 @@ struct _BodyLoads {
   PrescribedDisplacement *prescribed;
   HeldDofs               *groups;
   PetscInt               *held_dofs; /* all of them, ascending */
+  PetscReal              *reactions; /* work space of BodyGetReactions() */
   /* forces; what comes below `ready` is made when they are first asked for */
   PetscInt         n_loads, n_uniform;
   Load            *loads;
@@ -69,6 +71,7 @@ PETSC_INTERN PetscErrorCode BodyLoadsAddBodyForce(Body, const char[]);
 PETSC_INTERN void           BodyLoadsSetGravity(Body, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyLoadsSetInitial(Body, PetscBool, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyLoadsSetUpHeld(Body);
+PETSC_INTERN PetscErrorCode BodyLoadsSetUpReactions(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyForces(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsReadInitialState(Body);

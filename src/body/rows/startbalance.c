@@ -12,8 +12,8 @@
 /* Changes of the layer below this part of positions and displacements of the nodes are round-off */
 #define ROUND_OFF (16 * PETSC_MACHINE_EPSILON)
 
-/* f = forces from outside, and on the rows if it is pushed there, less the internal force at the present displacement, which must have been
-   computed. A rank without rows has no forces, but takes part. */
+/* f = forces from outside, and on the rows if it is pushed there, less the forces of dashpots and the internal force at the present
+   displacement, which must have been computed. A rank without rows has no forces, but takes part. */
 static PetscErrorCode ComputeImbalance(Body body, PetscBool pushed, const PetscScalar force[], Vec f)
 {
   PetscScalar *row;
@@ -21,6 +21,7 @@ static PetscErrorCode ComputeImbalance(Body body, PetscBool pushed, const PetscS
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(f));
   PetscCall(VecAXPY(f, -1, body->state.internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
+  if (body->state.damping) PetscCall(VecAXPY(f, -1, body->state.damping));
   PetscCall(BodyAddExternalForce(body, body->state.time, 1, f));
   if (!pushed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
@@ -38,6 +39,7 @@ PetscErrorCode BodyComputeStartAcceleration(Body body, PetscBool pushed, const P
   PetscReal norm;
 
   PetscFunctionBegin;
+  PetscCall(BodyNoteDamping(body));
   PetscCall(ComputeImbalance(body, pushed, force, f));
   PetscCall(VecNorm(f, NORM_INFINITY, &norm));
   PetscCall(VecZeroEntries(body->state.a));
@@ -285,7 +287,7 @@ PetscErrorCode BodyMoveLayer(Body body, const PetscScalar force[], PetscReal *ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reactions of held dofs do no work against contact forces, which come from the partner */
+/* Reactions of held dofs do no work against contact forces, which come from the partner; nor does what holds a static body as it is */
 static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[])
 {
   Vec                on_nodes = body->work.nodes[0];
@@ -293,11 +295,15 @@ static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[]
   PetscScalar       *row, *applied;
 
   PetscFunctionBegin;
-  if (!body->loads || !body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->loads || (body->integrator->has_inertia && !body->held.any)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   PetscCall(PetscArraycpy(row, force, body->rows.local));
   PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
   PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], on_nodes));
+  if (!body->integrator->has_inertia) {
+    PetscCall(VecAXPY(body->state.applied, -1, on_nodes));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecGetArrayRead(on_nodes, &contact));
   PetscCall(VecGetArray(body->state.applied, &applied));
   for (PetscInt i = 0; i < body->held.n; i++) applied[body->held.dofs[i]] -= contact[body->held.dofs[i]];

@@ -46,12 +46,13 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
     const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);
 
     if (at_stage) force = body->rows.stage_balance;
-    else if (inertia || body->loads || body->rows.n_forced || BodyHandsOver(body)) {
+    else if (inertia || body->loads || body->state.damping || body->rows.n_forced || BodyHandsOver(body)) {
       force = body->work.nodes[0];
       if (inertia) {
         PetscCall(BodyMultiplyMass(body, body->state.a, force));
         PetscCall(VecAXPY(force, 1, body->state.internal_force));
       } else PetscCall(VecCopy(body->state.internal_force, force));
+      if (body->state.damping) PetscCall(VecAXPY(force, 1, body->state.damping));
       /* what is loaded and prescribed at once has the load in its balance */
       PetscCall(BodyAddExternalForce(body, body->state.time, -1, force));
       PetscCall(BodyAddContactForce(body, (PetscReal)level / body->time.substeps, -1, body->state.u, force));

@@ -182,10 +182,10 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* 2 / omega_max, from below */
+/* 2 / omega_max, from below; less with dashpots */
 PetscErrorCode BodyComputeStableStep(Body body)
 {
-  PetscReal    largest = 0;
+  PetscReal    largest = 0, alpha, beta, rate;
   PetscScalar *zero;
 
   PetscFunctionBegin;
@@ -201,6 +201,9 @@ PetscErrorCode BodyComputeStableStep(Body body)
     }
   PetscCall(PetscFree(zero));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
-  body->time.stable_step = 2 / PetscSqrtReal(largest);
+  PetscCall(BodyGetDamping(body, &alpha, &beta));
+  /* of dashpots that feel the velocity at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being alpha + beta omega^2 */
+  rate                   = alpha + beta * largest;
+  body->time.stable_step = 4 / (rate + PetscSqrtReal(PetscSqr(rate) + 4 * largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

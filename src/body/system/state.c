@@ -22,7 +22,9 @@ PetscErrorCode BodyStateCopy(const BodyState *from, BodyState *to)
   PetscCall(VecCopy(from->a, to->a));
   if (from->internal_force && to->internal_force) PetscCall(VecCopy(from->internal_force, to->internal_force));
   if (from->applied && to->applied) PetscCall(VecCopy(from->applied, to->applied));
+  if (from->damping && to->damping) PetscCall(VecCopy(from->damping, to->damping));
   to->external_work = from->external_work;
+  to->damping_work  = from->damping_work;
   to->time          = from->time;
   to->step          = from->step;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,6 +38,7 @@ PetscErrorCode BodyStateDestroy(BodyState *state)
   PetscCall(VecDestroy(&state->a));
   PetscCall(VecDestroy(&state->internal_force));
   PetscCall(VecDestroy(&state->applied));
+  PetscCall(VecDestroy(&state->damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -223,6 +223,16 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nodes of all ranks that have rows, those of several pairs once in each. Collective. */
+static PetscErrorCode CountNodes(Contact contact, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) *n += (contact->pairs[p].end - contact->pairs[p].begin) / contact->pairs[p].components;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactView - prints pairs and method
 
@@ -239,6 +249,7 @@ PetscErrorCode ContactAccept(Contact contact)
 PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
 {
   PetscBool ascii;
+  PetscInt  nodes = 0;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
@@ -251,8 +262,8 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall(PetscViewerASCIIPrintf(viewer, contact->pairs[p].why ? " %s (sides chosen: %s)" : " %s", contact->pairs[p].name,
                                      contact->pairs[p].why));
-  PetscCall(
-      PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", contact->rows.n_all, contact->rows.n_all == 1 ? "" : "s"));
+  if (contact->setup) PetscCall(CountNodes(contact, &nodes));
+  PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", nodes, nodes == 1 ? "" : "s"));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactLaws[contact->options.law]));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)

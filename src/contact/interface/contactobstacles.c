@@ -56,3 +56,82 @@ PetscErrorCode ContactAddObstacle(Contact contact, Obstacle obstacle)
   contact->obstacles[contact->n_obstacles++] = obstacle;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  ContactGetNumObstacles - the number of obstacles
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. n - the number
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetObstacle()`, `ContactAddObstacle()`
+@*/
+PetscErrorCode ContactGetNumObstacles(Contact contact, PetscInt *n)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(n, 2);
+  *n = contact->n_obstacles;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetObstacle - an obstacle by its number
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- i       - 0 to the number of obstacles - 1, in the order in which they were added
+
+  Output Parameter:
+. obstacle - owned by the contact
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetNumObstacles()`, `ContactGetPairObstacle()`
+@*/
+PetscErrorCode ContactGetObstacle(Contact contact, PetscInt i, Obstacle *obstacle)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(obstacle, 3);
+  PetscCheck(i >= 0 && i < contact->n_obstacles, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no obstacle %" PetscInt_FMT "; there are %" PetscInt_FMT, i, contact->n_obstacles);
+  *obstacle = contact->obstacles[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairObstacle - the obstacle that a pair has for its second side
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. i - number of the obstacle, -1 where both sides are bodies
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetObstacle()`, `ContactGetPair()`
+@*/
+PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *i)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(i, 3);
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  *i = contact->pairs[pair].obstacle ? contact->n_obstacles - 1 : -1;
+  while (*i >= 0 && contact->obstacles[*i] != contact->pairs[pair].obstacle) (*i)--;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

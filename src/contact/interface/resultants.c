@@ -142,6 +142,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
 {
   const ContactPair *pair    = &contact->pairs[p];
   PetscInt           counted = -1; /* the node that was counted last: the rows of a tied node follow each other */
+  PetscReal          normal  = 0;  /* force along the normal of the rows of a node so far [N] */
   TransferRows       rows;
 
   PetscFunctionBegin;
@@ -155,7 +156,8 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
 
     sums[SUM_FORCE] += along * contact->end.force[i];
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
-    if (!contact->rows.tied[i]) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -contact->end.force[i]);
+    normal                  = (k ? normal : 0) + along * contact->end.force[i];
+    if (k == pair->components - 1) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -normal);
     if (!contact->end.active[i]) continue;
     /* merged rows of one node may have different areas */
     if (contact->held.merger) sums[SUM_AREA] += PetscSqr(along) * contact->rows.area[i] * contact->resultants.cross_section[p];

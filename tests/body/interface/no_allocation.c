@@ -63,6 +63,14 @@ static void ExplicitDoesNotAllocate(void **state)
   RunCase("-left_ts_type centraldifference -right_ts_type centraldifference -right_ts_time_step 5e-7");
 }
 
+static void DampingDoesNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-left_damping_mass 10 -left_damping_stiffness 1e-8 -right_damping_stiffness 1e-8");
+  RunCase("-left_ts_type centraldifference -left_damping_stiffness 1e-8 -right_ts_type centraldifference -right_ts_time_step 5e-7 "
+          "-right_damping_mass 10");
+}
+
 static void PaperDoesNotAllocate(void **state)
 {
   (void)state;
@@ -128,12 +136,14 @@ static void RunSolid(const char options[])
   assert_int_equal(BodySetControllerStep(body, 0, 0.02), PETSC_SUCCESS);
   assert_int_equal(BodySetUp(body), PETSC_SUCCESS);
   for (int step = 0; step < 20; step++) {
+    PetscReal    forces[3], moments[3];
     BodyMeasures measures;
 
     if (step == 3) before = allocations;
     assert_int_equal(BodyIntegrate(body), PETSC_SUCCESS);
     assert_int_equal(BodySave(body), PETSC_SUCCESS);
     assert_int_equal(BodyGetMeasures(body, &measures), PETSC_SUCCESS);
+    assert_int_equal(BodyGetReactions(body, forces, moments), PETSC_SUCCESS);
     assert_true(measures.kinetic > 0);
   }
   before = allocations - before;
@@ -156,6 +166,7 @@ static void ExplicitSolidsDoNotAllocate(void **state)
   RunSolid("-b_ts_type centraldifference " SOLID_LOADS);
   RunSolid("-b_ts_type centraldifference -b_material_type neo_hookean");
   RunSolid("-b_ts_type centraldifference -b_material_type neo_hookean " SOLID_LOADS);
+  RunSolid("-b_ts_type centraldifference -b_material_type neo_hookean -b_damping_mass 0.1 -b_damping_stiffness 0.01 " SOLID_LOADS);
 }
 
 static void ImplicitSolidsDoNotAllocate(void **state)
@@ -163,22 +174,18 @@ static void ImplicitSolidsDoNotAllocate(void **state)
   (void)state;
   RunSolid("");
   RunSolid(SOLID_LOADS);
+  RunSolid("-b_damping_mass 0.1 -b_damping_stiffness 0.01 " SOLID_LOADS);
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(DefaultsDoNotAllocate),
-      cmocka_unit_test(ExplicitDoesNotAllocate),
-      cmocka_unit_test(PaperDoesNotAllocate),
-      cmocka_unit_test(TransmissionsDoNotAllocate),
-      cmocka_unit_test(SwappedSidesDoNotAllocate),
-      cmocka_unit_test(PenaltyDoesNotAllocate),
-      cmocka_unit_test(LagrangeDoesNotAllocate),
-      cmocka_unit_test(RatesDoNotAllocate),
-      cmocka_unit_test(NaiveStabilizationDoesNotAllocate),
-      cmocka_unit_test(ExplicitSolidsDoNotAllocate),
-      cmocka_unit_test(ImplicitSolidsDoNotAllocate),
+      cmocka_unit_test(DefaultsDoNotAllocate),       cmocka_unit_test(ExplicitDoesNotAllocate),
+      cmocka_unit_test(DampingDoesNotAllocate),      cmocka_unit_test(PaperDoesNotAllocate),
+      cmocka_unit_test(TransmissionsDoNotAllocate),  cmocka_unit_test(SwappedSidesDoNotAllocate),
+      cmocka_unit_test(PenaltyDoesNotAllocate),      cmocka_unit_test(LagrangeDoesNotAllocate),
+      cmocka_unit_test(RatesDoNotAllocate),          cmocka_unit_test(NaiveStabilizationDoesNotAllocate),
+      cmocka_unit_test(ExplicitSolidsDoNotAllocate), cmocka_unit_test(ImplicitSolidsDoNotAllocate),
   };
   int failed;
 

@@ -100,6 +100,29 @@ static void is_what_an_integration_brings(void **state)
       }
 }
 
+/* Dashpots act on what has mass alone, and on held dofs that move */
+static void is_what_an_integration_brings_with_dashpots(void **state)
+{
+  static const char *const loads[SHAPES_OF_BODIES] = {"", "-boundary_displacement ymin -boundary_displacement_ymin 0.01*t,free",
+                                                      "-gravity 0,0,-0.3"};
+
+  (void)state;
+  for (PetscInt shape = 0; shape < SHAPES_OF_BODIES; shape++)
+    for (PetscInt method = 0; method < METHODS; method++)
+      for (PetscInt substeps = 1; substeps <= 4; substeps += 3) {
+        char      options[512];
+        RowBody   b;
+        PetscBool has;
+
+        if (method == STATIC) continue; /* it has no dashpots */
+        (void)snprintf(options, sizeof(options), "-damping_mass 0.7 -damping_stiffness 0.02 %s", loads[shape]);
+        row_body_create(&b, shape, (Method)method, substeps, NULL, options);
+        ok(BodyHasFreeRows(b.body, &has));
+        check_responses(&b, has);
+        row_body_destroy(&b);
+      }
+}
+
 /* Weight acts on what has mass, and tractions on the side across; nothing from outside acts on the contact nodes */
 static void is_what_an_integration_brings_under_loads(void **state)
 {
@@ -156,6 +179,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(is_what_an_integration_brings),
       cmocka_unit_test(is_what_an_integration_brings_under_loads),
+      cmocka_unit_test(is_what_an_integration_brings_with_dashpots),
       cmocka_unit_test(rows_that_are_not_known_are_refused),
       cmocka_unit_test(rows_that_are_not_independent_are_refused),
   };

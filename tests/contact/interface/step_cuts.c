@@ -61,6 +61,7 @@ static void Note(Simulation *simulation, PetscInt step, Record *record)
     values[record->n++] = measures.kinetic;
     values[record->n++] = measures.potential;
     values[record->n++] = measures.momentum[0];
+    values[record->n++] = measures.damping_work;
   }
   ok(ContactGetPairState(simulation->contact, 0, &pair));
   values[record->n++] = pair.force;
@@ -172,6 +173,9 @@ static void bars(void **state)
       "-contact_swap_sides 0 -schwarz_condense 0 -schwarz_snes_type anderson",
       "-schwarz_snes_type newtonls -left_mass_redistribute 0 -right_mass_redistribute 0",
       "-left_mass_redistribute 1 -right_mass_redistribute 1 -left_mass_type consistent",
+      "-left_damping_mass 0.5 -right_damping_stiffness 0.003",
+      "-right_ts_type centraldifference -left_material_type neo_hookean",
+      "-left_ts_type centraldifference -left_damping_stiffness 0.002",
   };
 
   AddCollision(8, 13, 0);
@@ -182,7 +186,8 @@ static void substeps(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
   const char *const variants[] = {"-left_ts_type alpha2 -right_ts_type alpha2", "-right_ts_type centraldifference",
-                                  "-left_ts_type centraldifference", "-left_material_type neo_hookean"};
+                                  "-left_ts_type centraldifference", "-left_material_type neo_hookean",
+                                  "-left_damping_mass 0.5 -left_damping_stiffness 0.001 -right_damping_stiffness 0.001"};
 
   AddCollision(8, 13, 0);
   for (PetscInt shared = 0; shared < 2; shared++) {

@@ -1,0 +1,294 @@
+/*
+   Rayleigh damping: dashpots with the forces C v = alpha M v + beta K v against the velocity v.
+
+   M is the body's own mass matrix: massless nodes have no drag. K v is what the elements of the undeformed body would put on the nodes for
+   displacements v, of elements that touch no massless node: with dashpots on a massless node the contact layer would have dynamics of its
+   own, of first order, and no balance. Left out as a whole, these elements damp nothing, so that what remains still lets rigid motions
+   pass.
+
+   In a nonlinear body K v is the force of the stress S = C0 : dE/dt, with the elastic constants C0 at zero strain and the rate of Green
+   and Lagrange's strain E. It is K v at small displacements, takes no energy from a body that turns, and never brings any.
+*/
+#include <body/layout/bodyimpl.h>
+
+struct _BodyDamping {
+  PetscReal mass, stiffness; /* alpha [1/s], beta [s] */
+  /* below: with a stiffness part */
+  PetscInt *connectivity; /* of the elements that touch no massless node */
+  Element   element;      /* these; linear */
+  Material  material;     /* of a nonlinear body: theirs */
+  Vec       work;         /* M v, M a */
+};
+
+/*@
+  BodySetDamping - gives a body Rayleigh damping
+
+  Logically Collective
+
+  Input Parameters:
++ body      - the `Body`, not yet set up
+. mass      - alpha: forces against the velocity in parts of the mass, alpha M v [1/s]
+- stiffness - beta: forces against the rate of the strain in parts of the stiffness, beta K v [s]
+
+  Options Database Keys:
++ -<body>_damping_mass alpha     - the first
+- -<body>_damping_stiffness beta - the second
+
+  Level: intermediate
+
+  Notes:
+  A vibration of angular frequency omega has the damping ratio alpha / (2 omega) + beta omega / 2. alpha damps what is slow, rigid motion
+  too; beta what is fast.
+
+  beta counts for elements without massless contact nodes: the layer stays in static balance. In nonlinear bodies it stands for the stress
+  beta C0 : dE/dt in the undeformed body, with the elastic constants C0 at zero strain and the rate of Green and Lagrange's strain: bodies
+  turn freely.
+
+  An explicit body takes the velocity at mid-step, half a step before its forces. Its stable step becomes
+  (2 / omega) (sqrt(1 + zeta^2) - zeta), with the damping ratio zeta of its fastest vibration omega.
+
+  What the dashpots take is in `BodyMeasures`, and no error of the energy. A static body has none.
+
+.seealso: `Body`, `BodyGetDamping()`, `BodyMeasures`, `BodyGetStableStep()`
+@*/
+PetscErrorCode BodySetDamping(Body body, PetscReal mass, PetscReal stiffness)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(body, mass, 2);
+  PetscValidLogicalCollectiveReal(body, stiffness, 3);
+  BodyCheckNotSetUp(body);
+  PetscCheck(mass >= 0 && stiffness >= 0 && !PetscIsInfReal(mass) && !PetscIsInfReal(stiffness), PetscObjectComm((PetscObject)body),
+             PETSC_ERR_ARG_OUTOFRANGE, "Body '%s': damping of %g 1/s of the mass and %g s of the stiffness; neither may be negative",
+             body->hdr.name, (double)mass, (double)stiffness);
+  if (!body->damping) PetscCall(PetscNew(&body->damping));
+  body->damping->mass      = mass;
+  body->damping->stiffness = stiffness;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetDamping - the Rayleigh damping of a body
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameters:
++ mass      - alpha, or `NULL` [1/s]
+- stiffness - beta, or `NULL` [s]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetDamping()`
+@*/
+PetscErrorCode BodyGetDamping(Body body, PetscReal *mass, PetscReal *stiffness)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (mass) *mass = body->damping ? body->damping->mass : 0;
+  if (stiffness) *stiffness = body->damping ? body->damping->stiffness : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether it has dashpots at all */
+PetscBool BodyIsDamped(Body body)
+{
+  return (PetscBool)(body->damping && body->integrator->has_inertia && (body->damping->mass > 0 || body->damping->stiffness > 0));
+}
+
+/* Elements none of whose nodes is massless: their number and connectivity */
+static PetscErrorCode SelectElements(Body body, PetscInt *count, PetscInt **connectivity)
+{
+  const PetscInt n = body->model.element->nodes;
+
+  PetscFunctionBegin;
+  *count = 0;
+  PetscCall(PetscMalloc1(body->model.element->count * n, connectivity));
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    const PetscInt *nodes    = body->mesh.connectivity + e * n;
+    PetscBool       massless = PETSC_FALSE;
+
+    for (PetscInt a = 0; a < n; a++)
+      if (body->mass.redistribute && body->layer.contains[nodes[a]]) massless = PETSC_TRUE;
+    if (massless) continue;
+    PetscCall(PetscArraycpy(*connectivity + *count * n, nodes, n));
+    (*count)++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* When it is known which nodes are massless */
+PetscErrorCode BodySetUpDamping(Body body)
+{
+  struct _BodyDamping *damping = body->damping;
+  PetscInt             count;
+
+  PetscFunctionBegin;
+  if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyCreateVec(body, &damping->work));
+  PetscCall(BodyCreateVec(body, &body->state.damping));
+  PetscCall(BodyCreateVec(body, &body->saved.damping));
+  if (body->kept.u) PetscCall(BodyCreateVec(body, &body->kept.damping));
+  if (!(damping->stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(body->model.linear || body->model.element->ops->viscousforce, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
+             "-%sdamping_stiffness: elements of shape '%s' do not support it with nonlinear materials", ((PetscObject)body)->prefix,
+             DMPolytopeTypes[body->mesh.cell_shape]);
+  PetscCall(SelectElements(body, &count, &damping->connectivity));
+  if (!body->model.linear) PetscCall(MaterialLinearize(body->model.material, &damping->material));
+  PetscCall(ElementDuplicate(body->model.element, damping->material, &damping->element));
+  PetscCall(ElementSetUp(damping->element, count, damping->connectivity, body->mesh.coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyDestroyDamping(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->damping) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ElementDestroy(&body->damping->element));
+  PetscCall(MaterialDestroy(&body->damping->material));
+  PetscCall(PetscFree(body->damping->connectivity));
+  PetscCall(VecDestroy(&body->damping->work));
+  PetscCall(PetscFree(body->damping));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* force = K v; as in the undeformed body where u is NULL */
+static PetscErrorCode ComputeViscousForce(Body body, Vec u, Vec v, Vec force)
+{
+  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  Element            element = body->damping->element;
+  const PetscScalar *at      = NULL, *rate;
+  PetscScalar       *f;
+  Vec                at_local, rate_local, f_local = force;
+
+  PetscFunctionBegin;
+  if (u) PetscCall(BodyGetLocalRead(body, u, &at_local, &at));
+  PetscCall(BodyGetLocalRead(body, v, &rate_local, &rate));
+  if (ghosted) PetscCall(VecGhostGetLocalForm(force, &f_local));
+  PetscCall(VecGetArrayWrite(f_local, &f));
+  PetscCall(PetscArrayzero(f, body->mesh.local_nodes * body->mesh.dim));
+  if (u) PetscCall((*element->ops->viscousforce)(element, at, rate, f));
+  else PetscCall((*element->ops->internalforce)(element, rate, f));
+  PetscCall(VecRestoreArrayWrite(f_local, &f));
+  PetscCall(BodyRestoreLocalRead(body, v, &rate_local, &rate));
+  if (u) PetscCall(BodyRestoreLocalRead(body, u, &at_local, &at));
+  if (ghosted) {
+    PetscCall(VecGhostRestoreLocalForm(force, &f_local));
+    PetscCall(VecGhostUpdateBegin(force, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecGhostUpdateEnd(force, ADD_VALUES, SCATTER_REVERSE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* force = C v, at displacement u of a nonlinear body, NULL: the undeformed one [N]; of a body with damping */
+PetscErrorCode BodyMultiplyDamping(Body body, Vec u, Vec v, Vec force)
+{
+  struct _BodyDamping *damping = body->damping;
+
+  PetscFunctionBegin;
+  if (damping->stiffness > 0) {
+    PetscCall(ComputeViscousForce(body, body->model.linear || body->model.linearized ? NULL : u, v, force));
+    PetscCall(VecScale(force, damping->stiffness));
+  } else PetscCall(VecZeroEntries(force));
+  if (damping->mass > 0) {
+    PetscCall(BodyMultiplyMass(body, v, damping->work));
+    PetscCall(VecAXPY(force, damping->mass, damping->work));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes the forces of the dashpots in the state as it is */
+PetscErrorCode BodyNoteDamping(Body body)
+{
+  PetscFunctionBegin;
+  if (BodyIsDamped(body)) PetscCall(BodyMultiplyDamping(body, body->state.u, body->state.v, body->state.damping));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A += scale C, at displacement u of a nonlinear body, NULL: the undeformed one; without what C changes by with the displacement */
+PetscErrorCode BodyAddDampingMatrix(Body body, Vec u, PetscReal scale, Mat A)
+{
+  const struct _BodyDamping *damping = body->damping;
+  const PetscInt             nodes = body->model.element->nodes, dim = body->mesh.dim, n = nodes * dim;
+  const PetscScalar         *at   = NULL;
+  PetscScalar               *zero = NULL, part[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscInt                   dofs[ELEMENT_MAX_DOFS], next = 0;
+  Vec                        local;
+
+  PetscFunctionBegin;
+  if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (damping->mass > 0 && body->mass.diagonal) {
+    PetscCall(VecCopy(body->mass.diagonal, damping->work));
+    PetscCall(VecScale(damping->work, scale * damping->mass));
+    PetscCall(MatDiagonalSet(A, damping->work, ADD_VALUES));
+  } else if (damping->mass > 0) PetscCall(MatAXPY(A, scale * damping->mass, body->mass.matrix, SAME_NONZERO_PATTERN));
+  if (!(damping->stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->model.linear) u = NULL;
+  if (u) PetscCall(BodyGetLocalRead(body, u, &local, &at));
+  else {
+    PetscCall(PetscCalloc1(body->mesh.local_nodes * dim, &zero));
+    at = zero;
+  }
+  for (PetscInt e = 0; next < damping->element->count; e++) {
+    PetscBool same = PETSC_FALSE;
+
+    /* the elements of the damping are some of the body's, in its order */
+    PetscCall(PetscArraycmp(body->mesh.connectivity + e * nodes, damping->connectivity + next * nodes, nodes, &same));
+    if (!same) continue;
+    if (u) PetscCall((*damping->element->ops->viscosity)(damping->element, next, at, part));
+    else PetscCall((*damping->element->ops->stiffness)(damping->element, next, at, part));
+    for (PetscInt i = 0; i < n * n; i++) part[i] *= scale * damping->stiffness;
+    PetscCall(BodyGetElementDofs(body, e, dofs));
+    PetscCall(MatSetValues(A, n, dofs, n, dofs, part, ADD_VALUES));
+    next++;
+  }
+  if (u) PetscCall(BodyRestoreLocalRead(body, u, &local, &at));
+  PetscCall(PetscFree(zero));
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the dashpots take from displacement and forces at the start of a substep to the present ones: by the trapezoidal rule, as the work
+   of loads. Central differences and the trapezoidal rule of a linear body take just that from their energies. */
+static PetscErrorCode ComputeWork(Body body, const BodyState *start, PetscReal *work)
+{
+  const PetscScalar *u0, *u1, *d0, *d1;
+
+  PetscFunctionBegin;
+  *work = 0;
+  PetscCall(VecGetArrayRead(start->u, &u0));
+  PetscCall(VecGetArrayRead(start->damping, &d0));
+  PetscCall(VecGetArrayRead(body->state.u, &u1));
+  PetscCall(VecGetArrayRead(body->state.damping, &d1));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) *work += 0.5 * PetscRealPart((d0[i] + d1[i]) * (u1[i] - u0[i]));
+  PetscCall(VecRestoreArrayRead(body->state.damping, &d1));
+  PetscCall(VecRestoreArrayRead(body->state.u, &u1));
+  PetscCall(VecRestoreArrayRead(start->damping, &d0));
+  PetscCall(VecRestoreArrayRead(start->u, &u0));
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, work, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts what the dashpots have taken in the substep that has been made; collective only where there are some */
+PetscErrorCode BodyAddDampingWork(Body body)
+{
+  PetscReal work;
+
+  PetscFunctionBegin;
+  if (!BodyIsDamped(body) || body->unloaded) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComputeWork(body, &body->substep_start, &work));
+  body->state.damping_work += work;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the dashpots have taken in a step of one substep that has not been accepted yet [J] */
+PetscErrorCode BodyGetPendingDampingWork(Body body, PetscReal *work)
+{
+  PetscFunctionBegin;
+  *work = 0;
+  if (BodyIsDamped(body)) PetscCall(ComputeWork(body, &body->substep_start, work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
