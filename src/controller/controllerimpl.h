@@ -19,6 +19,8 @@ struct _p_Controller {
   Contact   contact;
   PetscReal time_start, time_end, time_step;
   PetscInt  steps;
+  PetscInt  step;             /* controller steps that have been accepted so far */
+  PetscBool goes_on;          /* the run has been continued from a checkpoint: its observers know the steps before */
   PetscBool chooses_step;     /* the step is the largest that resolves contact */
   PetscReal resolved_step;    /* that, where it is not chosen [s]; infinity: none */
   char      step_reason[512]; /* what that follows from */
@@ -34,6 +36,8 @@ struct _p_Controller {
   ControllerMonitorFn *monitor[MAX_MONITORS];
   void                *monitor_ctx[MAX_MONITORS];
   PetscErrorCode (*monitor_destroy[MAX_MONITORS])(void **);
+  ControllerAfterStepFn *after_step; /* called when all of them have been, or NULL */
+  void                  *after_step_ctx;
   /* what they are shown, see ControllerFrame */
   BodyMeasures     *measures;
   PetscReal        *energies;     /* per body: what contact alone is to change [J] */

@@ -228,3 +228,47 @@ PetscErrorCode OutputFileRestore(int held, const char path[])
   PetscCall(OutputFileReplace(part, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*
+  OutputFileSync - has the contents of a file written through to the disk
+
+  Not Collective
+
+  Input Parameters:
++ file - an open file; -1: none
+- path - its name, for the message
+*/
+PetscErrorCode OutputFileSync(int file, const char path[])
+{
+  PetscFunctionBegin;
+  if (file < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!fsync(file) || errno == EINVAL || errno == EROFS, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", path,
+             strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileSyncFolder - has the names in the folder of a file written through to the disk, where the file system can
+
+  Not Collective
+
+  Input Parameter:
+. path - of the file
+*/
+PetscErrorCode OutputFileSyncFolder(const char path[])
+{
+  char  folder[PETSC_MAX_PATH_LEN];
+  char *slash;
+  int   file;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(folder, path, sizeof(folder)));
+  slash = strrchr(folder, '/');
+  if (slash == folder) slash++;
+  if (slash) *slash = '\0';
+  file = open(slash ? folder : ".", O_RDONLY | O_CLOEXEC);
+  if (file < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)fsync(file);
+  close(file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

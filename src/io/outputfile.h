@@ -10,3 +10,5 @@ PETSC_INTERN PetscErrorCode OutputFileHold(const char[], int *);
 PETSC_INTERN PetscErrorCode OutputFileRelease(int *);
 PETSC_INTERN PetscErrorCode OutputFileCopy(int, const char[]);
 PETSC_INTERN PetscErrorCode OutputFileRestore(int, const char[]);
+PETSC_INTERN PetscErrorCode OutputFileSync(int, const char[]);
+PETSC_INTERN PetscErrorCode OutputFileSyncFolder(const char[]);

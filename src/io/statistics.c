@@ -417,6 +417,54 @@ PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All that is gathered, as it lies in the structs: pointers stay those of this run */
+static PetscErrorCode VisitResults(StatisticsResults *results, Checkpoint checkpoint)
+{
+  StatisticsResults copy = *results;
+
+  PetscFunctionBegin;
+  copy.pairs  = NULL;
+  copy.bodies = NULL;
+  PetscCall(CheckpointVisitBytes(checkpoint, "results", sizeof(copy), &copy));
+  copy.pairs  = results->pairs;
+  copy.bodies = results->bodies;
+  *results    = copy;
+  PetscCall(CheckpointVisitBytes(checkpoint, "pairs", (size_t)results->n_pairs * sizeof(*results->pairs), results->pairs));
+  PetscCall(CheckpointVisitBytes(checkpoint, "bodies", (size_t)results->n_bodies * sizeof(*results->bodies), results->bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StatisticsVisit - the figures so far, to or from a checkpoint; Collective */
+PetscErrorCode StatisticsVisit(Statistics s, Checkpoint checkpoint)
+{
+  const PetscInt sizes[] = {s->results.n_pairs, s->results.n_bodies};
+  const PetscInt width   = 1 + 2 * s->results.n_pairs;
+  PetscReal     *reals[] = {&s->time, &s->system_energy, &s->largest_energy, &s->momentum_scale, &s->angular_scale, &s->arm};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointBegin(checkpoint, "summary"));
+  PetscCall(CheckpointCheckInts(checkpoint, "pairs and bodies", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(VisitResults(&s->results, checkpoint));
+  PetscCall(CheckpointVisitBytes(checkpoint, "any", sizeof(s->any), &s->any));
+  PetscCall(CheckpointVisitBytes(checkpoint, "memory", (size_t)sizes[0] * sizeof(*s->pair), s->pair));
+  PetscCall(ContactTimesVisit(s->times, checkpoint));
+  PetscCall(CheckpointVisitInts(checkpoint, "sweeps", 1, &s->total_sweeps));
+  PetscCall(CheckpointVisitInts(checkpoint, "contact sweeps", 1, &s->contact_sweeps));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reals); i++) PetscCall(CheckpointVisitReals(checkpoint, "figure", 1, reals[i]));
+  PetscCall(CheckpointVisitReals(checkpoint, "initial energy", sizes[1], s->initial_energy));
+  PetscCall(CheckpointVisitReals(checkpoint, "body change", 2 * sizes[1], s->body_change));
+  PetscCall(CheckpointVisitReals(checkpoint, "system change", 2, s->system_change));
+  PetscCall(CheckpointVisitReals(checkpoint, "momentum", 3, s->momentum));
+  PetscCall(CheckpointVisitReals(checkpoint, "angular", 3, s->angular));
+  PetscCall(CheckpointVisitBools(checkpoint, "from rest", 1, &s->from_rest));
+  PetscCall(CheckpointVisitBools(checkpoint, "loaded", 1, &s->loaded));
+  PetscCall(CheckpointVisitInts(checkpoint, "series", 1, &s->n_series));
+  while (s->capacity < s->n_series) s->capacity *= 2;
+  PetscCall(PetscRealloc((size_t)s->capacity * (size_t)width * sizeof(PetscReal), &s->series));
+  PetscCall(CheckpointVisitBytes(checkpoint, "forces", (size_t)s->n_series * (size_t)width * sizeof(PetscReal), s->series));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* StatisticsDestroy - frees statistics */
 PetscErrorCode StatisticsDestroy(Statistics *statistics)
 {
