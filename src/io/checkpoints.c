@@ -35,15 +35,15 @@ static PetscErrorCode Write(Output output, PetscInt step)
   CheckpointInfo info = {.step = step};
   const Body    *bodies;
   PetscInt       n, steps;
-  PetscReal      start, end;
+  PetscReal      start, dt;
   Checkpoint     checkpoint;
 
   PetscFunctionBegin;
   if (!c->path[0] || c->last_step == step) PetscFunctionReturn(PETSC_SUCCESS);
   if (output->history) PetscCall(HistorySync(output->history));
   if (output->fields) PetscCall(FieldsSync(output->fields));
-  PetscCall(ControllerGetTimes(output->controller, &start, &end, &steps));
-  info.time = start + step * ((end - start) / steps);
+  PetscCall(ControllerGetTimes(output->controller, &start, &dt, &steps));
+  info.time = start + step * dt;
   PetscCallMPI(MPI_Comm_size(comm, &info.ranks));
   PetscCall(PetscOptionsGetAll(NULL, &info.options));
   PetscCall(CheckpointCreate(comm, &checkpoint));

@@ -93,7 +93,7 @@ static PetscErrorCode Names(const char word[], const Identity *file, PetscBool *
 /* Whether an option names an output, or, of the output `by`, what a run may well go on from and write again */
 static PetscBool NamesOutput(const char name[], const char by[])
 {
-  return (PetscBool)(!strncmp(name, "-output_", 8) || !strcmp(name, "-checkpoint") ||
+  return (PetscBool)(!strncmp(name + 1, "output_", 7) || !strcmp(name, "-checkpoint") ||
                      (!strcmp(name, "-restart") && !strcmp(by, "-checkpoint")));
 }
 

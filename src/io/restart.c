@@ -155,7 +155,7 @@ PetscErrorCode OutputReadCheckpoints(Output output)
   PetscOptionsEnd();
   PetscCheck(!has_interval || interval > 0, comm, PETSC_ERR_USER_INPUT,
              "-checkpoint_interval %" PetscInt_FMT " must be a number of controller steps, 1 or more", interval);
-  PetscCheck(!has_minutes || minutes > 0, comm, PETSC_ERR_USER_INPUT, "-checkpoint_wall_interval %g must be a positive number of minutes",
+  PetscCheck(!has_minutes || minutes > 0, comm, PETSC_ERR_USER_INPUT, "-checkpoint_wall_interval %.6g must be a positive number of minutes",
              (double)minutes);
   if (has) PetscCall(OutputSetCheckpoint(output, path, interval, has_interval || has_minutes ? minutes : WALL_INTERVAL));
   if (has_restart) PetscCall(OutputSetRestart(output, restart, allow));

@@ -5,6 +5,7 @@
 */
 #include <body/rows/complianceimpl.h>
 #include "bodyvisit.h"
+#include <string.h>
 
 static PetscErrorCode VisitState(Body body, BodyState *state, Checkpoint checkpoint)
 {
@@ -107,6 +108,39 @@ static PetscErrorCode VisitMassSolver(Body body, Checkpoint checkpoint)
   if (!has) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->mass.solver) PetscCall(BodySetUpMassSolver(body));
   PetscCall(ConstrainedSolverVisit(body->mass.solver, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  BodyVisitMesh - makes sure that the mesh is that of the checkpoint, on the same ranks
+
+  Not Collective
+
+  Input Parameters:
++ body       - the `Body`, set up
+- checkpoint - the `Checkpoint`
+*/
+PetscErrorCode BodyVisitMesh(Body body, Checkpoint checkpoint)
+{
+  const PetscInt     sizes[] = {body->mesh.dim, body->mesh.owned_nodes, body->mesh.local_nodes};
+  const PetscScalar *positions;
+  PetscInt           sums[2] = {0, 0};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
+  PetscCall(CheckpointCheckInts(checkpoint, "dimensions, nodes and nodes with ghosts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(VecGetArrayRead(body->mesh.positions, &positions));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) {
+    PetscInt words[sizeof(PetscScalar) / sizeof(PetscInt)];
+
+    memcpy(words, &positions[i], sizeof(words));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(words); k++) {
+      sums[0] = (PetscInt)(((unsigned long long)sums[0] + (unsigned long long)words[k]) & 0x7fffffff);
+      sums[1] = (PetscInt)(((unsigned long long)sums[1] + (unsigned long long)sums[0]) & 0x7fffffff);
+    }
+  }
+  PetscCall(VecRestoreArrayRead(body->mesh.positions, &positions));
+  PetscCall(CheckpointCheckInts(checkpoint, "sum over the positions of nodes", 2, sums));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,3 +4,4 @@
 #include <impakt/body.h>
 
 PETSC_INTERN PetscErrorCode BodyVisit(Body, Checkpoint);
+PETSC_INTERN PetscErrorCode BodyVisitMesh(Body, Checkpoint);

@@ -179,6 +179,7 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   const PetscInt sizes[] = {contact->n_bodies, contact->n_pairs, contact->rows.n, contact->rows.n_all, contact->parts};
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitMesh(contact->bodies[b], checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact"));
   PetscCall(CheckpointCheckInts(checkpoint, "bodies, pairs, rows, all rows and parts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
   PetscCall(VisitPairs(contact, checkpoint));
