@@ -21,7 +21,8 @@ static PetscErrorCode CheckOptions(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Run(void)
+/* `stopped`: before its end, by a signal or by -max_wall_time */
+static PetscErrorCode Run(PetscBool *stopped)
 {
   Controller     controller;
   Output         output;
@@ -34,11 +35,14 @@ static PetscErrorCode Run(void)
   PetscCall(OutputCreate(controller, &output));
   PetscCall(OutputSetFromOptions(output));
   PetscCall(CheckOptions(controller));
+  PetscCall(OutputCatchSignals(output));
+  PetscCall(OutputRestart(output));
   PetscCall(ControllerView(controller, PETSC_VIEWER_STDOUT_WORLD));
   error = ControllerSolve(controller);
   if (!error) error = OutputReport(output);
   if (error) (void)OutputDestroy(&output); /* what was recorded until then helps to find out why */
   PetscCall(error);
+  PetscCall(OutputIsStopped(output, stopped));
   PetscCall(OutputDestroy(&output));
   PetscCall(ControllerDestroy(&controller));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,7 +79,7 @@ static PetscErrorCode Start(CommandLine *line)
 
 int main(int argc, char **argv)
 {
-  PetscBool      done, asked = PETSC_TRUE;
+  PetscBool      done, asked = PETSC_TRUE, stopped = PETSC_FALSE;
   CommandLine    line  = {.words = NULL};
   PetscErrorCode error = ImpaktHelp(argc, argv, &done);
 
@@ -84,9 +88,10 @@ int main(int argc, char **argv)
   error = CommandLineCreate(argc, argv, &line);
   if (!error) error = Start(&line);
   if (!error) error = CheckAsked(argc, &asked);
-  if (!error && asked) error = Run();
+  if (!error && asked) error = Run(&stopped);
   if (!error) error = ImpaktFinalize();
   if (!error) (void)MPI_Finalize(); /* whoever starts MPI ends it */
   CommandLineDestroy(&line);
+  if (!error && stopped) return IMPAKT_STOPPED;
   return error || asked ? ImpaktExit(error) : 1;
 }

@@ -20,7 +20,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 # What tests share, and the programs that make pictures and reports
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "plots")]
-pytest_plugins = ["shared_runs"]
+pytest_plugins = ["shared_runs", "restarts"]
 
 BUILD = Path(os.environ.get("IMPAKT_BUILD", ROOT / "build"))
 IMPAKT = Path(os.environ.get("IMPAKT", BUILD / "impakt"))

@@ -90,6 +90,15 @@ typedef struct {
 
 typedef PetscErrorCode ControllerMonitorFn(Controller, const ControllerFrame *, void *);
 
+/*S
+   ControllerAfterStepFn - what is called after each accepted controller step, when all observers have been; may set `stop`
+
+   Level: intermediate
+
+.seealso: `ControllerSetAfterStep()`
+S*/
+typedef PetscErrorCode ControllerAfterStepFn(Controller, PetscInt, void *, PetscBool *);
+
 PETSC_EXTERN PetscErrorCode ControllerInitializePackage(void);
 PETSC_EXTERN PetscErrorCode ControllerFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ControllerCreate(MPI_Comm, Controller *);
@@ -103,6 +112,8 @@ PETSC_EXTERN PetscErrorCode ControllerSetEnergyGuard(Controller, PetscReal);
 PETSC_EXTERN PetscErrorCode ControllerGetEnergyGuard(Controller, PetscReal *);
 PETSC_EXTERN PetscErrorCode ControllerSetUp(Controller);
 PETSC_EXTERN PetscErrorCode ControllerMonitorSet(Controller, ControllerMonitorFn *, void *, PetscErrorCode (*)(void **));
+PETSC_EXTERN PetscErrorCode ControllerSetAfterStep(Controller, ControllerAfterStepFn *, void *);
+PETSC_EXTERN PetscErrorCode ControllerGetStep(Controller, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerSetMonitorInterval(Controller, PetscInt);
 PETSC_EXTERN PetscErrorCode ControllerSetProgress(Controller);
 PETSC_EXTERN PetscErrorCode ControllerSolve(Controller);

@@ -30,6 +30,9 @@ E*/
 typedef enum { OUTPUT_SINGLE, OUTPUT_DOUBLE } OutputPrecision;
 PETSC_EXTERN const char *const OutputPrecisions[];
 
+/* Exit code of a program whose run has ended before its time, see OutputIsStopped(): that of <sysexits.h> for "try again later" */
+#define IMPAKT_STOPPED 75
+
 PETSC_EXTERN PetscErrorCode OutputInitializePackage(void);
 PETSC_EXTERN PetscErrorCode OutputFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode OutputCreate(Controller, Output *);
@@ -39,7 +42,13 @@ PETSC_EXTERN PetscErrorCode OutputSetExactDisplacement(Output, Body, const char[
 PETSC_EXTERN PetscErrorCode OutputSetSummary(Output, const char[]);
 PETSC_EXTERN PetscErrorCode OutputSetHistory(Output, const char[]);
 PETSC_EXTERN PetscErrorCode OutputSetFields(Output, const char[], PetscInt, OutputPrecision);
+PETSC_EXTERN PetscErrorCode OutputSetCheckpoint(Output, const char[], PetscInt, PetscReal);
+PETSC_EXTERN PetscErrorCode OutputSetRestart(Output, const char[], PetscBool);
+PETSC_EXTERN PetscErrorCode OutputSetMaxWallTime(Output, PetscReal);
+PETSC_EXTERN PetscErrorCode OutputCatchSignals(Output);
 PETSC_EXTERN PetscErrorCode OutputSetFromOptions(Output);
+PETSC_EXTERN PetscErrorCode OutputRestart(Output);
+PETSC_EXTERN PetscErrorCode OutputIsStopped(Output, PetscBool *);
 PETSC_EXTERN PetscErrorCode OutputReport(Output);
 PETSC_EXTERN PetscErrorCode OutputView(Output, PetscViewer);
 PETSC_EXTERN PetscErrorCode OutputViewFromOptions(Output, PetscObject, const char[]);

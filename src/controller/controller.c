@@ -90,8 +90,15 @@ static PetscLogDouble Seconds(const struct rusage *usage)
          1e-6 * (PetscLogDouble)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
 }
 
+static PetscErrorCode AfterStep(Controller controller, PetscBool *stop)
+{
+  PetscFunctionBegin;
+  if (controller->after_step) PetscCall((*controller->after_step)(controller, controller->step, controller->after_step_ctx, stop));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  ControllerSolve - runs all controller steps
+  ControllerSolve - runs all controller steps that are left
 
   Collective
 
@@ -100,22 +107,28 @@ static PetscLogDouble Seconds(const struct rusage *usage)
 
   Level: beginner
 
-.seealso: `Controller`, `ControllerMonitorSet()`
+  Note:
+  Ends early where the function of `ControllerSetAfterStep()` says so.
+
+.seealso: `Controller`, `ControllerMonitorSet()`, `ControllerGetStep()`
 @*/
 PetscErrorCode ControllerSolve(Controller controller)
 {
   PetscLogDouble wall[2];
   struct rusage  cpu[2];
+  PetscBool      stop = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   PetscCall(ControllerSetUp(controller));
   PetscCall(PetscTime(&wall[0]));
   getrusage(RUSAGE_SELF, &cpu[0]);
-  PetscCall(ControllerNotify(controller, 0));
-  for (PetscInt step = 1; step <= controller->steps; step++) {
+  if (!controller->goes_on) PetscCall(ControllerNotify(controller, 0));
+  if (!controller->goes_on) PetscCall(AfterStep(controller, &stop));
+  while (controller->step < controller->steps && !stop) {
     PetscCall(ControllerMakeStep(controller));
-    PetscCall(ControllerNotify(controller, step));
+    PetscCall(ControllerNotify(controller, ++controller->step));
+    PetscCall(AfterStep(controller, &stop));
   }
   PetscCall(PetscTime(&wall[1]));
   getrusage(RUSAGE_SELF, &cpu[1]);

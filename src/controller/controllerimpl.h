@@ -2,6 +2,7 @@
 #pragma once
 #include <impakt/controller.h>
 #include <petsc/private/petscimpl.h>
+#include "energyscale.h"
 
 #define MAX_MONITORS 16
 /* How often a controller step may be cut in halves, by default */
@@ -19,6 +20,8 @@ struct _p_Controller {
   Contact   contact;
   PetscReal time_start, time_end, time_step;
   PetscInt  steps;
+  PetscInt  step;             /* controller steps that have been accepted so far */
+  PetscBool goes_on;          /* the run has been continued from a checkpoint: its observers know the steps before */
   PetscBool chooses_step;     /* the step is the largest that resolves contact */
   PetscReal resolved_step;    /* that, where it is not chosen [s]; infinity: none */
   char      step_reason[512]; /* what that follows from */
@@ -34,6 +37,8 @@ struct _p_Controller {
   ControllerMonitorFn *monitor[MAX_MONITORS];
   void                *monitor_ctx[MAX_MONITORS];
   PetscErrorCode (*monitor_destroy[MAX_MONITORS])(void **);
+  ControllerAfterStepFn *after_step; /* called when all of them have been, or NULL */
+  void                  *after_step_ctx;
   /* what they are shown, see ControllerFrame */
   BodyMeasures      *measures;
   PetscReal         *energies;     /* per body: what contact alone is to change [J] */
@@ -46,6 +51,7 @@ struct _p_Controller {
   ControllerProbe   *probes;
   PetscReal         *probe_values; /* work space: what the points of one body do */
   PetscReal         *reactions;    /* work space: forces and moments of the held surfaces of one body */
+  EnergyScale        scale;        /* of the energy's changes */
   /* energy guard */
   struct {
     PetscReal  part;    /* of the energy, that a run may gain; 0: no guard */

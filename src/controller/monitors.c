@@ -29,6 +29,12 @@ PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the energies of the frame that observers are shown are compared with */
+const EnergyScale *ControllerGetEnergyScale(Controller controller)
+{
+  return &controller->scale;
+}
+
 /* Gathers the state at the end of an accepted step, 0 for the start, and hands it to every observer */
 PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
 {
@@ -60,6 +66,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   frame.sweeps    = step ? controller->step_sweeps : 0;
   frame.step_cuts = step ? controller->step_cuts : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
+  PetscCall(EnergyScaleAdd(&controller->scale, controller, &frame));
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)
     PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));

@@ -1,12 +1,6 @@
 /* What a run shows on the terminal while it goes on. */
 #include "controllerimpl.h"
 #include <sys/statusline.h>
-#include "energyscale.h"
-
-typedef struct {
-  PetscInt    interval;
-  EnergyScale scale;
-} Lines;
 
 static PetscErrorCode FreeContext(void **ctx)
 {
@@ -17,21 +11,20 @@ static PetscErrorCode FreeContext(void **ctx)
 
 static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *frame, void *ctx)
 {
-  Lines    *lines = (Lines *)ctx;
-  MPI_Comm  comm  = PetscObjectComm((PetscObject)controller);
-  PetscReal force = 0, gap = PETSC_MAX_REAL, change, scale;
-  PetscInt  active = 0;
+  const PetscInt interval = *(PetscInt *)ctx;
+  MPI_Comm       comm     = PetscObjectComm((PetscObject)controller);
+  PetscReal      force = 0, gap = PETSC_MAX_REAL, change, scale;
+  PetscInt       active = 0;
 
   PetscFunctionBegin;
-  PetscCall(EnergyScaleAdd(&lines->scale, controller, frame));
-  if (frame->step % lines->interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
+  if (frame->step % interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < frame->n_pairs; p++) {
     force += frame->pairs[p].force;
     gap = PetscMin(gap, frame->pairs[p].gap);
     active += frame->pairs[p].active;
   }
-  change = EnergyScaleChange(&lines->scale, frame);
-  scale  = EnergyScaleGet(&lines->scale);
+  change = EnergyScaleChange(&controller->scale, frame);
+  scale  = EnergyScaleGet(&controller->scale);
   PetscCall(PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e s  energy error %10.3e", frame->step, (double)frame->time,
                         (double)(scale > 0 ? change / scale : change)));
   if (frame->n_pairs)
@@ -95,16 +88,16 @@ static PetscErrorCode TellProgress(Controller controller, PetscBool bar)
 @*/
 PetscErrorCode ControllerSetMonitorInterval(Controller controller, PetscInt interval)
 {
-  Lines *lines;
+  PetscInt *context;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   PetscValidLogicalCollectiveInt(controller, interval, 2);
   PetscCheck(interval > 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
              "An interval of %" PetscInt_FMT " steps must be positive", interval);
-  PetscCall(PetscNew(&lines));
-  lines->interval = interval;
-  PetscCall(ControllerMonitorSet(controller, PrintLine, lines, FreeContext));
+  PetscCall(PetscNew(&context));
+  *context = interval;
+  PetscCall(ControllerMonitorSet(controller, PrintLine, context, FreeContext));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* The class: package, creation, what all types of solution tell, view, destruction. */
 #include "exactimpl.h"
+#include "exactvisit.h"
 #include <sys/package.h>
 #include <math.h>
 #include <sys/names.h>
@@ -334,5 +335,16 @@ PetscErrorCode ExactDestroy(Exact *exact)
   }
   PetscTryTypeMethod(*exact, destroy);
   PetscCall(PetscHeaderDestroy(exact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ExactVisit - how far the run has been from the solution so far, to or from a checkpoint */
+PetscErrorCode ExactVisit(Exact exact, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBytes(checkpoint, "distance", sizeof(exact->distance), exact->distance));
+  PetscCall(CheckpointVisitReals(checkpoint, "peak potential", 1, &exact->peak_potential));
+  PetscCall(CheckpointVisitReals(checkpoint, "last contact", 1, &exact->last_contact));
+  PetscCall(CheckpointVisitReals(checkpoint, "last time", 1, &exact->last_time));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

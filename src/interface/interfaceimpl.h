@@ -187,6 +187,7 @@ PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
+PETSC_INTERN PetscErrorCode RowSetConnectColumns(MPI_Comm, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN void           RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal      RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                      const PetscReal[]);

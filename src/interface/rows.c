@@ -76,7 +76,7 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
 }
 
 /* Numbers the distinct nodes of the partner that the shares name, and makes the star forest that brings their vectors from their owners */
-static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n, RowSet *set)
+PetscErrorCode RowSetConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n, RowSet *set)
 {
   const PetscInt count = set->offsets[n];
   PetscInt      *dofs;
@@ -291,7 +291,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
   PetscCall(PetscFree(shares));
-  PetscCall(ConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
+  PetscCall(RowSetConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
   PetscCall(PetscMalloc3(3 * set.n_columns, &x, 3 * set.n_columns, &reference, 3 * set.n_columns, &normals));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));

@@ -144,6 +144,15 @@ PetscErrorCode ContactTimesGetResults(ContactTimes times, PetscInt pair, Contact
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactTimesVisit - the times so far, to or from a checkpoint */
+PetscErrorCode ContactTimesVisit(ContactTimes times, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBytes(checkpoint, "contact times", (size_t)times->n_pairs * sizeof(*times->pairs), times->pairs));
+  PetscCall(CheckpointVisitReals(checkpoint, "start velocity", 3 * times->n_bodies, times->start_velocity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactTimesDestroy - frees the times */
 PetscErrorCode ContactTimesDestroy(ContactTimes *times)
 {

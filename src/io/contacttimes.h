@@ -1,5 +1,6 @@
 /* When contact begins and ends, inside controller steps. */
 #pragma once
+#include <checkpoint/checkpoint.h>
 #include <impakt/controller.h>
 
 typedef struct {
@@ -13,4 +14,5 @@ typedef struct _n_ContactTimes *ContactTimes;
 PETSC_INTERN PetscErrorCode ContactTimesCreate(Controller, ContactTimes *);
 PETSC_INTERN PetscErrorCode ContactTimesAdd(ContactTimes, const ControllerFrame *);
 PETSC_INTERN PetscErrorCode ContactTimesGetResults(ContactTimes, PetscInt, ContactTimesResults *);
+PETSC_INTERN PetscErrorCode ContactTimesVisit(ContactTimes, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactTimesDestroy(ContactTimes *);

@@ -4,6 +4,7 @@
 #include "fields.h"
 #include "hdf5file.h"
 #include "outputfile.h"
+#include "outputpaths.h"
 #include "xdmf.h"
 #include <petsctime.h>
 #include <stdio.h>
@@ -397,6 +398,78 @@ PetscErrorCode FieldsFinish(Fields fields)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed, 1, MPI_INT, MPI_MIN, fields->comm));
   PetscCheck(closed, fields->comm, PETSC_ERR_FILE_WRITE, "HDF5 cannot close %s; is the disk full?", fields->path);
   PetscCall(Share(fields, OutputFileRestore(fields->held, fields->path)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FieldsSync - has all frames so far written through to the disk; Collective */
+PetscErrorCode FieldsSync(Fields fields)
+{
+  int flushed;
+
+  PetscFunctionBegin;
+  if (fields->file < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  flushed = H5Fflush(fields->file, H5F_SCOPE_GLOBAL) < 0 ? 0 : 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &flushed, 1, MPI_INT, MPI_MIN, fields->comm));
+  PetscCheck(flushed, fields->comm, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", fields->path);
+  PetscCall(Share(fields, OutputFileSync(fields->held, fields->path)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The file of the run that is continued, with its first `written` frames; the others become frames that are not there yet */
+static PetscErrorCode TakeUp(Fields fields, PetscInt written)
+{
+  PetscErrorCode error = PETSC_SUCCESS;
+  HDF5Silence    silence;
+
+  PetscFunctionBegin;
+  HDF5SilenceBegin(&silence);
+  if (fields->first_rank) error = FieldsFileCut(fields->path, fields->n_frames, written, fields->times);
+  PetscCall(Share(fields, error));
+  PetscCallMPI(MPI_Bcast(fields->times, (PetscMPIInt)fields->n_frames, MPIU_REAL, 0, fields->comm));
+  PetscCall(FieldsFileOpen(fields->comm, fields->path, &fields->file));
+  HDF5SilenceEnd(&silence);
+  fields->written = written;
+  if (fields->first_rank) error = OutputFileHold(fields->path, &fields->held);
+  PetscCall(Share(fields, error));
+  fields->listed = -1;
+  PetscCall(Share(fields, List(fields, PETSC_TRUE)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsVisit - the place in the file, to or from a checkpoint; loading, frames after it are taken out
+
+  Collective
+
+  Input Parameters:
++ fields     - the `Fields`; `NULL`: there are none
+. comm       - communicator of the run
+- checkpoint - the `Checkpoint`
+
+  Note:
+  Fields whose path is not that of the run that is continued begin with the restart.
+*/
+PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, Checkpoint checkpoint)
+{
+  char     path[PETSC_MAX_PATH_LEN] = "", own[PETSC_MAX_PATH_LEN] = "";
+  PetscInt numbers[3] = {fields ? fields->written : 0, fields ? fields->n_frames : 0, fields ? fields->interval : 0};
+  int      same;
+
+  PetscFunctionBegin;
+  if (fields) PetscCall(OutputPathResolve(fields->path, sizeof(own), own));
+  PetscCall(PetscStrncpy(path, own, sizeof(path)));
+  PetscCall(CheckpointVisitBytes(checkpoint, "fields", sizeof(path), path));
+  PetscCall(CheckpointVisitInts(checkpoint, "fields frames", 3, numbers));
+  if (!CheckpointLoads(checkpoint) || !fields || !numbers[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  same = !strcmp(own, path);
+  PetscCallMPI(MPI_Bcast(&same, 1, MPI_INT, 0, comm));
+  if (!same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(numbers[1] == fields->n_frames && numbers[2] == fields->interval, comm, PETSC_ERR_USER_INPUT,
+             "-output_fields %s has places for %" PetscInt_FMT " frames, one every %" PetscInt_FMT
+             " steps, and this run wants %" PetscInt_FMT ", one every %" PetscInt_FMT
+             "; give another path, where the fields begin with the restart, or the same -output_fields_interval and -time_end",
+             fields->path, numbers[1], numbers[2], fields->n_frames, fields->interval);
+  PetscCall(TakeUp(fields, numbers[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* The fields of all bodies over time. */
 #pragma once
+#include <checkpoint/checkpoint.h>
 #include <impakt/controller.h>
 #include "fieldsfile.h"
 
@@ -10,3 +11,5 @@ PETSC_INTERN ControllerMonitorFn FieldsMonitor;
 PETSC_INTERN PetscErrorCode      FieldsFinish(Fields);
 PETSC_INTERN PetscErrorCode      FieldsGetPaths(Fields, const char *[], const char *[]);
 PETSC_INTERN PetscErrorCode      FieldsDestroy(Fields *);
+PETSC_INTERN PetscErrorCode      FieldsSync(Fields);
+PETSC_INTERN PetscErrorCode      FieldsVisit(Fields, MPI_Comm, Checkpoint);

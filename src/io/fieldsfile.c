@@ -200,6 +200,46 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Petsc
 }
 
 /*
+  FieldsFileCut - leaves the first frames of a file, and has the others count as not there yet
+
+  Not Collective; one rank calls it
+
+  Input Parameters:
++ path     - the file
+. n_frames - frames that it has places for
+- written  - how many are to stay; an error if there are fewer
+
+  Output Parameter:
+. times - their times, and not-a-number for the others [s]; n_frames numbers
+*/
+PetscErrorCode FieldsFileCut(const char path[], PetscInt n_frames, PetscInt written, PetscReal times[])
+{
+  hsize_t  has = 0;
+  PetscInt n   = 0;
+  hid_t    file, dataset, space;
+
+  PetscFunctionBegin;
+  file    = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  dataset = file < 0 ? -1 : H5Dopen2(file, "time", H5P_DEFAULT);
+  space   = dataset < 0 ? -1 : H5Dget_space(dataset);
+  if (space >= 0 && H5Sget_simple_extent_ndims(space) == 1) H5Sget_simple_extent_dims(space, &has, NULL);
+  if (has == (hsize_t)n_frames && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times) >= 0)
+    while (n < n_frames && !isnan(times[n])) n++;
+  PetscCheck(
+      n >= written, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+      "-output_fields %s has not the %" PetscInt_FMT
+      " frames that the run which is continued has written: it is gone, or another run's; bring it back, or give another path, where "
+      "the fields begin with the restart",
+      path, written);
+  for (PetscInt k = written; k < n_frames; k++) times[k] = NAN;
+  PetscCall(HDF5Check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times), "write times", path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "write times", path));
+  PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
   FieldsFileOpen - opens a file for writing by all ranks
 
   Collective

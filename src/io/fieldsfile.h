@@ -33,6 +33,7 @@ PETSC_INTERN const FieldsField fields_of_a_frame[FIELDS_PER_FRAME];
 
 PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, PetscInt, OutputPrecision);
 PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, PetscInt, PetscInt, OutputPrecision, const char[]);
+PETSC_INTERN PetscErrorCode FieldsFileCut(const char[], PetscInt, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode FieldsFileOpen(MPI_Comm, const char[], hid_t *);
 PETSC_INTERN PetscErrorCode FieldsFileWrite(MPI_Comm, hid_t, const char[], const FieldsRows *, PetscInt, hid_t, const void *);
 PETSC_INTERN PetscErrorCode FieldsFileGetDataset(FieldsKind, PetscInt, size_t, char[]);

@@ -3,6 +3,7 @@
 #include "history.h"
 #include "hdf5file.h"
 #include "outputfile.h"
+#include "outputpaths.h"
 #include "series.h"
 #include <petsctime.h>
 #include <stdio.h>
@@ -283,6 +284,85 @@ PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *fram
   PetscCall(PetscTime(&now));
   if (!history->written || now - history->flushed > PetscMax(FLUSH_INTERVAL, FLUSH_SHARE * history->flush_seconds))
     PetscCall(HistoryFlush(history));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  HistorySync - writes all that was recorded, through to the disk
+
+  Not Collective
+
+  Input Parameter:
+. history - the `History`
+*/
+PetscErrorCode HistorySync(History history)
+{
+  PetscFunctionBegin;
+  PetscCall(HistoryFlush(history));
+  PetscCall(OutputFileSync(history->held, history->path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes what there was at the checkpoint of a file that has more, see OutputFileWrite() */
+static PetscErrorCode WriteCut(const char part[], void *ctx)
+{
+  History history = (History)ctx;
+
+  PetscFunctionBegin;
+  PetscCall(OutputFileCopy(history->held, part));
+  PetscCall(SeriesFileCut(part, history->n_series, history->series, history->written));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The file of the run that is continued, without the records that it wrote after its checkpoint */
+static PetscErrorCode TakeUp(History history)
+{
+  HDF5Silence silence;
+
+  PetscFunctionBegin;
+  PetscCheck(!access(history->path, F_OK), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
+             "-output_history %s: the run that is continued has written it, and it is gone; bring it back, or give another path, where the "
+             "history begins with the restart",
+             history->path);
+  PetscCall(OutputFileHold(history->path, &history->held));
+  HDF5SilenceBegin(&silence);
+  PetscCall(OutputFileWrite(history->path, WriteCut, history, &history->held));
+  HDF5SilenceEnd(&silence);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  HistoryVisit - the place in the file, to or from a checkpoint; loading, the file is cut there
+
+  Not Collective
+
+  Input Parameters:
++ history    - the `History`; writing, after HistorySync()
+- checkpoint - the `Checkpoint`
+
+  Note:
+  A history whose path is not that of the run that is continued begins with the restart.
+*/
+PetscErrorCode HistoryVisit(History history, Checkpoint checkpoint)
+{
+  char       path[PETSC_MAX_PATH_LEN] = "";
+  PetscInt64 written                  = history ? history->written : 0;
+  PetscBool  same;
+
+  PetscFunctionBegin;
+  if (history) PetscCall(OutputPathResolve(history->path, sizeof(path), path));
+  PetscCall(CheckpointVisitBytes(checkpoint, "history", sizeof(path), path));
+  PetscCall(CheckpointVisitInt64s(checkpoint, "history records", 1, &written));
+  if (!CheckpointLoads(checkpoint) || !history || !history->writes) PetscFunctionReturn(PETSC_SUCCESS);
+  {
+    char own[PETSC_MAX_PATH_LEN];
+
+    PetscCall(OutputPathResolve(history->path, sizeof(own), own));
+    PetscCall(PetscStrcmp(own, path, &same));
+  }
+  if (!same) PetscFunctionReturn(PETSC_SUCCESS);
+  history->written = written;
+  PetscCall(TakeUp(history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

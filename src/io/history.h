@@ -1,5 +1,6 @@
 /* The HDF5 history of a run. */
 #pragma once
+#include <checkpoint/checkpoint.h>
 #include <impakt/controller.h>
 
 typedef struct _n_History *History;
@@ -9,3 +10,5 @@ PETSC_INTERN ControllerMonitorFn HistoryMonitor;
 PETSC_INTERN PetscErrorCode      HistoryFlush(History);
 PETSC_INTERN PetscErrorCode      HistoryGetPath(History, const char *[]);
 PETSC_INTERN PetscErrorCode      HistoryDestroy(History *);
+PETSC_INTERN PetscErrorCode      HistorySync(History);
+PETSC_INTERN PetscErrorCode      HistoryVisit(History, Checkpoint);

@@ -1,6 +1,7 @@
 /* What a run writes and prints: the class, its options, report and end. */
 #include "outputimpl.h"
 #include "report.h"
+#include "stopsignals.h"
 #include "summary.h"
 #include <sys/package.h>
 
@@ -43,20 +44,28 @@ PetscErrorCode OutputFinalizePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before the first record is written: keeps other runs away from the files */
-static PetscErrorCode LockFiles(Controller controller, const ControllerFrame *frame, void *context)
+/* Keeps other runs away from the files */
+PetscErrorCode OutputLock(Output output)
 {
-  Output            output    = (Output)context;
-  MPI_Comm          comm      = PetscObjectComm((PetscObject)controller);
-  const char *const options[] = {"-output_history", "-output_summary", "-output_fields"};
-  const char *const paths[]   = {output->history_path, output->summary_path, output->fields_path};
+  MPI_Comm          comm      = PetscObjectComm((PetscObject)output);
+  const char *const options[] = {"-output_history", "-output_summary", "-output_fields", "-checkpoint"};
+  const char *const paths[]   = {output->history_path, output->summary_path, output->fields_path, output->checkpoints.path};
 
   PetscFunctionBegin;
-  (void)frame;
   if (output->locked) PetscFunctionReturn(PETSC_SUCCESS);
   output->locked = PETSC_TRUE;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(paths); i++)
     if (paths[i][0]) PetscCall(OutputLocksTake(comm, &output->locks, options[i], paths[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before the first record is written */
+static PetscErrorCode LockFiles(Controller controller, const ControllerFrame *frame, void *context)
+{
+  PetscFunctionBegin;
+  (void)controller;
+  (void)frame;
+  PetscCall(OutputLock((Output)context));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,6 +93,7 @@ PetscErrorCode OutputCreate(Controller controller, Output *output)
   PetscCall(PetscHeaderCreate(*output, OUTPUT_CLASSID, "Output", "Files and table of a run", "Output",
                               PetscObjectComm((PetscObject)controller), OutputDestroy, OutputView));
   (*output)->controller = controller;
+  PetscCall(OutputStartClock(*output));
   PetscCall(ControllerMonitorSet(controller, LockFiles, *output, NULL));
   PetscCall(StatisticsCreate(controller, &(*output)->statistics));
   PetscCall(ControllerMonitorSet(controller, StatisticsMonitor, (*output)->statistics, NULL));
@@ -127,14 +137,22 @@ static PetscErrorCode ReadExactDisplacements(Output output)
 . -output_fields_interval n - a frame every n controller steps; default: as often as makes at most 100 frames
 . -output_fields_precision (single|double) - of the numbers in the frames
 . -exact (none|impact|characteristics) - exact solution to compare with
-- -<body>_exact_displacement ux[,uy,uz] - exact displacement of a body to compare with at the end, functions of x, y, z, t [m]
+. -<body>_exact_displacement ux[,uy,uz] - exact displacement of a body to compare with at the end, functions of x, y, z, t [m]
+. -checkpoint path - HDF5 file that the run can be continued from
+. -checkpoint_interval n - a checkpoint every n controller steps
+. -checkpoint_wall_interval t - a checkpoint every t minutes; 15 unless an interval is given
+. -restart path - the checkpoint that the run is continued from, if it is there
+. -restart_allow_changes (true|false) - whether a run may be continued with other options
+. -restart_state path - a checkpoint whose bodies are those that the run begins with
+- -max_wall_time (minutes|h:mm:ss) - after which the run ends with a checkpoint
 
   Level: beginner
 
   Note:
   Missing directories of the paths are made. A file that is there already stays until its successor is whole.
 
-.seealso: `Output`, `OutputSetExact()`, `OutputSetSummary()`, `OutputSetHistory()`, `OutputSetFields()`, `OutputReport()`
+.seealso: `Output`, `OutputSetExact()`, `OutputSetSummary()`, `OutputSetHistory()`, `OutputSetFields()`, `OutputSetCheckpoint()`,
+          `OutputRestart()`, `OutputReport()`
 @*/
 PetscErrorCode OutputSetFromOptions(Output output)
 {
@@ -161,13 +179,14 @@ PetscErrorCode OutputSetFromOptions(Output output)
                                (PetscEnum)precision, (PetscEnum *)&precision, NULL));
   }
   PetscOptionsEnd();
-  PetscCall(OutputCheckPaths(PetscObjectComm((PetscObject)output), summary, history, fields));
+  PetscCall(OutputCheckPaths(PetscObjectComm((PetscObject)output), summary, history, fields, ""));
   PetscCall(PetscStrcmp(exact, "none", &none));
   if (!none) PetscCall(OutputSetExact(output, exact));
   PetscCall(ReadExactDisplacements(output));
   if (has_summary) PetscCall(OutputSetSummary(output, summary));
   if (has_history) PetscCall(OutputSetHistory(output, history));
   if (has_fields) PetscCall(OutputSetFields(output, fields, interval, precision));
+  PetscCall(OutputReadCheckpoints(output));
   PetscCall(OutputViewFromOptions(output, NULL, "-output_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -229,7 +248,8 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
-  if (output->history || output->summary_path[0] || output->fields) PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
+  if (output->history || output->summary_path[0] || output->fields || output->checkpoints.path[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
   if (output->history) {
     PetscCall(HistoryGetPath(output->history, &path));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", path));
@@ -239,6 +259,7 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
     PetscCall(FieldsGetPaths(output->fields, NULL, &path));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", path));
   }
+  if (output->checkpoints.path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "checkpoint", output->checkpoints.path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,6 +316,7 @@ PetscErrorCode OutputDestroy(Output *output)
   errors[1] = FieldsDestroy(&(*output)->fields);
   PetscCall(ExactDestroy(&(*output)->exact));
   PetscCall(DeviationDestroy(&(*output)->deviation));
+  if ((*output)->checkpoints.catches) StopSignalsRelease();
   PetscCall(OutputLocksRelease(&(*output)->locks)); /* even where the files cannot be written, so that no lock is left beside them */
   PetscCall(errors[0]);
   PetscCall(errors[1]);

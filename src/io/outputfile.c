@@ -168,6 +168,16 @@ PetscErrorCode OutputFileCopy(int held, const char part[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* OutputFileHold - keeps the contents of a file at hand, as OutputFilePlace() does: for a file that an earlier run has put in its place */
+PetscErrorCode OutputFileHold(const char path[], int *held)
+{
+  PetscFunctionBegin;
+  PetscCall(OutputFileRelease(held));
+  *held = open(path, O_RDONLY | O_CLOEXEC);
+  PetscCheck(*held >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s cannot be read: %s", path, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   OutputFilePlace - puts a whole file in its place, in one step, and keeps its contents at hand even if somebody moves or deletes it then
 
@@ -274,5 +284,49 @@ PetscErrorCode OutputFileRestore(int held, const char path[])
   if (held < 0 || fstat(held, &own)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!stat(path, &there) && there.st_ino == own.st_ino && there.st_dev == own.st_dev) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputFileWrite(path, WriteCopy, &held, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileSync - has the contents of a file written through to the disk
+
+  Not Collective
+
+  Input Parameters:
++ file - an open file; -1: none
+- path - its name, for the message
+*/
+PetscErrorCode OutputFileSync(int file, const char path[])
+{
+  PetscFunctionBegin;
+  if (file < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!fsync(file) || errno == EINVAL || errno == EROFS, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", path,
+             strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OutputFileSyncFolder - has the names in the folder of a file written through to the disk, where the file system can
+
+  Not Collective
+
+  Input Parameter:
+. path - of the file
+*/
+PetscErrorCode OutputFileSyncFolder(const char path[])
+{
+  char  folder[PETSC_MAX_PATH_LEN];
+  char *slash;
+  int   file;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(folder, path, sizeof(folder)));
+  slash = strrchr(folder, '/');
+  if (slash == folder) slash++;
+  if (slash) *slash = '\0';
+  file = open(slash ? folder : ".", O_RDONLY | O_CLOEXEC);
+  if (file < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)fsync(file);
+  close(file);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,7 +9,10 @@ PETSC_INTERN PetscErrorCode OutputFileCheck(MPI_Comm, const char[], const char[]
 PETSC_INTERN PetscErrorCode OutputFileGetPart(const char[], size_t, char[]);
 PETSC_INTERN PetscErrorCode OutputFileWrite(const char[], OutputWriteFn *, void *, int *);
 PETSC_INTERN PetscErrorCode OutputFilePlace(const char[], const char[], int *, PetscBool *);
+PETSC_INTERN PetscErrorCode OutputFileHold(const char[], int *);
 PETSC_INTERN PetscErrorCode OutputFileMakeParents(const char[]);
 PETSC_INTERN PetscErrorCode OutputFileRelease(int *);
 PETSC_INTERN PetscErrorCode OutputFileCopy(int, const char[]);
 PETSC_INTERN PetscErrorCode OutputFileRestore(int, const char[]);
+PETSC_INTERN PetscErrorCode OutputFileSync(int, const char[]);
+PETSC_INTERN PetscErrorCode OutputFileSyncFolder(const char[]);

@@ -2,6 +2,7 @@
 #pragma once
 #include <impakt/io.h>
 #include <petsc/private/petscimpl.h>
+#include "checkpoints.h"
 #include "deviation.h"
 #include "fields.h"
 #include "history.h"
@@ -20,6 +21,12 @@ struct _p_Output {
   char        history_path[PETSC_MAX_PATH_LEN], fields_path[PETSC_MAX_PATH_LEN];
   OutputLocks locks;
   PetscBool   locked;
+  Checkpoints checkpoints;
 };
 
-PETSC_INTERN PetscErrorCode OutputCheckPaths(MPI_Comm, const char[], const char[], const char[]);
+PETSC_INTERN PetscErrorCode OutputCheckPaths(MPI_Comm, const char[], const char[], const char[], const char[]);
+PETSC_INTERN PetscErrorCode OutputLock(Output);
+PETSC_INTERN PetscErrorCode OutputStartClock(Output);
+PETSC_INTERN PetscErrorCode OutputVisit(Output, Checkpoint);
+PETSC_INTERN PetscErrorCode OutputReadCheckpoints(Output);
+PETSC_INTERN PetscErrorCode OutputCompareOptions(MPI_Comm, const char[], PetscBool, const char[]);

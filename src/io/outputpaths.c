@@ -90,8 +90,15 @@ static PetscErrorCode Names(const char word[], const Identity *file, PetscBool *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The option by which the run reads a file that exists, if there is one: a mesh, a table, an options file */
-static PetscErrorCode FindReader(const Identity *file, size_t size, char option[])
+/* Whether an option names an output, or, of the output `by`, what a run may well go on from and write again */
+static PetscBool NamesOutput(const char name[], const char by[])
+{
+  return (PetscBool)(!strncmp(name + 1, "output_", 7) || !strcmp(name, "-checkpoint") ||
+                     (!strcmp(name, "-restart") && !strcmp(by, "-checkpoint")));
+}
+
+/* The option by which the run reads a file that exists, the output `by`, if there is one: a mesh, a table, an options file */
+static PetscErrorCode FindReader(const Identity *file, const char by[], size_t size, char option[])
 {
   char     *all, *rest, *word, name[PETSC_MAX_OPTION_NAME] = "";
   PetscBool includes;
@@ -106,7 +113,7 @@ static PetscErrorCode FindReader(const Identity *file, size_t size, char option[
 
     PetscCall(PetscOptionsValidKey(word, &key));
     if (key) PetscCall(PetscStrncpy(name, word, sizeof(name)));
-    else if (strncmp(name + 1, "output_", 7) != 0) PetscCall(Names(word, file, &names));
+    else if (!NamesOutput(name, by)) PetscCall(Names(word, file, &names));
     if (names) PetscCall(PetscStrncpy(option, name, size));
   }
   PetscCall(PetscFree(all));
@@ -130,7 +137,7 @@ static PetscErrorCode Compare(PetscInt n, const char *const options[], const cha
     for (PetscInt j = i + 1; j < n; j++)
       if (paths[j][0] && IsSame(&files[i], &files[j]))
         PetscCall(PetscSNPrintf(error, size, "%s and %s are the same file, %s; give each its own", options[i], options[j], paths[i]));
-    if (files[i].exists) PetscCall(FindReader(&files[i], sizeof(reader), reader));
+    if (files[i].exists) PetscCall(FindReader(&files[i], options[i], sizeof(reader), reader));
     if (reader[0])
       PetscCall(PetscSNPrintf(error, size, "%s %s is a file that the run reads, by %s; give another path", options[i], paths[i], reader));
   }

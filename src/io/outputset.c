@@ -5,15 +5,15 @@
 #include "xdmf.h"
 
 /* Each file has a path of its own, and is none that the run reads; empty: it is not written */
-PetscErrorCode OutputCheckPaths(MPI_Comm comm, const char summary[], const char history[], const char fields[])
+PetscErrorCode OutputCheckPaths(MPI_Comm comm, const char summary[], const char history[], const char fields[], const char checkpoint[])
 {
-  const char *const options[4]               = {"-output_history", "-output_summary", "-output_fields", "the XDMF file of -output_fields"};
+  const char *const options[5] = {"-output_history", "-output_summary", "-output_fields", "the XDMF file of -output_fields", "-checkpoint"};
   char              xdmf[PETSC_MAX_PATH_LEN] = "";
-  const char *const paths[4]                 = {history, summary, fields, xdmf};
+  const char *const paths[5]                 = {history, summary, fields, xdmf, checkpoint};
 
   PetscFunctionBegin;
   if (fields[0]) PetscCall(XdmfGetPath(fields, sizeof(xdmf), xdmf));
-  PetscCall(OutputPathsCheck(comm, 4, options, paths));
+  PetscCall(OutputPathsCheck(comm, 5, options, paths));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,7 +123,7 @@ PetscErrorCode OutputSetSummary(Output output, const char path[])
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   PetscAssertPointer(path, 2);
   comm = PetscObjectComm((PetscObject)output);
-  PetscCall(OutputCheckPaths(comm, path, output->history_path, output->fields_path));
+  PetscCall(OutputCheckPaths(comm, path, output->history_path, output->fields_path, output->checkpoints.path));
   PetscCall(OutputFileCheck(comm, "-output_summary", path));
   PetscCall(PetscStrncpy(output->summary_path, path, sizeof(output->summary_path)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -154,7 +154,7 @@ PetscErrorCode OutputSetHistory(Output output, const char path[])
   PetscAssertPointer(path, 2);
   comm = PetscObjectComm((PetscObject)output);
   PetscCheck(!output->history, comm, PETSC_ERR_ARG_WRONGSTATE, "The history is written to %s already", output->history_path);
-  PetscCall(OutputCheckPaths(comm, output->summary_path, path, output->fields_path));
+  PetscCall(OutputCheckPaths(comm, output->summary_path, path, output->fields_path, output->checkpoints.path));
   PetscCall(HistoryCreate(output->controller, path, &output->history));
   PetscCall(ControllerMonitorSet(output->controller, HistoryMonitor, output->history, NULL));
   PetscCall(PetscStrncpy(output->history_path, path, sizeof(output->history_path)));
@@ -192,7 +192,7 @@ PetscErrorCode OutputSetFields(Output output, const char path[], PetscInt interv
   PetscValidLogicalCollectiveEnum(output, precision, 4);
   comm = PetscObjectComm((PetscObject)output);
   PetscCheck(!output->fields, comm, PETSC_ERR_ARG_WRONGSTATE, "The fields are written to %s already", output->fields_path);
-  PetscCall(OutputCheckPaths(comm, output->summary_path, output->history_path, path));
+  PetscCall(OutputCheckPaths(comm, output->summary_path, output->history_path, path, output->checkpoints.path));
   PetscCall(FieldsCreate(output->controller, path, interval, precision, &output->fields));
   PetscCall(ControllerMonitorSet(output->controller, FieldsMonitor, output->fields, NULL));
   PetscCall(PetscStrncpy(output->fields_path, path, sizeof(output->fields_path)));

@@ -126,3 +126,49 @@ PetscErrorCode SeriesFileAppend(const char path[], PetscInt n_series, const Seri
   PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Cuts off what a dataset has beyond so many records */
+static PetscErrorCode CutDataset(hid_t file, const Series *series, PetscInt64 length, const char path[])
+{
+  const hsize_t size[2] = {(hsize_t)length, (hsize_t)series->components};
+  hsize_t       has[2]  = {0, 0};
+  hid_t         dataset, space;
+
+  PetscFunctionBegin;
+  dataset = H5Dopen2(file, series->name, H5P_DEFAULT);
+  PetscCheck(dataset >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "%s has no %s: it is not the history of the run that is continued",
+             path, series->name);
+  space = H5Dget_space(dataset);
+  PetscCheck(H5Sget_simple_extent_ndims(space) == (series->components > 1 ? 2 : 1) && H5Sget_simple_extent_dims(space, has, NULL) > 0 &&
+                 has[0] >= size[0] && (series->components == 1 || has[1] == size[1]),
+             PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+             "%s has %llu records of %s and the run that is continued has written %lld: it is another run's, or was replaced", path,
+             (unsigned long long)has[0], series->name, (long long)length);
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  PetscCall(HDF5Check(H5Dset_extent(dataset, size), "cut a dataset", path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "cut a dataset", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  SeriesFileCut - cuts off what the series of a file have beyond so many records
+
+  Not Collective
+
+  Input Parameters:
++ path     - the file
+. n_series - number of series
+. series   - the series that it was created with
+- length   - how many records are to stay; an error if there are fewer
+*/
+PetscErrorCode SeriesFileCut(const char path[], PetscInt n_series, const Series series[], PetscInt64 length)
+{
+  hid_t file;
+
+  PetscFunctionBegin;
+  file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  PetscCheck(file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "%s is not an HDF5 file that can be continued", path);
+  for (PetscInt i = 0; i < n_series; i++) PetscCall(CutDataset(file, &series[i], length, path));
+  PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

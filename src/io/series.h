@@ -13,3 +13,4 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode SeriesFileCreate(const char[], PetscInt, const Series[], const char[]);
 PETSC_INTERN PetscErrorCode SeriesFileAppend(const char[], PetscInt, const Series[], PetscInt64, PetscInt, PetscInt, const PetscReal[]);
+PETSC_INTERN PetscErrorCode SeriesFileCut(const char[], PetscInt, const Series[], PetscInt64);

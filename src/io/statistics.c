@@ -19,22 +19,22 @@ typedef struct {
 } ContactMemory;
 
 struct _n_Statistics {
-  StatisticsResults results;
-  ContactMemory     any, *pair;
-  ContactTimes      times;
-  PetscReal         time; /* of the last frame [s] */
-  PetscInt          total_sweeps, contact_sweeps;
-  PetscReal        *initial_energy; /* of each body [J] */
-  PetscReal        *body_change;    /* least and largest change of the energy of each body since the start [J] */
-  PetscReal         system_change[2];
-  EnergyScale       scale;                     /* of energies */
-  PetscBool         loaded;                    /* forces from outside, or held displacements, act on some body */
-  PetscReal         momentum[3];               /* of the system at the start [kg m/s] */
-  PetscReal         momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
-  PetscReal         angular[3], angular_scale; /* the same of angular momenta about the origin [kg m^2/s] */
-  PetscReal         arm;                       /* distance of the farthest corner of a body's bounding box from the origin [m] */
-  PetscInt          n_series, capacity;
-  PetscReal        *series; /* from first contact on: time, and for each pair force and nodes in contact */
+  StatisticsResults  results;
+  ContactMemory      any, *pair;
+  ContactTimes       times;
+  PetscReal          time; /* of the last frame [s] */
+  PetscInt           total_sweeps, contact_sweeps;
+  PetscReal         *initial_energy; /* of each body [J] */
+  PetscReal         *body_change;    /* least and largest change of the energy of each body since the start [J] */
+  PetscReal          system_change[2];
+  const EnergyScale *scale;                     /* of energies, the controller's */
+  PetscBool          loaded;                    /* forces from outside, or held displacements, act on some body */
+  PetscReal          momentum[3];               /* of the system at the start [kg m/s] */
+  PetscReal          momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
+  PetscReal          angular[3], angular_scale; /* the same of angular momenta about the origin [kg m^2/s] */
+  PetscReal          arm;                       /* distance of the farthest corner of a body's bounding box from the origin [m] */
+  PetscInt           n_series, capacity;
+  PetscReal         *series; /* from first contact on: time, and for each pair force and nodes in contact */
 };
 
 /* Distance of the farthest corner of a bounding box from the origin [m] */
@@ -150,7 +150,7 @@ static void NoteChange(PetscReal change[2], PetscReal energy)
 static void AddEnergies(Statistics s, const ControllerFrame *frame)
 {
   StatisticsResults *r      = &s->results;
-  const PetscReal    change = EnergyScaleChange(&s->scale, frame), scale = EnergyScaleGet(&s->scale);
+  const PetscReal    change = EnergyScaleChange(s->scale, frame), scale = EnergyScaleGet(s->scale);
   PetscReal          momentum[3] = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
   PetscReal          angular[3]  = {-s->angular[0], -s->angular[1], -s->angular[2]};
 
@@ -286,7 +286,7 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   ContactPairState   any = {.gap = PETSC_INFINITY};
 
   PetscFunctionBegin;
-  PetscCall(EnergyScaleAdd(&s->scale, controller, frame));
+  s->scale = ControllerGetEnergyScale(controller);
   if (frame->step == 0) NoteInitialState(s, frame);
   AddEnergies(s, frame);
   AddSupports(s, frame);
@@ -392,6 +392,62 @@ PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResul
   r->mean_sweeps         = r->steps ? (PetscReal)statistics->total_sweeps / (PetscReal)r->steps : 0;
   r->mean_sweeps_contact = r->contact.steps_in_contact ? (PetscReal)statistics->contact_sweeps / (PetscReal)r->contact.steps_in_contact : 0;
   *results               = r;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All that is gathered, as it lies in the structs: pointers stay those of this run */
+static PetscErrorCode VisitResults(StatisticsResults *results, Checkpoint checkpoint)
+{
+  StatisticsResults copy = *results;
+
+  PetscFunctionBegin;
+  copy.pairs    = NULL;
+  copy.bodies   = NULL;
+  copy.supports = NULL;
+  PetscCall(CheckpointVisitBytes(checkpoint, "results", sizeof(copy), &copy));
+  copy.pairs    = results->pairs;
+  copy.bodies   = results->bodies;
+  copy.supports = results->supports;
+  *results      = copy;
+  for (PetscInt i = 0; i < results->n_supports; i++) {
+    SupportStatistics *support = &results->supports[i];
+
+    PetscCall(CheckpointVisitReals(checkpoint, "reaction", 3, support->force));
+    PetscCall(CheckpointVisitReals(checkpoint, "reaction moment", 3, support->moment));
+    PetscCall(CheckpointVisitReals(checkpoint, "reaction peak", 1, &support->force_peak));
+  }
+  PetscCall(CheckpointVisitBytes(checkpoint, "pairs", (size_t)results->n_pairs * sizeof(*results->pairs), results->pairs));
+  PetscCall(CheckpointVisitBytes(checkpoint, "bodies", (size_t)results->n_bodies * sizeof(*results->bodies), results->bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StatisticsVisit - the figures so far, to or from a checkpoint; Collective */
+PetscErrorCode StatisticsVisit(Statistics s, Checkpoint checkpoint)
+{
+  const PetscInt sizes[] = {s->results.n_pairs, s->results.n_bodies, s->results.n_supports};
+  const PetscInt width   = 1 + 2 * s->results.n_pairs;
+  PetscReal     *reals[] = {&s->time, &s->momentum_scale, &s->angular_scale, &s->arm};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointBegin(checkpoint, "summary"));
+  PetscCall(CheckpointCheckInts(checkpoint, "pairs, bodies and supports", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(VisitResults(&s->results, checkpoint));
+  PetscCall(CheckpointVisitBytes(checkpoint, "any", sizeof(s->any), &s->any));
+  PetscCall(CheckpointVisitBytes(checkpoint, "memory", (size_t)sizes[0] * sizeof(*s->pair), s->pair));
+  PetscCall(ContactTimesVisit(s->times, checkpoint));
+  PetscCall(CheckpointVisitInts(checkpoint, "sweeps", 1, &s->total_sweeps));
+  PetscCall(CheckpointVisitInts(checkpoint, "contact sweeps", 1, &s->contact_sweeps));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reals); i++) PetscCall(CheckpointVisitReals(checkpoint, "figure", 1, reals[i]));
+  PetscCall(CheckpointVisitReals(checkpoint, "initial energy", sizes[1], s->initial_energy));
+  PetscCall(CheckpointVisitReals(checkpoint, "body change", 2 * sizes[1], s->body_change));
+  PetscCall(CheckpointVisitReals(checkpoint, "system change", 2, s->system_change));
+  PetscCall(CheckpointVisitReals(checkpoint, "momentum", 3, s->momentum));
+  PetscCall(CheckpointVisitReals(checkpoint, "angular", 3, s->angular));
+  PetscCall(CheckpointVisitBools(checkpoint, "loaded", 1, &s->loaded));
+  PetscCall(CheckpointVisitInts(checkpoint, "series", 1, &s->n_series));
+  while (s->capacity < s->n_series) s->capacity *= 2;
+  PetscCall(PetscRealloc((size_t)s->capacity * (size_t)width * sizeof(PetscReal), &s->series));
+  PetscCall(CheckpointVisitBytes(checkpoint, "forces", (size_t)s->n_series * (size_t)width * sizeof(PetscReal), s->series));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

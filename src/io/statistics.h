@@ -1,5 +1,6 @@
 /* What a run was like, gathered step by step. */
 #pragma once
+#include <checkpoint/checkpoint.h>
 #include "contacttimes.h"
 #include "deviation.h"
 
@@ -65,4 +66,5 @@ PETSC_INTERN PetscErrorCode      StatisticsCreate(Controller, Statistics *);
 PETSC_INTERN ControllerMonitorFn StatisticsMonitor;
 PETSC_INTERN PetscErrorCode      StatisticsGetResults(Statistics, const StatisticsResults **);
 PETSC_INTERN PetscErrorCode      StatisticsSetDeviation(Statistics, Deviation);
+PETSC_INTERN PetscErrorCode      StatisticsVisit(Statistics, Checkpoint);
 PETSC_INTERN PetscErrorCode      StatisticsDestroy(Statistics *);

@@ -216,3 +216,30 @@ PetscInt64 ComplianceGetState(Compliance c)
 {
   return c->state;
 }
+
+/* State for a checkpoint: the known rows in their order, with their matrices */
+PetscErrorCode ComplianceVisit(Compliance c, Checkpoint checkpoint)
+{
+  PetscInt   sizes[3] = {c->n, c->room, c->levels};
+  PetscInt64 state    = c->state;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitInts(checkpoint, "compliance", 3, sizes));
+  PetscCall(CheckpointVisitInt64s(checkpoint, "compliance state", 1, &state));
+  if (CheckpointLoads(checkpoint)) {
+    PetscCheck(sizes[2] == c->levels, c->comm, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has another number of substeps");
+    for (PetscInt j = 0; j < c->global; j++) c->place[j] = -1;
+    c->n = 0;
+    PetscCall(ComplianceReserve(c, sizes[1]));
+    c->n          = sizes[0];
+    c->state      = state;
+    c->ramp_valid = PETSC_FALSE;
+  }
+  PetscCall(CheckpointVisitInts(checkpoint, "compliance rows", c->n, c->rows));
+  PetscCall(CheckpointVisitInts(checkpoint, "compliance known", c->n, c->known));
+  for (PetscInt j = 0; j < c->n; j++) c->place[c->rows[j]] = j;
+  for (PetscInt k = 0; k < c->levels; k++)
+    for (PetscInt j = 0; j < c->n; j++)
+      PetscCall(CheckpointVisitReals(checkpoint, "compliance column", c->n, c->matrices + (k * c->room + j) * c->room));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

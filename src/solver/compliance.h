@@ -5,6 +5,7 @@
 */
 #pragma once
 #include <petscsys.h>
+#include <checkpoint/checkpoint.h>
 
 typedef struct _n_Compliance *Compliance;
 
@@ -20,3 +21,4 @@ PETSC_INTERN PetscBool      ComplianceKnows(Compliance, PetscInt);
 PETSC_INTERN void           ComplianceGetMatrix(Compliance, PetscInt, PetscInt *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode ComplianceGetRamp(Compliance, PetscInt *, const PetscScalar *[]);
 PETSC_INTERN PetscInt64     ComplianceGetState(Compliance);
+PETSC_INTERN PetscErrorCode ComplianceVisit(Compliance, Checkpoint);

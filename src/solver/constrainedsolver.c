@@ -402,6 +402,17 @@ static PetscErrorCode ChooseDense(ConstrainedSolver s, PetscBool *dense)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Room for as many constraint forces as the dense matrix has */
+static PetscErrorCode MakeRoom(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  if (s->factor.room <= s->room) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3(s->gathered, s->force, s->used));
+  s->room = s->factor.room;
+  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The constraint forces' matrix, for the rows that are constrained now */
 static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 {
@@ -423,11 +434,7 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(DenseFactorResize(&s->factor, s->n, s->global));
-  if (s->factor.room > s->room) {
-    PetscCall(PetscFree3(s->gathered, s->force, s->used));
-    s->room = s->factor.room;
-    PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
-  }
+  PetscCall(MakeRoom(s));
   for (PetscInt k = 0; k < s->n; k++) PetscCall(MakeColumn(s, s->rows[k]));
   ComplianceGetRows(s->compliance, NULL, NULL, &place);
   ComplianceGetMatrix(s->compliance, 0, &leading, &W);
@@ -596,5 +603,41 @@ PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar f
   PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, x));
   PetscCall(Constrain(s, target, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The columns of W are loaded; those of A^{-1} B^T follow from A and B as they are */
+static PetscErrorCode RemakeColumns(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < s->global; j++) {
+    if (!s->fresh[j]) continue;
+    if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+    PetscCall(ConstrainedSolverApplyUnit(s, j, s->columns[j], s->column));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* State for a checkpoint. A and B, and a compliance that is shared, are loaded before. Collective. */
+PetscErrorCode ConstrainedSolverVisit(ConstrainedSolver s, Checkpoint checkpoint)
+{
+  PetscInt numbers[2] = {s->n, s->dense};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointCheckInts(checkpoint, "rows", 1, &s->global));
+  if (!s->shares) PetscCall(ComplianceVisit(s->compliance, checkpoint));
+  PetscCall(CheckpointVisitBools(checkpoint, "columns", s->global, s->fresh));
+  if (CheckpointLoads(checkpoint)) PetscCall(RemakeColumns(s));
+  PetscCall(CheckpointVisitReals(checkpoint, "flexibility", s->local, s->mine));
+  PetscCall(CheckpointVisitReals(checkpoint, "flexibility of all", s->global, s->constrained));
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 2, numbers));
+  s->n     = numbers[0];
+  s->dense = (PetscBool)numbers[1];
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained rows", s->n, s->rows));
+  PetscCall(CheckpointVisitReals(checkpoint, "spent", 1, &s->spent));
+  PetscCall(DenseFactorVisit(&s->factor, s->global, checkpoint));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MakeRoom(s));
+  if (!s->dense && !s->iterative) PetscCall(CreateIterative(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -21,3 +21,4 @@ PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverExtend(ConstrainedSolver, PetscInt);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCorrect(ConstrainedSolver, const PetscScalar[], const PetscScalar[], Vec);
 PETSC_INTERN PetscLogDouble     ConstrainedSolverGetFlops(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverVisit(ConstrainedSolver, Checkpoint);

@@ -45,6 +45,23 @@ PetscErrorCode DenseFactorSolve(const DenseFactor *factor, PetscScalar x[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* State for a checkpoint, factors and all; `most` as in DenseFactorResize() */
+PetscErrorCode DenseFactorVisit(DenseFactor *factor, PetscInt most, Checkpoint checkpoint)
+{
+  PetscInt sizes[2] = {factor->n, factor->factored};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitInts(checkpoint, "factor", 2, sizes));
+  if (CheckpointLoads(checkpoint)) {
+    PetscCall(DenseFactorResize(factor, sizes[0], most));
+    factor->factored = (PetscBool)sizes[1];
+  }
+  if (!factor->factored) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitReals(checkpoint, "factor values", factor->n * factor->n, factor->values));
+  PetscCall(CheckpointVisitBytes(checkpoint, "factor pivots", (size_t)factor->n * sizeof(*factor->pivots), factor->pivots));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DenseFactorDestroy(DenseFactor *factor)
 {
   PetscFunctionBegin;

@@ -1,6 +1,7 @@
 /* LU factors of a dense matrix, the same on every rank: the one place where Impakt calls LAPACK for the matrices of an interface. */
 #pragma once
 #include <petscsys.h>
+#include <checkpoint/checkpoint.h>
 
 /* A matrix of order `n` by columns, without gaps between them; from DenseFactorCompute() on, its factors */
 typedef struct {
@@ -13,6 +14,7 @@ typedef struct {
 PETSC_INTERN PetscErrorCode DenseFactorResize(DenseFactor *, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode DenseFactorCompute(DenseFactor *, PetscBool *);
 PETSC_INTERN PetscErrorCode DenseFactorSolve(const DenseFactor *, PetscScalar[]);
+PETSC_INTERN PetscErrorCode DenseFactorVisit(DenseFactor *, PetscInt, Checkpoint);
 PETSC_INTERN PetscErrorCode DenseFactorDestroy(DenseFactor *);
 PETSC_INTERN PetscErrorCode DenseMultiplyAdd(PetscInt, PetscInt, const PetscScalar[], PetscReal, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscLogDouble DenseFactorFlops(PetscInt);

@@ -17,6 +17,7 @@ static PetscBool IsUsersBusiness(const char *function, PetscErrorCode code)
   case PETSC_ERR_NOT_CONVERGED:
   case PETSC_ERR_FILE_OPEN:
   case PETSC_ERR_FILE_WRITE:
+  case PETSC_ERR_FILE_UNEXPECTED:
   case PETSC_ERR_FP:
     return PETSC_TRUE;
   default:

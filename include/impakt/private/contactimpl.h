@@ -5,6 +5,8 @@
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h>
 
+typedef struct _n_Checkpoint *Checkpoint; /* src/checkpoint/checkpoint.h */
+
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
   PetscErrorCode (*setup)(Contact);
@@ -18,6 +20,8 @@ struct _ContactOps {
      compliance is another. What is remembered of earlier steps at this level goes on (true) or not. */
   PetscErrorCode (*steplevel)(Contact, PetscInt, PetscBool);
   PetscErrorCode (*accept)(Contact); /* corrects the states at the end of a step, before the next step starts from them */
+  /* what the method remembers from step to step, to or from a checkpoint; NULL: runs with it have no checkpoints */
+  PetscErrorCode (*visit)(Contact, Checkpoint);
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -422,6 +426,7 @@ PETSC_INTERN PetscErrorCode ContactDestroyFloating(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
+PETSC_INTERN PetscErrorCode ContactVisitImpulses(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);

@@ -120,6 +120,13 @@ static PetscErrorCode Restore(Body body, BodySlot slot)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode VisitLayer(Body body, PetscInt level, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  if (!level && GetLayer(body)) PetscCall(LayerBalanceVisit(GetLayer(body), body, checkpoint)); /* one for all levels */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Velocity of massless, held and prescribed nodes */
 static PetscErrorCode FinishSubstep(Body body)
 {
@@ -269,6 +276,7 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
   integrator->ops.finishsubstep = FinishSubstep;
   integrator->ops.save          = Save;
   integrator->ops.restore       = Restore;
+  integrator->ops.visit         = VisitLayer;
   integrator->ops.destroy       = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,7 @@ typedef struct {
   PetscReal alpha_m, alpha_f, gamma, beta; /* of TSALPHA2 */
   Mat       matrix;                        /* K + shift M, its held dofs eliminated: body->solver has its factors */
   Mat       matrices[STEP_MAX_CUTS + 1];   /* that of each level of cut steps which there has been */
+  Vec       points[STEP_MAX_CUTS + 1];     /* displacement at which that of a nonlinear body was assembled last; NULL: undeformed [m] */
   PetscReal shift;                         /* [1/s^2]; 0 without inertia */
   PetscReal shift_velocity;                /* of C where the body is damped [1/s] */
   PetscReal terms, round_off; /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
@@ -26,3 +27,4 @@ PETSC_INTERN PetscErrorCode BodyImplicitCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitAddForces(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitPrescribe(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitCorrect(Body, const PetscScalar[], const PetscScalar[], Vec);
+PETSC_INTERN PetscErrorCode BodyImplicitVisit(Body, PetscInt, Checkpoint);

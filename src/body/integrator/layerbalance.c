@@ -278,6 +278,27 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* State for a checkpoint: where the factors of a nonlinear layer were made */
+PetscErrorCode LayerBalanceVisit(LayerBalance layer, Body body, Checkpoint checkpoint)
+{
+  const PetscInt before = layer->now.number;
+
+  PetscFunctionBegin;
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitInts(checkpoint, "layer factors", 1, &layer->n_made));
+  PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
+  PetscCall(CheckpointVisitBools(checkpoint, "layer slow", 1, &layer->now.slow));
+  PetscCall(CheckpointVisitVec(checkpoint, "layer point", layer->now.point));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
+    layer->aside[slot].number = layer->now.number;
+    layer->aside[slot].slow   = layer->now.slow;
+    PetscCall(VecCopy(layer->now.point, layer->aside[slot].point));
+  }
+  if (layer->now.number != before) PetscCall(Refactor(layer, body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
 {
   PetscFunctionBegin;

@@ -414,6 +414,24 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* State for a checkpoint: where the matrix of a nonlinear body was linearised last, at a level of cut steps. Its factors answer until the
+   next iteration of Newton's method. */
+PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoint)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  PetscBool     has      = (PetscBool)(implicit->points[level] != NULL);
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "linearised", 1, &has));
+  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!implicit->points[level]) PetscCall(VecDuplicate(body->state.u, &implicit->points[level]));
+  PetscCall(CheckpointVisitVec(checkpoint, "linearised at", implicit->points[level]));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AssembleMatrix(body, implicit->points[level]));
+  PetscCall(ConstrainedSolverRefactor(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What both have in common */
 PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
 {
@@ -429,6 +447,7 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   integrator->ops.setlevel       = BodyImplicitSetLevel;
   integrator->ops.renew          = BodyImplicitRenew;
   integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
+  integrator->ops.visit          = BodyImplicitVisit;
   integrator->ops.destroy        = BodyImplicitDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -440,7 +459,10 @@ PetscErrorCode BodyImplicitDestroy(Body body)
 
   PetscFunctionBegin;
   for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
-  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(MatDestroy(&implicit->matrices[k]));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
+    PetscCall(MatDestroy(&implicit->matrices[k]));
+    PetscCall(VecDestroy(&implicit->points[k]));
+  }
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,11 +33,17 @@ static PetscErrorCode ForgetAll(Body body)
 }
 
 /* The compliance of a level, and its solver where that depends on the step, in place of those of the level before */
-static PetscErrorCode TakeLevel(Body body, PetscBool *made)
+PetscErrorCode BodyTakeLevel(Body body, PetscInt number, PetscBool *made)
 {
-  BodyLevel *level = &body->levels[body->time.level];
+  BodyLevel *level = &body->levels[number];
 
   PetscFunctionBegin;
+  body->levels[body->time.level].compliance = body->compliance;
+  body->levels[body->time.level].solver     = body->solver;
+  body->time.level                          = number;
+  body->time.controller_step                = body->time.whole_step / PetscPowRealInt(2, number);
+  body->time.step                           = body->time.controller_step / body->time.substeps;
+  PetscCall(BodyRestore(body));
   *made = (PetscBool)!level->compliance;
   if (level->compliance) {
     body->compliance = level->compliance;
@@ -84,13 +90,7 @@ PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
     PetscCall(BodyRestore(body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  body->levels[body->time.level].compliance = body->compliance;
-  body->levels[body->time.level].solver     = body->solver;
-  body->time.level                          = level;
-  body->time.controller_step                = body->time.whole_step / PetscPowRealInt(2, level);
-  body->time.step                           = body->time.controller_step / body->time.substeps;
-  PetscCall(BodyRestore(body));
-  PetscCall(TakeLevel(body, &made));
+  PetscCall(BodyTakeLevel(body, level, &made));
   PetscCall(FreeRows(body));
   if (!body->model.linear && !made && body->time.accepted_level != level) {
     if (body->integrator->ops.renew) PetscCall((*body->integrator->ops.renew)(body));

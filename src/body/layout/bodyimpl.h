@@ -314,6 +314,7 @@ PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
 PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodySetRowsOfLevels(Body, const PetscMPIInt[]);
+PETSC_INTERN PetscErrorCode BodyTakeLevel(Body, PetscInt, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyDestroyLevels(Body);
 PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);

@@ -32,6 +32,10 @@ typedef struct {
   PetscErrorCode (*save)(Body, BodySlot);    /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
   PetscErrorCode (*restore)(Body, BodySlot); /* (NULL) the state has been brought back: what the integrator remembers must be as it was
                                                 then, so that the same integration gives the same bits */
+  /* (NULL) what the integrator remembers from step to step, to or from a checkpoint, for a level of cut steps; loading, that level is
+   * present
+   */
+  PetscErrorCode (*visit)(Body, PetscInt, Checkpoint);
   PetscErrorCode (*freerows)(Body, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of the controller step if no
                                                       contact acts on any, without integrating [m]; may be set in setup() */
   /* (NULL) the columns of some rows of any rank, into a compliance, where there is no simpler way to one of them; may be set in setup() */

@@ -15,6 +15,7 @@
    still pulled. The others go on.
 */
 #include "rounds.h"
+#include <checkpoint/checkpoint.h>
 
 /* Rounds after which no row leaves any more, so that a step with a set seen twice ends with an answer */
 #define LAST_ROUNDS (ROUNDS_MAX / 2)
@@ -40,6 +41,15 @@ PetscErrorCode RoundsDestroy(Rounds *rounds)
   PetscFunctionBegin;
   PetscCall(PetscFree(rounds->tried));
   PetscCall(PetscFree(rounds->kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* State for a checkpoint, between two steps: what the next one begins with */
+PetscErrorCode RoundsVisit(Rounds *rounds, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "cycled", 1, &rounds->cycled));
+  PetscCall(CheckpointVisitBools(checkpoint, "kept", rounds->contact->rows.n, rounds->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

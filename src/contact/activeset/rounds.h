@@ -30,3 +30,4 @@ PETSC_INTERN PetscErrorCode   RoundsChange(Rounds *);
 PETSC_INTERN PetscErrorCode   RoundsHaveChanged(const Rounds *, PetscBool *);
 PETSC_INTERN const PetscBool *RoundsLast(const Rounds *);
 PETSC_INTERN PetscErrorCode   RoundsBreakCycle(Rounds *, PetscBool *);
+PETSC_INTERN PetscErrorCode   RoundsVisit(Rounds *, Checkpoint);

@@ -6,6 +6,7 @@
    which is S with the compliance of the springs on its diagonal.
 */
 #include "forceproblem.h"
+#include <checkpoint/checkpoint.h>
 
 /* Rows of interfaces with so few are known from the start, which leaves nothing to allocate later */
 #define FEW_ROWS 16
@@ -106,6 +107,21 @@ PetscErrorCode ForceProblemForget(Contact contact, ForceProblem *problem)
   PetscCall(PetscArrayzero(problem->listed, contact->rows.n));
   PetscCall(PetscArrayzero(problem->pushing, contact->rows.n));
   problem->stale = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* State for a checkpoint */
+PetscErrorCode ForceProblemVisit(Contact contact, ForceProblem *problem, Checkpoint checkpoint)
+{
+  const PetscInt n = contact->rows.n;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "stale", 1, &problem->stale));
+  PetscCall(CheckpointVisitBytes(checkpoint, "listed", (size_t)n * sizeof(*problem->listed), problem->listed));
+  PetscCall(CheckpointVisitBools(checkpoint, "pushing", n, problem->pushing));
+  PetscCall(CheckpointVisitReals(checkpoint, "springs", n, problem->springs));
+  PetscCall(CheckpointVisitReals(checkpoint, "solution", n, problem->solution));
+  PetscCall(InterfaceOperatorVisit(problem->S, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,3 +20,4 @@ PETSC_INTERN PetscErrorCode ForceProblemUpdate(Contact, ForceProblem *, const Pe
 PETSC_INTERN PetscErrorCode ForceProblemSolve(Contact, ForceProblem *, Vec, Vec);
 PETSC_INTERN PetscErrorCode ForceProblemForget(Contact, ForceProblem *);
 PETSC_INTERN PetscErrorCode ForceProblemDestroy(ForceProblem *);
+PETSC_INTERN PetscErrorCode ForceProblemVisit(Contact, ForceProblem *, Checkpoint);

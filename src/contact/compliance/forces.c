@@ -1,5 +1,6 @@
 /* One sweep under given contact forces, and the rows whose gap rate counts in a step. */
 #include "forces.h"
+#include <checkpoint/checkpoint.h>
 
 /* of dense matrices of all rows, 32 MB */
 #define MAX_DENSE_ROWS 2000
@@ -50,6 +51,15 @@ PetscErrorCode ForcesCreate(Contact contact, Forces *forces)
   PetscFunctionBegin;
   PetscCall(TraceCreate(contact->rows.n, 1, &forces->trace));
   PetscCall(PetscCalloc1(contact->rows.n, &forces->touching));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* State for a checkpoint */
+PetscErrorCode ForcesVisit(Contact contact, Forces *forces, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitTrace(checkpoint, "forces", forces->trace));
+  PetscCall(CheckpointVisitBools(checkpoint, "touching", contact->rows.n, forces->touching));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,3 +16,4 @@ PETSC_INTERN PetscErrorCode ForcesBeginStep(Contact, Forces *, PetscBool *);
 PETSC_INTERN PetscErrorCode ForcesTouch(Contact, Forces *, const PetscScalar[], PetscBool *);
 PETSC_INTERN PetscErrorCode ForcesGetTime(Contact, PetscReal *);
 PETSC_INTERN PetscErrorCode ForcesGetStep(Contact, PetscReal *);
+PETSC_INTERN PetscErrorCode ForcesVisit(Contact, Forces *, Checkpoint);

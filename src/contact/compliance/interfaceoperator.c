@@ -372,3 +372,47 @@ PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map,
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* State for a checkpoint. What the bodies' compliance knows they load themselves; a sparse S is the caller's to set again. */
+PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoint)
+{
+  PetscInt        sizes[] = {op->levels, op->n, op->n_known, op->n_in};
+  PetscBool       flags[] = {op->dense, op->factored};
+  PetscLogDouble  flops[] = {op->product_flops, op->spent, op->dense_flops};
+  const PetscInt  mine    = op->contact->rows.n;
+  const PetscBool loads   = CheckpointLoads(checkpoint);
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitInts(checkpoint, "interface operator", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(CheckpointVisitBools(checkpoint, "dense", PETSC_STATIC_ARRAY_LENGTH(flags), flags));
+  PetscCall(CheckpointVisitReals(checkpoint, "flops", PETSC_STATIC_ARRAY_LENGTH(flops), flops));
+  if (loads) {
+    PetscCall(MakeRoom(op, sizes[2]));
+    op->levels        = sizes[0];
+    op->n             = sizes[1];
+    op->n_known       = sizes[2];
+    op->n_in          = sizes[3];
+    op->dense         = flags[0];
+    op->factored      = flags[1];
+    op->product_flops = flops[0];
+    op->spent         = flops[1];
+    op->dense_flops   = flops[2];
+  }
+  PetscCall(CheckpointVisitInts(checkpoint, "rows", op->n_known, op->rows));
+  PetscCall(CheckpointVisitInts(checkpoint, "places", op->n_in, op->places));
+  PetscCall(CheckpointVisitBytes(checkpoint, "marks", (size_t)mine * sizeof(*op->marks), op->marks));
+  PetscCall(CheckpointVisitReals(checkpoint, "diagonal", mine, op->diagonal));
+  PetscCall(CheckpointVisitBools(checkpoint, "assembled", INTERFACE_MAPS, op->assembled));
+  for (PetscInt m = 0; m < INTERFACE_MAPS; m++) {
+    const PetscInt size = op->assembled[m] ? op->levels * op->n * op->n : 0;
+
+    if (loads && size > op->sizes[m]) {
+      PetscCall(PetscFree(op->matrices[m]));
+      PetscCall(PetscMalloc1(size, &op->matrices[m]));
+      op->sizes[m] = size;
+    }
+    PetscCall(CheckpointVisitReals(checkpoint, "map", size, op->matrices[m]));
+  }
+  PetscCall(DenseFactorVisit(&op->factor, op->contact->rows.n_all, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

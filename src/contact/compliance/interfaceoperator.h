@@ -48,4 +48,5 @@ PETSC_INTERN PetscErrorCode InterfaceOperatorMultiplyListed(InterfaceOperator, I
 PETSC_INTERN PetscErrorCode InterfaceOperatorSolve(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator, InterfaceMap, const PetscScalar[], PetscScalar[]);
 
-PETSC_INTERN void ContactMarkActive(Contact, InterfaceMark[]);
+PETSC_INTERN void           ContactMarkActive(Contact, InterfaceMark[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorVisit(InterfaceOperator, Checkpoint);

@@ -1,5 +1,6 @@
 /* What the contact forces of each pair amount to: resultant, moment, impulse, area. */
 #include <impakt/private/contactimpl.h>
+#include <checkpoint/checkpoint.h>
 
 /* What is summed over the rows of a pair */
 enum {
@@ -84,6 +85,14 @@ PetscErrorCode ContactStartImpulses(Contact contact)
     SumForces(contact, &contact->pairs[p], contact->end.force, impulse + 3);
     PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->end.force, impulse + 7));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The impulses so far, to or from a checkpoint */
+PetscErrorCode ContactVisitImpulses(Contact contact, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitReals(checkpoint, "impulses", N_KEPT * contact->n_pairs, contact->resultants.impulse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* Linear complementarity on the contact rows by a primal-dual active set: the forces of the active rows close their gaps. */
 #include "complementarity.h"
+#include <checkpoint/checkpoint.h>
 
 /* Above so many active rows forces come from conjugate gradients: on matching or not matching faces with lumped mass they take about 20
    iterations, as long as a factor of 441 rows that is kept through the contact, and half as long as one of 1936 */
@@ -159,5 +160,22 @@ PetscErrorCode ComplementarityGetBodyForces(Contact contact, PetscInt b, const C
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) forces[i] = Sign(&contact->pairs[contact->rows.pair[i]], b) * problem->forces[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* State for a checkpoint. C is set again before, with the rows as they are. */
+PetscErrorCode ComplementarityVisit(Contact contact, Complementarity *problem, Checkpoint checkpoint)
+{
+  const PetscInt n = contact->rows.n;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitReals(checkpoint, "gaps", n, problem->gaps));
+  PetscCall(CheckpointVisitReals(checkpoint, "forces", n, problem->forces));
+  PetscCall(CheckpointVisitReals(checkpoint, "closed", n, problem->closed));
+  PetscCall(CheckpointVisitBools(checkpoint, "active", n, problem->active));
+  PetscCall(CheckpointVisitBytes(checkpoint, "marks", (size_t)n * sizeof(*problem->marks), problem->marks));
+  PetscCall(CheckpointVisitBools(checkpoint, "current", 1, &problem->current));
+  PetscCall(InterfaceOperatorVisit(problem->S, checkpoint));
+  PetscCall(RoundsVisit(&problem->rounds, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -25,3 +25,4 @@ PETSC_INTERN PetscErrorCode ComplementaritySolve(Contact, PetscReal, Complementa
 PETSC_INTERN PetscErrorCode ComplementaritySolveActive(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementarityGetBodyForces(Contact, PetscInt, const Complementarity *, PetscScalar[]);
 PETSC_INTERN PetscErrorCode ComplementarityDestroy(Complementarity *);
+PETSC_INTERN PetscErrorCode ComplementarityVisit(Contact, Complementarity *, Checkpoint);

@@ -6,6 +6,7 @@
      g + C lambda >= 0,   lambda >= 0,   lambda . (g + C lambda) = 0.
 */
 #include "lagrangeimpl.h"
+#include <checkpoint/checkpoint.h>
 #include <contact/compliance/forces.h>
 #include <sys/citations.h>
 
@@ -90,6 +91,17 @@ static PetscErrorCode ContactRowsChanged_ForwardLagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ContactVisit_ForwardLagrange(Contact contact, Checkpoint checkpoint)
+{
+  ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
+
+  PetscFunctionBegin;
+  if (CheckpointLoads(checkpoint)) PetscCall(ContactRowsChanged_ForwardLagrange(contact));
+  PetscCall(ComplementarityVisit(contact, &lagrange->forces, checkpoint));
+  if (lagrange->close_rate) PetscCall(ComplementarityVisit(contact, &lagrange->impulses, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ContactDestroy_ForwardLagrange(Contact contact)
 {
   ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
@@ -113,6 +125,7 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   contact->attempt.moves_start = PETSC_TRUE;
   contact->ops->step           = ContactStep_ForwardLagrange;
   contact->ops->rowschanged    = ContactRowsChanged_ForwardLagrange;
+  contact->ops->visit          = ContactVisit_ForwardLagrange;
   contact->ops->destroy        = ContactDestroy_ForwardLagrange;
   PetscCall(ComplementarityCreate(contact, &lagrange->forces));
   PetscCall(ForcesGetStep(contact, &lagrange->step));

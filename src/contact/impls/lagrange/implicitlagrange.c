@@ -8,6 +8,7 @@
    compliance of all bodies, which is constant.
 */
 #include "lagrangeimpl.h"
+#include <checkpoint/checkpoint.h>
 #include <contact/compliance/forces.h>
 #include <contact/compliance/interfaceoperator.h>
 #include <contact/compliance/outersolver.h>
@@ -380,6 +381,25 @@ static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool go
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ContactVisit_ImplicitLagrange(Contact contact, Checkpoint checkpoint)
+{
+  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+
+  PetscFunctionBegin;
+  if (CheckpointLoads(checkpoint)) {
+    lagrange->step          = contact->step;
+    lagrange->have_jacobian = PETSC_FALSE;
+    if (lagrange->close_rate || lagrange->stabilized)
+      PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
+  }
+  PetscCall(CheckpointVisitReals(checkpoint, "compliance", contact->rows.n_all * contact->rows.n_all, lagrange->compliance));
+  PetscCall(InterfaceOperatorVisit(lagrange->S, checkpoint));
+  PetscCall(ForcesVisit(contact, &lagrange->forces, checkpoint));
+  PetscCall(CheckpointVisitVec(checkpoint, "outer", lagrange->outer.x));
+  if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementarityVisit(contact, &lagrange->impulses, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode LagrangeSetUpImplicit(Contact contact)
 {
   /* SNESVI wants all of S as a matrix: dense whatever its size, which ForcesCheckDense() bounds; nothing is iterated for */
@@ -408,6 +428,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   contact->ops->view        = ContactView_ImplicitLagrange;
   contact->ops->rowschanged = ContactRowsChanged_ImplicitLagrange;
   contact->ops->steplevel   = SetStepLevel;
+  contact->ops->visit       = ContactVisit_ImplicitLagrange;
   contact->ops->destroy     = ContactDestroy_ImplicitLagrange;
   lagrange->scale           = 1;
   PetscCall(ForcesGetStep(contact, &lagrange->step));

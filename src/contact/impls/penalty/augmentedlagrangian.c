@@ -130,6 +130,7 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   contact->ops->stepback          = PenaltyStepBack;
   contact->ops->steplevel         = PenaltySetStepLevel;
   contact->ops->view              = ContactView_AugmentedLagrangian;
+  contact->ops->visit             = PenaltyVisit;
   contact->ops->destroy           = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

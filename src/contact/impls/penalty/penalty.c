@@ -12,6 +12,7 @@
    evaluation, which finds this out, only adds the change of force to the end state.
 */
 #include "penaltyimpl.h"
+#include <checkpoint/checkpoint.h>
 #include <sys/petsccompat.h>
 
 /* Relative tolerance on contact forces, for which the method itself leaves 1e-3 and more of penetration */
@@ -300,6 +301,40 @@ static PetscErrorCode ContactView_Penalty(Contact contact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* State for a checkpoint: the force problem of each level of cut steps that there has been, and the springs as the rows have them */
+PetscErrorCode PenaltyVisit(Contact contact, Checkpoint checkpoint)
+{
+  Penalty       *penalty = (Penalty *)contact->data;
+  const PetscInt n       = contact->rows.n;
+  PetscInt       present = penalty->level;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitInts(checkpoint, "level", 1, &present));
+  penalty->step = contact->step;
+  PetscCall(CheckpointVisitReals(checkpoint, "spring", n, penalty->spring));
+  PetscCall(CheckpointVisitReals(checkpoint, "damper", n, penalty->damper));
+  PetscCall(CheckpointVisitReals(checkpoint, "stiffness", n, penalty->stiffness));
+  PetscCall(CheckpointVisitReals(checkpoint, "multiplier", n, penalty->multiplier));
+  PetscCall(CheckpointVisitBools(checkpoint, "pushing", n, penalty->pushing));
+  PetscCall(ForcesVisit(contact, &penalty->forces, checkpoint));
+  PetscCall(CheckpointVisitVec(checkpoint, "outer", penalty->outer.x));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
+    ForceProblem *problem = k == penalty->level ? &penalty->problem : &penalty->problems[k];
+    PetscBool     exists  = (PetscBool)(problem->S != NULL);
+
+    PetscCall(CheckpointVisitBools(checkpoint, "level exists", 1, &exists));
+    if (!exists) continue;
+    if (!problem->S) PetscCall(ForceProblemCreate(contact, penalty->stiffness, problem));
+    PetscCall(ForceProblemVisit(contact, problem, checkpoint));
+  }
+  if (present == penalty->level) PetscFunctionReturn(PETSC_SUCCESS);
+  penalty->problems[penalty->level] = penalty->problem;
+  penalty->problem                  = penalty->problems[present];
+  penalty->level                    = present;
+  PetscCall(PetscMemzero(&penalty->problems[present], sizeof(penalty->problems[present])));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode PenaltyDestroy(Contact contact)
 {
   Penalty *penalty = (Penalty *)contact->data;
@@ -354,6 +389,7 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   contact->ops->stepback       = PenaltyStepBack;
   contact->ops->steplevel      = PenaltySetStepLevel;
   contact->ops->view           = ContactView_Penalty;
+  contact->ops->visit          = PenaltyVisit;
   contact->ops->destroy        = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -39,3 +39,4 @@ PETSC_INTERN PetscErrorCode PenaltyStepBack(Contact);
 PETSC_INTERN PetscErrorCode PenaltySetStepLevel(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscErrorCode PenaltyRowsChanged(Contact);
 PETSC_INTERN PetscErrorCode PenaltyDestroy(Contact);
+PETSC_INTERN PetscErrorCode PenaltyVisit(Contact, Checkpoint);

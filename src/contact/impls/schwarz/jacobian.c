@@ -30,7 +30,7 @@
 /* Conjugate gradients, relative to the residual: a step of Newton's method that leaves so much takes one more sweep at most */
 #define FORCE_TOLERANCE 1e-9
 
-static PetscErrorCode MakeRoom(Jacobian *jacobian, PetscInt size, PetscInt most)
+PetscErrorCode SchwarzMakeJacobianRoom(Jacobian *jacobian, PetscInt size, PetscInt most)
 {
   PetscFunctionBegin;
   if (size <= jacobian->room) PetscFunctionReturn(PETSC_SUCCESS);
@@ -147,7 +147,7 @@ PetscErrorCode SchwarzUpdateJacobian(Contact contact)
   InterfaceOperatorGetRows(jacobian->S, &jacobian->n, &jacobian->rows, &jacobian->dense);
   jacobian->chained.factored = PETSC_FALSE;
   if (!jacobian->dense) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MakeRoom(jacobian, jacobian->n * jacobian->levels, schwarz->dense_limit));
+  PetscCall(SchwarzMakeJacobianRoom(jacobian, jacobian->n * jacobian->levels, schwarz->dense_limit));
   for (PetscInt i = 0; i < contact->rows.n; i++)
     schwarz->known[i] = (PetscBool)(schwarz->known[i] || jacobian->marks[i] != INTERFACE_LEFT_OUT);
   PetscFunctionReturn(PETSC_SUCCESS);

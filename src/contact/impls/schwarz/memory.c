@@ -6,7 +6,7 @@
 #include "schwarzimpl.h"
 
 /* What has been remembered at a level comes back, or begins */
-static PetscErrorCode TakeMemory(Contact contact, PetscInt level, PetscBool *begins)
+PetscErrorCode SchwarzTakeMemory(Contact contact, PetscInt level, PetscBool *begins)
 {
   Schwarz       *schwarz = (Schwarz *)contact->data;
   SchwarzMemory *present = &schwarz->memory[schwarz->level], *next = &schwarz->memory[level];
@@ -47,7 +47,7 @@ PetscErrorCode SchwarzSetStepLevel(Contact contact, PetscInt level, PetscBool go
     for (PetscInt i = 0; i < contact->rows.n; i++) schwarz->weight[i] *= ratio;
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRobin(contact->bodies[b], schwarz->weight));
   }
-  PetscCall(TakeMemory(contact, level, &begins));
+  PetscCall(SchwarzTakeMemory(contact, level, &begins));
   if (begins) {
     PetscCall(SchwarzCreateJacobian(contact));
     PetscCall(PetscArraycpy(contact->end.active, contact->start.active, contact->rows.n));

@@ -270,6 +270,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->steplevel      = SchwarzSetStepLevel;
   contact->ops->accept         = SchwarzAcceptTied;
   contact->ops->view           = ContactView_Schwarz;
+  contact->ops->visit          = SchwarzVisit;
   contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,181 @@
+/*
+   The state of a body, for checkpoints: what the next controller step begins with, bit for bit. Beside displacement, velocity and
+   acceleration these are the waveforms at its rows, what its solvers hold, where their matrices were linearised, and the compliance that is
+   known, level by level of cut steps. The rows themselves are loaded before, by those who own their matrices.
+*/
+#include <body/rows/complianceimpl.h>
+#include "bodyvisit.h"
+#include <string.h>
+
+static PetscErrorCode VisitState(Body body, BodyState *state, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  (void)body;
+  PetscCall(CheckpointVisitVec(checkpoint, "displacement", state->u));
+  PetscCall(CheckpointVisitVec(checkpoint, "velocity", state->v));
+  PetscCall(CheckpointVisitVec(checkpoint, "acceleration", state->a));
+  PetscCall(CheckpointVisitVec(checkpoint, "internal force", state->internal_force));
+  PetscCall(CheckpointVisitVec(checkpoint, "applied force", state->applied));
+  PetscCall(CheckpointVisitVec(checkpoint, "damping force", state->damping));
+  PetscCall(CheckpointVisitReals(checkpoint, "external work", 1, &state->external_work));
+  PetscCall(CheckpointVisitReals(checkpoint, "damping work", 1, &state->damping_work));
+  PetscCall(CheckpointVisitReals(checkpoint, "time", 1, &state->time));
+  PetscCall(CheckpointVisitInts(checkpoint, "step", 1, &state->step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitTraces(Body body, Checkpoint checkpoint)
+{
+  const BodyTraces *t        = &body->traces;
+  const Trace       traces[] = {t->displacement_in, t->velocity_in, t->acceleration_in, t->force_in,
+                                t->displacement,    t->velocity,    t->acceleration,    t->reaction};
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(traces); i++) PetscCall(CheckpointVisitTrace(checkpoint, "trace", traces[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the rows mean, and the solvers that hold them know in VisitSolver() */
+static PetscErrorCode VisitConditions(Body body, Checkpoint checkpoint)
+{
+  BodyRows *rows = &body->rows;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBytes(checkpoint, "conditions", (size_t)rows->local * sizeof(*rows->conditions), rows->conditions));
+  PetscCall(CheckpointVisitBools(checkpoint, "constrained", rows->local, rows->constrained));
+  PetscCall(CheckpointVisitReals(checkpoint, "flexibility", rows->local, rows->flexibility));
+  PetscCall(CheckpointVisitReals(checkpoint, "robin", rows->local, rows->robin));
+  PetscCall(CheckpointVisitInts(checkpoint, "n_prescribed", 1, &rows->n_prescribed));
+  PetscCall(CheckpointVisitInts(checkpoint, "n_forced", 1, &rows->n_forced));
+  PetscCall(CheckpointVisitInts(checkpoint, "n_robin", 1, &rows->n_robin));
+  PetscCall(CheckpointVisitVec(checkpoint, "stage balance", rows->stage_balance));
+  if (CheckpointLoads(checkpoint)) PetscCall(BodyUpdateGram(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitCompliance(struct _BodyCompliance *compliance, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(ComplianceVisit(compliance->matrices, checkpoint));
+  PetscCall(CheckpointVisitInts(checkpoint, "kept rows", 1, &compliance->n_kept));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  compliance->has_base = compliance->base_gathered = PETSC_FALSE;
+  compliance->factored_state                       = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One level of cut steps; loading, it becomes the present one. What it shares with the first level has been visited with that. */
+static PetscErrorCode VisitLevel(Body body, PetscInt k, PetscInt present, Checkpoint checkpoint)
+{
+  const PetscBool loads = CheckpointLoads(checkpoint);
+  const BodyLevel now   = {body->compliance, body->solver};
+  BodyLevel       level, *first = &body->levels[0];
+  PetscBool       made;
+
+  PetscFunctionBegin;
+  if (loads && k != body->time.level) PetscCall(BodyTakeLevel(body, k, &made));
+  level = loads ? (BodyLevel){body->compliance, body->solver} : k == present ? now : body->levels[k];
+  if (body->integrator->ops.visit) PetscCall((*body->integrator->ops.visit)(body, k, checkpoint));
+  if (k == 0 || level.compliance != (present == 0 && !loads ? now : *first).compliance)
+    PetscCall(VisitCompliance(level.compliance, checkpoint));
+  if (level.solver && (k == 0 || level.solver != (present == 0 && !loads ? now : *first).solver))
+    PetscCall(ConstrainedSolverVisit(level.solver, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All levels that there have been; then the one that was present is present again */
+static PetscErrorCode VisitLevels(Body body, Checkpoint checkpoint)
+{
+  PetscInt  present = body->time.level;
+  PetscBool made;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitInts(checkpoint, "level", 1, &present));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
+    PetscBool exists = (PetscBool)(k == present || body->levels[k].compliance);
+
+    PetscCall(CheckpointVisitBools(checkpoint, "level exists", 1, &exists));
+    if (exists) PetscCall(VisitLevel(body, k, present, checkpoint));
+  }
+  if (CheckpointLoads(checkpoint) && present != body->time.level) PetscCall(BodyTakeLevel(body, present, &made));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitMassSolver(Body body, Checkpoint checkpoint)
+{
+  PetscBool has = (PetscBool)(body->mass.solver != NULL);
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "mass solver", 1, &has));
+  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->mass.solver) PetscCall(BodySetUpMassSolver(body));
+  PetscCall(ConstrainedSolverVisit(body->mass.solver, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  BodyVisitMesh - makes sure that the mesh is that of the checkpoint, on the same ranks
+
+  Not Collective
+
+  Input Parameters:
++ body       - the `Body`, set up
+- checkpoint - the `Checkpoint`
+*/
+PetscErrorCode BodyVisitMesh(Body body, Checkpoint checkpoint)
+{
+  const PetscInt     sizes[] = {body->mesh.dim, body->mesh.owned_nodes, body->mesh.local_nodes};
+  const PetscScalar *positions;
+  PetscInt           sums[2] = {0, 0};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
+  PetscCall(CheckpointCheckInts(checkpoint, "dimensions, nodes and nodes with ghosts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(VecGetArrayRead(body->mesh.positions, &positions));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) {
+    PetscInt words[sizeof(PetscScalar) / sizeof(PetscInt)];
+
+    memcpy(words, &positions[i], sizeof(words));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(words); k++) {
+      sums[0] = (PetscInt)(((unsigned long long)sums[0] + (unsigned long long)words[k]) & 0x7fffffff);
+      sums[1] = (PetscInt)(((unsigned long long)sums[1] + (unsigned long long)sums[0]) & 0x7fffffff);
+    }
+  }
+  PetscCall(VecRestoreArrayRead(body->mesh.positions, &positions));
+  PetscCall(CheckpointCheckInts(checkpoint, "sum over the positions of nodes", 2, sums));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  BodyVisit - the state of a body after an accepted controller step, to or from a checkpoint
+
+  Collective
+
+  Input Parameters:
++ body       - the `Body`, set up; loading: in its first state, its rows being those of the checkpoint already
+- checkpoint - the `Checkpoint`
+*/
+PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
+{
+  const PetscInt sizes[] = {body->mesh.owned_nodes, body->mesh.dim, body->rows.local, body->rows.global, body->time.substeps};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
+  PetscCall(CheckpointCheckInts(checkpoint, "nodes, dimensions, rows and substeps", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(VisitState(body, &body->saved, checkpoint));
+  PetscCall(VisitLevels(body, checkpoint));
+  PetscCall(VisitState(body, &body->state, checkpoint));
+  PetscCall(CheckpointVisitInts(checkpoint, "accepted level", 1, &body->time.accepted_level));
+  PetscCall(VisitTraces(body, checkpoint));
+  PetscCall(VisitConditions(body, checkpoint));
+  PetscCall(VisitMassSolver(body, checkpoint));
+  PetscCall(CheckpointVisitReals(checkpoint, "springs start", BODY_MAX_RIGID, body->springs.start));
+  PetscCall(CheckpointVisitReals(checkpoint, "springs place", BODY_MAX_RIGID, body->springs.place));
+  PetscCall(CheckpointVisitReals(checkpoint, "springs reached", BODY_MAX_RIGID, body->springs.reached));
+  PetscCall(CheckpointVisitInt64s(checkpoint, "substeps", 1, &body->statistics.substeps));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
+  PetscCall(BodyHandoverEnd(body));
+  body->start.changed = body->iterate.known = body->repeats = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

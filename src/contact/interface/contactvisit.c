@@ -1,0 +1,200 @@
+/*
+   The state of contact and of its bodies, for checkpoints: pairs and rows first, with the matrices that the bodies have of them, then what
+   the method remembers, then the bodies, since a method that is set up for a level of cut steps asks them for their compliance.
+*/
+#include <impakt/private/contactimpl.h>
+#include <body/interface/bodyvisit.h>
+#include <interface/transfervisit.h>
+#include "contactvisit.h"
+
+static PetscErrorCode VisitPairs(Contact contact, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(CheckpointBegin(checkpoint, pair->name));
+    PetscCall(CheckpointVisitInts(checkpoint, "dirichlet", 1, &pair->dirichlet));
+    PetscCall(CheckpointVisitBools(checkpoint, "bonded", 1, &pair->bonded));
+    PetscCall(TransferVisit(pair->transfer, checkpoint));
+  }
+  PetscCall(CheckpointVisitInts(checkpoint, "order", contact->n_bodies, contact->order));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
+{
+  ContactRows   *rows = &contact->rows;
+  const PetscInt n    = rows->n;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitReals(checkpoint, "normal", 3 * n, rows->normal));
+  PetscCall(CheckpointVisitReals(checkpoint, "initial gap", n, rows->initial_gap));
+  PetscCall(CheckpointVisitReals(checkpoint, "area", n, rows->area));
+  PetscCall(CheckpointVisitReals(checkpoint, "gap shift", n, rows->gap_shift));
+  PetscCall(CheckpointVisitBools(checkpoint, "opposite", n, rows->opposite));
+  PetscCall(CheckpointVisitBools(checkpoint, "tied", n, rows->tied));
+  PetscCall(CheckpointVisitBools(checkpoint, "changed", n, rows->changed));
+  PetscCall(CheckpointVisitBools(checkpoint, "followed", n, rows->followed));
+  if (rows->by_force) PetscCall(CheckpointVisitBools(checkpoint, "by force", n, rows->by_force));
+  PetscCall(CheckpointVisitBools(checkpoint, "ties hold", n, contact->ties.holds));
+  PetscCall(CheckpointVisitReals(checkpoint, "tie distance", n, contact->ties.distance));
+  PetscCall(CheckpointVisitBools(checkpoint, "left out", contact->shared.offsets ? contact->shared.offsets[contact->shared.n] : 0,
+                                 contact->shared.left_out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows that have been dropped, and the matrix that gives their shares to others */
+static PetscErrorCode VisitHeld(Contact contact, Checkpoint checkpoint)
+{
+  ContactHeldRows *held   = &contact->held;
+  const PetscInt   n      = contact->rows.n;
+  PetscBool        merger = (PetscBool)(held->merger != NULL);
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "dropped", n, held->dropped));
+  PetscCall(CheckpointVisitBools(checkpoint, "heir", n, held->heir));
+  PetscCall(CheckpointVisitReals(checkpoint, "merged gap", n, held->merged_gap));
+  PetscCall(CheckpointVisitBools(checkpoint, "merger", 1, &merger));
+  if (!merger) {
+    PetscCall(ContactDestroyMerger(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!held->merger) {
+    PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, 0, NULL, 0, NULL,
+                           &held->merger));
+    PetscCall(MatAssemblyBegin(held->merger, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(held->merger, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatCreateVecs(held->merger, &held->places, &held->means));
+  }
+  PetscCall(CheckpointVisitMat(checkpoint, "merger matrix", &held->merger));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows as the bodies have them */
+static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  if (!contact->rows.n_all) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(CheckpointVisitMat(checkpoint, "rows of a body", &contact->interfaces[b]));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.moved));
+  contact->rows.filled      = PETSC_FALSE;
+  contact->rows.patterns[0] = contact->rows.patterns[1] = -1; /* matrices of later steps are made anew */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitRowStates(Contact contact, Checkpoint checkpoint)
+{
+  ContactState *const states[] = {&contact->start, &contact->end};
+  const PetscInt      n        = contact->rows.n;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) {
+    PetscCall(CheckpointVisitReals(checkpoint, "force", n, states[k]->force));
+    PetscCall(CheckpointVisitReals(checkpoint, "gap", n, states[k]->gap));
+    PetscCall(CheckpointVisitBools(checkpoint, "active", n, states[k]->active));
+  }
+  if (contact->release.intervals) {
+    PetscCall(CheckpointVisitInts(checkpoint, "intervals", n, contact->release.intervals));
+    PetscCall(CheckpointVisitReals(checkpoint, "released forces", n * contact->release.room, contact->release.forces));
+  }
+  if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
+  if (CheckpointLoads(checkpoint)) {
+    contact->saved.moved   = PETSC_FALSE;
+    contact->attempt.again = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Accounts of the energy that contact takes and brings */
+static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
+{
+  ContactEnergy *energy  = &contact->energy;
+  PetscBool     *flags[] = {&energy->begun,       &energy->at_rest, &energy->known,      &energy->rebuilt,
+                            &energy->start_known, &energy->changed, &energy->stays_whole};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitReals(checkpoint, "scale", 1, &energy->scale));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(flags); i++) PetscCall(CheckpointVisitBools(checkpoint, "flag", 1, flags[i]));
+  PetscCall(CheckpointVisitReals(checkpoint, "work", 1, &energy->work));
+  PetscCall(CheckpointVisitReals(checkpoint, "step work", 1, &energy->step_work));
+  PetscCall(CheckpointVisitReals(checkpoint, "room", contact->n_bodies, energy->room));
+  PetscCall(CheckpointVisitReals(checkpoint, "change", contact->n_bodies, energy->change));
+  PetscCall(CheckpointVisitInts(checkpoint, "group", contact->n_bodies, energy->group));
+  PetscCall(CheckpointVisitReals(checkpoint, "group work", contact->n_bodies, energy->group_work));
+  PetscCall(CheckpointVisitReals(checkpoint, "start energy", contact->n_bodies, energy->start_energy));
+  PetscCall(CheckpointVisitReals(checkpoint, "pair sums", 2 * contact->n_pairs, energy->pair_sums));
+  PetscCall(CheckpointVisitReals(checkpoint, "last force", contact->rows.n, energy->last_force));
+  PetscCall(CheckpointVisitReals(checkpoint, "accepted force", contact->rows.n, energy->accepted_force));
+  PetscCall(CheckpointVisitReals(checkpoint, "last stored", contact->rows.n, energy->last_stored));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitNumbers(Contact contact, Checkpoint checkpoint)
+{
+  ContactAttempt *attempt = &contact->attempt;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(contact->counts), &contact->counts));
+  PetscCall(CheckpointVisitReals(checkpoint, "step", 1, &contact->step));
+  PetscCall(CheckpointVisitInts(checkpoint, "level", 1, &attempt->level));
+  PetscCall(CheckpointVisitInts(checkpoint, "accepted level", 1, &attempt->accepted_level));
+  PetscCall(CheckpointVisitReals(checkpoint, "whole step", 1, &attempt->whole_step));
+  PetscCall(CheckpointVisitReals(checkpoint, "penalty energy", 1, &contact->resultants.penalty_energy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitObstacleTraces(Contact contact, Checkpoint checkpoint)
+{
+  const BodyTraces *traces = &contact->traces[contact->n_bodies];
+  const Trace       all[]  = {traces->displacement, traces->velocity, traces->acceleration, traces->reaction, traces->force_in};
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(all); i++) PetscCall(CheckpointVisitTrace(checkpoint, "obstacle", all[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactHasVisit - whether runs with the method can have checkpoints */
+PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
+{
+  PetscFunctionBegin;
+  *has = (PetscBool)(contact->ops->visit || !contact->rows.n_all);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ContactVisit - the state of contact and of its bodies after an accepted controller step, to or from a checkpoint
+
+  Collective
+
+  Input Parameters:
++ contact    - the `Contact`, set up; loading: in its first state
+- checkpoint - the `Checkpoint`
+*/
+PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
+{
+  const PetscInt sizes[] = {contact->n_bodies, contact->n_pairs, contact->rows.n, contact->rows.n_all, contact->parts};
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitMesh(contact->bodies[b], checkpoint));
+  PetscCall(CheckpointBegin(checkpoint, "contact"));
+  PetscCall(CheckpointCheckInts(checkpoint, "bodies, pairs, rows, all rows and parts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(VisitPairs(contact, checkpoint));
+  PetscCall(CheckpointBegin(checkpoint, "contact rows"));
+  PetscCall(VisitRows(contact, checkpoint));
+  PetscCall(VisitHeld(contact, checkpoint));
+  PetscCall(VisitMatrices(contact, checkpoint));
+  PetscCall(VisitNumbers(contact, checkpoint));
+  PetscCall(CheckpointBegin(checkpoint, "contact method"));
+  if (contact->rows.n_all) PetscTryTypeMethod(contact, visit, checkpoint);
+  PetscCall(CheckpointBegin(checkpoint, "contact states"));
+  PetscCall(VisitRowStates(contact, checkpoint));
+  PetscCall(VisitEnergy(contact, checkpoint));
+  PetscCall(ContactVisitImpulses(contact, checkpoint));
+  PetscCall(VisitObstacleTraces(contact, checkpoint));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

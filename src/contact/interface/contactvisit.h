@@ -1,0 +1,7 @@
+/* The state of contact and of its bodies, for checkpoints. Private to Impakt. */
+#pragma once
+#include <checkpoint/checkpoint.h>
+#include <impakt/contact.h>
+
+PETSC_INTERN PetscErrorCode ContactHasVisit(Contact, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactVisit(Contact, Checkpoint);

@@ -1,0 +1,101 @@
+/* The state of a transfer, for checkpoints: its rows, and what the next update and TransferFollow() start from. */
+#include "interfaceimpl.h"
+#include "transfervisit.h"
+
+/* The rows. Which nodes of the partner they name follows from their shares. */
+static PetscErrorCode VisitRows(Transfer transfer, Checkpoint checkpoint)
+{
+  const PetscInt n = transfer->n, dim = transfer->dim;
+  RowSet        *rows     = &transfer->rows;
+  PetscInt       n_shares = rows->offsets[n];
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitInts(checkpoint, "shares", 1, &n_shares));
+  if (CheckpointLoads(checkpoint)) {
+    PetscCall(RowSetDestroy(rows));
+    PetscCall(RowSetAllocate(dim, n, n_shares, rows));
+  }
+  PetscCall(CheckpointVisitInts(checkpoint, "offsets", n + 1, rows->offsets));
+  PetscCall(CheckpointVisitBytes(checkpoint, "share", (size_t)n_shares * sizeof(*rows->shares), rows->shares));
+  PetscCall(CheckpointVisitBools(checkpoint, "opposite", n, rows->opposite));
+  PetscCall(CheckpointVisitBools(checkpoint, "beyond", n, rows->beyond));
+  PetscCall(CheckpointVisitBools(checkpoint, "changed", n, rows->changed));
+  PetscCall(CheckpointVisitReals(checkpoint, "gap", n, rows->gap));
+  PetscCall(CheckpointVisitReals(checkpoint, "area", n, rows->area));
+  PetscCall(CheckpointVisitReals(checkpoint, "normals", dim * n, rows->normals));
+  PetscCall(CheckpointVisitReals(checkpoint, "bow", n, rows->bow));
+  PetscCall(CheckpointVisitReals(checkpoint, "rest", n, rows->rest));
+  if (!CheckpointLoads(checkpoint) || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, n, rows));
+  PetscCall(TransferAllocateColumns(transfer));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitFollow(Transfer transfer, Checkpoint checkpoint)
+{
+  const PetscInt n = transfer->n, partners = transfer->neumann->data.n_owned;
+  Follow        *follow = &transfer->follow;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "has_last", 1, &follow->has_last));
+  PetscCall(CheckpointVisitReals(checkpoint, "step", 1, &follow->step));
+  PetscCall(CheckpointVisitReals(checkpoint, "scale", 1, &follow->scale));
+  PetscCall(CheckpointVisitReals(checkpoint, "x", 3 * n, follow->x[0]));
+  PetscCall(CheckpointVisitReals(checkpoint, "partner_x", 3 * partners, follow->x[1]));
+  PetscCall(CheckpointVisitReals(checkpoint, "moved", 3 * n, follow->moved));
+  PetscCall(CheckpointVisitReals(checkpoint, "partner_moved", 3 * partners, follow->partner_moved));
+  PetscCall(CheckpointVisitReals(checkpoint, "expected slip", 3 * n, follow->slip));
+  PetscCall(CheckpointVisitBools(checkpoint, "known", n, follow->known));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitBalance(Transfer transfer, Checkpoint checkpoint)
+{
+  const PetscInt n       = transfer->n;
+  Balance       *balance = &transfer->balance;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitReals(checkpoint, "turn", 1, &balance->turn));
+  PetscCall(CheckpointVisitReals(checkpoint, "rate", 1, &balance->rate));
+  PetscCall(CheckpointVisitReals(checkpoint, "gain", 1, &balance->gain));
+  PetscCall(CheckpointVisitInts(checkpoint, "n_active", 1, &balance->n_active));
+  PetscCall(CheckpointVisitReals(checkpoint, "uneven", n, balance->uneven));
+  PetscCall(CheckpointVisitReals(checkpoint, "present gap", n, balance->gap));
+  PetscCall(CheckpointVisitReals(checkpoint, "turned", n, balance->turned));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  TransferVisit - the state of a transfer, to or from a checkpoint
+
+  Collective
+
+  Input Parameters:
++ transfer   - the `Transfer`, updated once at least
+- checkpoint - the `Checkpoint`
+*/
+PetscErrorCode TransferVisit(Transfer transfer, Checkpoint checkpoint)
+{
+  const PetscInt sizes[2] = {transfer->n, transfer->neumann ? transfer->neumann->data.n_owned : -1}, n = sizes[0];
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointBegin(checkpoint, "contact surfaces"));
+  PetscCall(CheckpointCheckInts(checkpoint, "contact nodes", 2, sizes));
+  PetscCall(VisitRows(transfer, checkpoint));
+  PetscCall(CheckpointVisitReals(checkpoint, "built_near", 1, &transfer->built_near));
+  PetscCall(CheckpointVisitReals(checkpoint, "smallest_size", 1, &transfer->smallest_size));
+  PetscCall(CheckpointVisitReals(checkpoint, "built_x", 3 * n, transfer->built_x[0]));
+  PetscCall(CheckpointVisitReals(checkpoint, "built_slip", 3 * n, transfer->built_slip));
+  PetscCall(CheckpointVisitReals(checkpoint, "slip", n, transfer->slip));
+  PetscCall(CheckpointVisitBools(checkpoint, "keep", n, transfer->keep));
+  PetscCall(CheckpointVisitBools(checkpoint, "followed", n, transfer->followed));
+  PetscCall(CheckpointVisitBools(checkpoint, "goes_on", n, transfer->goes_on));
+  PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(transfer->counts), &transfer->counts));
+  PetscCall(VisitBalance(transfer, checkpoint));
+  if (CheckpointLoads(checkpoint)) transfer->saved.builds = 0; /* what has been put aside is of other rows */
+  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitReals(checkpoint, "partner_built_x", 3 * sizes[1], transfer->built_x[1]));
+  PetscCall(VisitFollow(transfer, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,272 @@
+/*
+   The file of a checkpoint: HDF5 with the stream of each rank, to continue on as many ranks bit for bit, and, to begin a run on any number
+   of ranks, the nodes of each body with their state. Behind the HDF5 file stand its length and a sum over all its bytes, so that a file
+   which is not whole, or was changed, is found out before HDF5 looks into it.
+
+   The first rank makes the file in memory, writes it beside the last one, has it written through to the disk, and renames it. The
+   checkpoint before stays as <path>.prev.h5: at every moment there is one that is whole.
+*/
+#define _POSIX_C_SOURCE 200809L
+#include "checkpointfileimpl.h"
+#include "outputfile.h"
+#include "outputpaths.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <impakt.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Bytes that a file in memory grows by at a time */
+#define GROWTH ((size_t)1 << 20)
+
+/* CheckpointFileGetPrevious - where the checkpoint before the last one is: c.prev.h5 of c.h5; Not Collective */
+PetscErrorCode CheckpointFileGetPrevious(const char path[], size_t size, char previous[])
+{
+  const char  *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
+  const size_t stem = dot && (!slash || dot > slash + 1) && dot > path ? (size_t)(dot - path) : strlen(path);
+
+  PetscFunctionBegin;
+  PetscCheck(strlen(path) + sizeof(".prev") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The path '%s' is too long", path);
+  PetscCall(PetscSNPrintf(previous, size, "%.*s.prev%s", (int)stem, path, path + stem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteDataset(hid_t file, const char name[], hid_t type, int rank, const hsize_t size[], const void *values,
+                                   const char path[])
+{
+  hid_t space, links, dataset;
+
+  PetscFunctionBegin;
+  space = H5Screate_simple(rank, size, NULL);
+  PetscCall(HDF5Check(space, "make a data space", path));
+  links = H5Pcreate(H5P_LINK_CREATE);
+  PetscCall(HDF5Check(H5Pset_create_intermediate_group(links, 1), "make groups", path));
+  dataset = H5Dcreate2(file, name, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
+  PetscCall(HDF5Check(dataset, "create a dataset", path));
+  if (size[0]) PetscCall(HDF5Check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write a dataset", path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "write a dataset", path));
+  PetscCall(HDF5Check(H5Pclose(links), "close a property list", path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteNumber(hid_t file, const char name[], hid_t type, const void *value, const char path[])
+{
+  const hid_t space = H5Screate(H5S_SCALAR), attribute = H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+
+  PetscFunctionBegin;
+  PetscCall(HDF5Check(attribute, "create an attribute", path));
+  PetscCall(HDF5Check(H5Awrite(attribute, type, value), "write an attribute", path));
+  PetscCall(HDF5Check(H5Aclose(attribute), "write an attribute", path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The streams of all ranks, one dataset each: the first rank gets them one after the other */
+static PetscErrorCode WriteStreams(MPI_Comm comm, hid_t file, Checkpoint checkpoint, const char path[])
+{
+  PetscMPIInt rank, ranks;
+  const void *mine;
+  size_t      size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  PetscCall(CheckpointGetBytes(checkpoint, &size, &mine));
+  if (rank) {
+    PetscCallMPI(MPI_Send(&size, sizeof(size), MPI_BYTE, 0, 0, comm));
+    for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
+      PetscCallMPI(MPI_Send((const char *)mine + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, 0, 0, comm));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscMPIInt r = 0; r < ranks; r++) {
+    hsize_t length[1];
+    char    name[32], *bytes = NULL;
+
+    if (r) {
+      PetscCallMPI(MPI_Recv(&size, sizeof(size), MPI_BYTE, r, 0, comm, MPI_STATUS_IGNORE));
+      PetscCall(PetscMalloc1(size, &bytes));
+      for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
+        PetscCallMPI(MPI_Recv(bytes + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, r, 0, comm, MPI_STATUS_IGNORE));
+    }
+    length[0] = size;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "state/%d", (int)r));
+    PetscCall(WriteDataset(file, name, H5T_NATIVE_UCHAR, 1, length, r ? bytes : mine, path));
+    PetscCall(PetscFree(bytes));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A vector of a body, nodes by dimensions, on the first rank */
+static PetscErrorCode WriteVec(hid_t file, const char body[], const char name[], PetscInt dim, Vec vec, const char path[])
+{
+  const PetscScalar *values;
+  hsize_t            size[2];
+  PetscInt           n;
+  char               full[PETSC_MAX_PATH_LEN];
+  VecScatter         scatter;
+  Vec                all;
+
+  PetscFunctionBegin;
+  PetscCall(VecScatterCreateToZero(vec, &scatter, &all));
+  PetscCall(VecScatterBegin(scatter, vec, all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(scatter, vec, all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(VecGetLocalSize(all, &n));
+  PetscCall(VecGetArrayRead(all, &values));
+  size[0] = (hsize_t)(n / dim);
+  size[1] = (hsize_t)dim;
+  PetscCall(PetscSNPrintf(full, sizeof(full), "bodies/%s/%s", body, name));
+  if (file >= 0) PetscCall(WriteDataset(file, full, H5T_NATIVE_DOUBLE, 2, size, values, path));
+  PetscCall(VecRestoreArrayRead(all, &values));
+  PetscCall(VecDestroy(&all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteBodies(hid_t file, PetscInt n, const Body bodies[], const char path[])
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < n; b++) {
+    const char *name;
+    PetscInt    dim;
+    Vec         positions, u, v, a;
+
+    PetscCall(PetscObjectGetName((PetscObject)bodies[b], &name));
+    PetscCall(BodyGetDimension(bodies[b], &dim));
+    PetscCall(BodyGetReferencePositions(bodies[b], &positions));
+    PetscCall(BodyGetSolution(bodies[b], &u, &v, &a));
+    PetscCall(WriteVec(file, name, "position", dim, positions, path));
+    PetscCall(WriteVec(file, name, "displacement", dim, u, path));
+    PetscCall(WriteVec(file, name, "velocity", dim, v, path));
+    PetscCall(WriteVec(file, name, "acceleration", dim, a, path));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A file that lies in memory alone */
+static PetscErrorCode CreateInMemory(const char path[], const CheckpointInfo *info, hid_t *file)
+{
+  const int       format = CHECKPOINT_FORMAT, integer = (int)sizeof(PetscInt);
+  const long long step = info->step;
+  hid_t           access;
+
+  PetscFunctionBegin;
+  access = H5Pcreate(H5P_FILE_ACCESS);
+  PetscCall(HDF5Check(H5Pset_fapl_core(access, GROWTH, 0), "make room", path));
+  *file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  PetscCall(HDF5Check(*file, "make a file in memory", path));
+  PetscCall(HDF5Check(H5Pclose(access), "close a property list", path));
+  PetscCall(WriteNumber(*file, "checkpoint", H5T_NATIVE_INT, &format, path));
+  PetscCall(HDF5WriteText(*file, "version", IMPAKT_VERSION, path));
+  PetscCall(HDF5WriteText(*file, "options", info->options, path));
+  PetscCall(WriteNumber(*file, "step", H5T_NATIVE_LLONG, &step, path));
+  PetscCall(WriteNumber(*file, "time", H5T_NATIVE_DOUBLE, &info->time, path));
+  PetscCall(WriteNumber(*file, "ranks", H5T_NATIVE_INT, &info->ranks, path));
+  PetscCall(WriteNumber(*file, "bytes_of_integers", H5T_NATIVE_INT, &integer, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All bytes to a file, and through to the disk; returns errno, or 0 */
+static int WriteBytes(const char path[], size_t size, const char bytes[], const CheckpointTrailer *trailer)
+{
+  const char  *parts[2] = {bytes, (const char *)trailer};
+  const size_t sizes[2] = {size, sizeof(*trailer)};
+  int          file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), error = 0;
+
+  if (file < 0) return errno;
+  for (int k = 0; k < 2 && !error; k++)
+    for (size_t done = 0; done < sizes[k] && !error;) {
+      const ssize_t now = write(file, parts[k] + done, PetscMin(CHECKPOINT_BLOCK, sizes[k] - done));
+
+      if (now < 0 && errno != EINTR) error = errno;
+      if (now > 0) done += (size_t)now;
+    }
+  if (!error && fsync(file) && errno != EINVAL) error = errno;
+  if (close(file) && !error) error = errno;
+  if (error) remove(path);
+  return error;
+}
+
+/* The last checkpoint becomes the one before, and the new one the last. Where the file system has links there is no moment without a last
+   one; else there is one in which that before is the only one. */
+static int Rotate(const char part[], const char path[], const char previous[])
+{
+  char spare[PETSC_MAX_PATH_LEN];
+
+  if (snprintf(spare, sizeof(spare), "%s.part", previous) >= (int)sizeof(spare)) return ENAMETOOLONG;
+  if (!access(path, F_OK)) {
+    remove(spare);
+    if (link(path, spare)) {
+      if (rename(path, previous)) return errno;
+    } else if (rename(spare, previous)) return errno;
+  }
+  return rename(part, path) ? errno : 0;
+}
+
+/* The file from memory to the disk, on the first rank */
+static PetscErrorCode Store(hid_t file, const char path[])
+{
+  char              resolved[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], previous[PETSC_MAX_PATH_LEN], *image;
+  CheckpointTrailer trailer;
+  ssize_t           size;
+  int               error;
+
+  PetscFunctionBegin;
+  PetscCall(OutputPathResolve(path, sizeof(resolved), resolved));
+  PetscCall(OutputFileGetPart(path, sizeof(part), part));
+  PetscCall(CheckpointFileGetPrevious(resolved, sizeof(previous), previous));
+  PetscCall(HDF5Check(H5Fflush(file, H5F_SCOPE_GLOBAL), "finish a file", path));
+  size = H5Fget_file_image(file, NULL, 0);
+  PetscCall(HDF5Check(size, "finish a file", path));
+  PetscCall(PetscMalloc1((size_t)size, &image));
+  size = H5Fget_file_image(file, image, (size_t)size);
+  PetscCall(HDF5Check(size, "finish a file", path));
+  memcpy(trailer.magic, CHECKPOINT_MAGIC, sizeof(trailer.magic));
+  trailer.size = (uint64_t)size;
+  trailer.sum  = CheckpointSum(CHECKPOINT_SUM_BEGIN, (size_t)size, image);
+  PetscCall(OutputFileMakeParents(part));
+  error = WriteBytes(part, (size_t)size, image, &trailer);
+  PetscCall(PetscFree(image));
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "-checkpoint %s cannot be written: %s", path, strerror(error));
+  error = Rotate(part, resolved, previous);
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "-checkpoint %s cannot be put in its place: %s", path, strerror(error));
+  PetscCall(OutputFileSyncFolder(resolved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  CheckpointFileWrite - writes a checkpoint, and keeps the one before
+
+  Collective
+
+  Input Parameters:
++ comm       - communicator
+. path       - where
+. info       - what it says of its run
+. checkpoint - the streams of all ranks
+. n          - number of bodies
+- bodies     - the bodies
+*/
+PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const CheckpointInfo *info, Checkpoint checkpoint, PetscInt n,
+                                   const Body bodies[])
+{
+  PetscErrorCode error = PETSC_SUCCESS;
+  PetscMPIInt    rank, code;
+  hid_t          file = -1;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) PetscCall(CreateInMemory(path, info, &file));
+  PetscCall(WriteStreams(comm, file, checkpoint, path));
+  PetscCall(WriteBodies(file, n, bodies, path));
+  if (!rank) {
+    error = Store(file, path);
+    H5Fclose(file);
+  }
+  code = (PetscMPIInt)error;
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
+  if (!rank) PetscCall(error);
+  PetscCheck(!code, comm, (PetscErrorCode)code, "-checkpoint %s: the first rank cannot write", path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

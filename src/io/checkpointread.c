@@ -1,0 +1,260 @@
+/* Reading the file of a checkpoint: see checkpointfile.c. */
+#define _POSIX_C_SOURCE 200809L
+#include "checkpointfileimpl.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <impakt.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/*
+  CheckpointFileFind - the last checkpoint there is
+
+  Collective
+
+  Input Parameters:
++ comm - communicator
+. path - where checkpoints are written
+- size - length of found
+
+  Output Parameters:
++ found  - that path or, where a run has been killed between two renames, that of the checkpoint before
+- exists - false where there is neither
+*/
+PetscErrorCode CheckpointFileFind(MPI_Comm comm, const char path[], size_t size, char found[], PetscBool *exists)
+{
+  PetscMPIInt rank;
+  int         place = 0;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(CheckpointFileGetPrevious(path, size, found));
+  if (!rank) place = !access(path, F_OK) ? 1 : !access(found, F_OK) ? 2 : 0;
+  PetscCallMPI(MPI_Bcast(&place, 1, MPI_INT, 0, comm));
+  if (place != 2) PetscCall(PetscStrncpy(found, path, size));
+  *exists = (PetscBool)(place > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads so many bytes, fewer at the end of the file; returns their number, or -1 */
+static ssize_t ReadBytes(int file, size_t size, char bytes[])
+{
+  size_t done = 0;
+
+  while (done < size) {
+    const ssize_t now = read(file, bytes + done, size - done);
+
+    if (now < 0 && errno == EINTR) continue;
+    if (now < 0) return -1;
+    if (!now) break;
+    done += (size_t)now;
+  }
+  return (ssize_t)done;
+}
+
+/* Whether the file is a checkpoint, all of it there and as it was written; says why not */
+static PetscErrorCode CheckWhole(const char path[], const char **why)
+{
+  CheckpointTrailer trailer;
+  struct stat       status;
+  uint64_t          sum  = CHECKPOINT_SUM_BEGIN, size;
+  int               file = open(path, O_RDONLY | O_CLOEXEC);
+  char             *bytes;
+
+  PetscFunctionBegin;
+  *why = NULL;
+  if (file < 0 || fstat(file, &status)) *why = strerror(errno);
+  else if (!S_ISREG(status.st_mode)) *why = "it is no file";
+  else if (status.st_size < (off_t)sizeof(trailer) || lseek(file, -(off_t)sizeof(trailer), SEEK_END) < 0 ||
+           ReadBytes(file, sizeof(trailer), (char *)&trailer) != (ssize_t)sizeof(trailer) ||
+           memcmp(trailer.magic, CHECKPOINT_MAGIC, sizeof(trailer.magic)))
+    *why = "it is no checkpoint of Impakt, or its end is missing";
+  else if (trailer.size + sizeof(trailer) != (uint64_t)status.st_size || lseek(file, 0, SEEK_SET) < 0)
+    *why = "it is not as long as it was written";
+  size = *why ? 0 : trailer.size;
+  PetscCall(PetscMalloc1((size_t)PetscMin(size, CHECKPOINT_BLOCK), &bytes));
+  for (uint64_t done = 0; done < size && !*why; done += CHECKPOINT_BLOCK) {
+    const size_t now = (size_t)PetscMin(CHECKPOINT_BLOCK, size - done);
+
+    if (ReadBytes(file, now, bytes) != (ssize_t)now) *why = "it cannot be read";
+    else sum = CheckpointSum(sum, now, bytes);
+  }
+  PetscCall(PetscFree(bytes));
+  if (!*why && sum != trailer.sum) *why = "its bytes are not those that were written";
+  if (file >= 0) close(file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadNumber(hid_t file, const char name[], hid_t type, void *value, const char path[])
+{
+  const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
+
+  PetscFunctionBegin;
+  PetscCheck(attribute >= 0 && H5Aread(attribute, type, value) >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+             "-restart %s: there is no '%s' in it", path, name);
+  H5Aclose(attribute);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadText(hid_t file, const char name[], char **text, const char path[])
+{
+  const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT), type = attribute < 0 ? -1 : H5Aget_type(attribute);
+  char       *read = NULL;
+
+  PetscFunctionBegin;
+  PetscCheck(type >= 0 && H5Tis_variable_str(type) > 0 && H5Aread(attribute, type, &read) >= 0 && read, PETSC_COMM_SELF,
+             PETSC_ERR_FILE_UNEXPECTED, "-restart %s: there is no '%s' in it", path, name);
+  PetscCall(PetscStrallocpy(read, text));
+  H5free_memory(read);
+  H5Tclose(type);
+  H5Aclose(attribute);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The file itself, on the first rank */
+static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
+{
+  const char *why;
+  char        previous[PETSC_MAX_PATH_LEN], *version;
+  PetscBool   same, other;
+  long long   step;
+  int         format, integer;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointFileGetPrevious(path, sizeof(previous), previous));
+  other = (PetscBool)!access(previous, F_OK);
+  PetscCall(CheckWhole(path, &why));
+  PetscCheck(!why, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "-restart %s: the run cannot be continued from it, since %s%s%s%s", path, why,
+             other ? "; the checkpoint before it is " : "", other ? previous : "", other ? ": give that" : "");
+  checkpoint->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  PetscCheck(checkpoint->file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "-restart %s: HDF5 cannot open it", path);
+  PetscCall(ReadNumber(checkpoint->file, "checkpoint", H5T_NATIVE_INT, &format, path));
+  PetscCall(ReadNumber(checkpoint->file, "bytes_of_integers", H5T_NATIVE_INT, &integer, path));
+  PetscCall(ReadText(checkpoint->file, "version", &version, path));
+  PetscCall(PetscStrcmp(version, IMPAKT_VERSION, &same));
+  PetscCheck(same && format == CHECKPOINT_FORMAT && integer == (int)sizeof(PetscInt), PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+             "-restart %s: it was written by Impakt %s with integers of %d bytes in format %d, and this is %s with %d bytes and format %d: "
+             "continue the run with the program that began it",
+             path, version, integer, format, IMPAKT_VERSION, (int)sizeof(PetscInt), CHECKPOINT_FORMAT);
+  PetscCall(PetscFree(version));
+  PetscCall(ReadNumber(checkpoint->file, "step", H5T_NATIVE_LLONG, &step, path));
+  checkpoint->info.step = (PetscInt)step;
+  PetscCall(ReadNumber(checkpoint->file, "time", H5T_NATIVE_DOUBLE, &checkpoint->info.time, path));
+  PetscCall(ReadNumber(checkpoint->file, "ranks", H5T_NATIVE_INT, &checkpoint->info.ranks, path));
+  PetscCall(ReadText(checkpoint->file, "options", &checkpoint->info.options, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  CheckpointFileOpen - opens a checkpoint and makes sure that it is whole
+
+  Collective
+
+  Input Parameters:
++ comm - communicator
+- path - the file
+
+  Output Parameter:
+. checkpoint - close with CheckpointFileClose()
+*/
+PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFile *checkpoint)
+{
+  PetscErrorCode error = PETSC_SUCCESS;
+  PetscMPIInt    rank, code;
+  size_t         length = 0;
+  HDF5Silence    silence;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(checkpoint, sizeof(*checkpoint)));
+  checkpoint->file = -1;
+  PetscCall(PetscStrncpy(checkpoint->path, path, sizeof(checkpoint->path)));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  HDF5SilenceBegin(&silence);
+  if (!rank) error = Open(path, checkpoint);
+  code = (PetscMPIInt)error;
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
+  if (!rank) PetscCall(error);
+  PetscCheck(!code, comm, (PetscErrorCode)code, "-restart %s: the first rank cannot read it", path);
+  HDF5SilenceEnd(&silence);
+  if (!rank) length = strlen(checkpoint->info.options) + 1;
+  PetscCallMPI(MPI_Bcast(&checkpoint->info.step, 1, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(&checkpoint->info.time, 1, MPIU_REAL, 0, comm));
+  PetscCallMPI(MPI_Bcast(&checkpoint->info.ranks, 1, MPI_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(&length, sizeof(length), MPI_BYTE, 0, comm));
+  if (rank) PetscCall(PetscMalloc1(length, &checkpoint->info.options));
+  PetscCallMPI(MPI_Bcast(checkpoint->info.options, (PetscMPIInt)length, MPI_CHAR, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A dataset of bytes, on the first rank */
+static PetscErrorCode ReadStream(const CheckpointFile *checkpoint, PetscMPIInt rank, size_t *size, char **bytes)
+{
+  hsize_t length[1] = {0};
+  char    name[32];
+  hid_t   dataset, space;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "state/%d", (int)rank));
+  dataset = H5Dopen2(checkpoint->file, name, H5P_DEFAULT);
+  PetscCall(HDF5Check(dataset, "open a state", checkpoint->path));
+  space = H5Dget_space(dataset);
+  PetscCall(HDF5Check(H5Sget_simple_extent_dims(space, length, NULL), "read a state", checkpoint->path));
+  PetscCall(PetscMalloc1((size_t)length[0], bytes));
+  PetscCall(HDF5Check(H5Dread(dataset, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, *bytes), "read a state", checkpoint->path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", checkpoint->path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "read a state", checkpoint->path));
+  *size = (size_t)length[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  CheckpointFileRead - the stream of each rank, of a checkpoint of as many ranks
+
+  Collective
+
+  Input Parameters:
++ comm - communicator
+- file - the file
+
+  Output Parameter:
+. checkpoint - to be visited
+*/
+PetscErrorCode CheckpointFileRead(MPI_Comm comm, const CheckpointFile *file, Checkpoint *checkpoint)
+{
+  PetscMPIInt rank;
+  size_t      size, own_size = 0;
+  char       *bytes, *own    = NULL;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  for (PetscMPIInt r = 0; r < file->info.ranks && !rank; r++) {
+    PetscCall(ReadStream(file, r, &size, &bytes));
+    if (!r) {
+      own      = bytes;
+      own_size = size;
+      continue;
+    }
+    PetscCallMPI(MPI_Send(&size, sizeof(size), MPI_BYTE, r, 0, comm));
+    for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
+      PetscCallMPI(MPI_Send(bytes + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, r, 0, comm));
+    PetscCall(PetscFree(bytes));
+  }
+  if (rank) {
+    PetscCallMPI(MPI_Recv(&own_size, sizeof(own_size), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE));
+    PetscCall(PetscMalloc1(own_size, &own));
+    for (size_t at = 0; at < own_size; at += CHECKPOINT_BLOCK)
+      PetscCallMPI(MPI_Recv(own + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, own_size - at), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE));
+  }
+  PetscCall(CheckpointCreateFromBytes(comm, own_size, own, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* CheckpointFileClose - closes a checkpoint, and frees what it says of its run; Collective */
+PetscErrorCode CheckpointFileClose(CheckpointFile *file)
+{
+  PetscFunctionBegin;
+  if (file->file >= 0) H5Fclose(file->file);
+  file->file = -1;
+  PetscCall(PetscFree(file->info.options));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,166 @@
+/* Runs that are continued from a checkpoint, and the options of all this. */
+#include "outputimpl.h"
+#include <controller/controllervisit.h>
+#include <exact/exactvisit.h>
+#include <stdlib.h>
+
+/* Minutes between checkpoints where the user says nothing */
+#define WALL_INTERVAL 15
+
+/* All that a run goes on from: the simulation, and what its observers have gathered */
+PetscErrorCode OutputVisit(Output output, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(ControllerVisit(output->controller, checkpoint));
+  PetscCall(StatisticsVisit(output->statistics, checkpoint));
+  if (output->exact) PetscCall(ExactVisit(output->exact, checkpoint));
+  PetscCall(CheckpointBegin(checkpoint, "files"));
+  PetscCall(HistoryVisit(output->history, checkpoint));
+  PetscCall(FieldsVisit(output->fields, PetscObjectComm((PetscObject)output), checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OutputSetRestart - sets the checkpoint that the run is continued from
+
+  Logically Collective
+
+  Input Parameters:
++ output        - the `Output`
+. path          - the checkpoint; a run without one there begins at its start
+- allow_changes - whether the run may have other options than the one that is continued
+
+  Options Database Keys:
++ -restart path                       - the checkpoint
+- -restart_allow_changes (true|false) - whether options may differ
+
+  Level: beginner
+
+.seealso: `Output`, `OutputRestart()`, `OutputSetCheckpoint()`
+@*/
+PetscErrorCode OutputSetRestart(Output output, const char path[], PetscBool allow_changes)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  PetscAssertPointer(path, 2);
+  PetscValidLogicalCollectiveBool(output, allow_changes, 3);
+  PetscCheck(path[0], PetscObjectComm((PetscObject)output), PETSC_ERR_USER_INPUT, "-restart needs the path of a checkpoint");
+  PetscCall(PetscStrncpy(output->checkpoints.restart, path, sizeof(output->checkpoints.restart)));
+  output->checkpoints.allow_changes = allow_changes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OutputRestart - goes on from the checkpoint of `OutputSetRestart()`, if there is one
+
+  Collective
+
+  Input Parameter:
+. output - the `Output`, with all that is to be written, before `ControllerSolve()`
+
+  Level: beginner
+
+  Notes:
+  On as many ranks as before the run goes on to the last bit as if it had not been interrupted, with history, fields and summary: what had
+  been written after the checkpoint is cut off.
+
+  Options that change the problem must be the same; those of files, terminal and -time_end may differ.
+
+.seealso: `Output`, `OutputSetRestart()`, `OutputSetCheckpoint()`, `ControllerSolve()`
+@*/
+PetscErrorCode OutputRestart(Output output)
+{
+  Checkpoints   *c;
+  MPI_Comm       comm;
+  PetscBool      exists, same;
+  CheckpointFile file;
+  Checkpoint     checkpoint;
+  PetscMPIInt    size;
+  char           path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  c    = &output->checkpoints;
+  comm = PetscObjectComm((PetscObject)output);
+  if (!c->restart[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OutputLock(output));
+  PetscCall(CheckpointFileFind(comm, c->restart, sizeof(path), path, &exists));
+  if (!exists) {
+    PetscCall(PetscFPrintf(comm, stderr, "impakt: there is no checkpoint %s yet: the run begins at its start\n", c->restart));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CheckpointFileOpen(comm, path, &file));
+  PetscCall(OutputCompareOptions(comm, file.info.options, c->allow_changes, path));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCheck(file.info.ranks == size, comm, PETSC_ERR_SUP, "-restart %s was written by %d ranks, and these are %d: continue on as many",
+             path, file.info.ranks, size);
+  PetscCall(CheckpointFileRead(comm, &file, &checkpoint));
+  PetscCall(OutputVisit(output, checkpoint));
+  PetscCall(CheckpointFinish(checkpoint));
+  PetscCall(CheckpointDestroy(&checkpoint));
+  PetscCall(PetscFPrintf(comm, stderr, "impakt: continued from %s, after controller step %" PetscInt_FMT " at time %g s\n", path,
+                         file.info.step, (double)file.info.time));
+  PetscCall(PetscStrcmp(path, c->path, &same));
+  if (same) c->last_step = file.info.step;
+  c->next_look = file.info.step + 1;
+  PetscCall(CheckpointFileClose(&file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Minutes, or h:mm or h:mm:ss [s] */
+static PetscErrorCode ReadTime(MPI_Comm comm, const char text[], PetscReal *seconds)
+{
+  char  *end;
+  double value = strtod(text, &end), sum = 60 * value;
+
+  PetscFunctionBegin;
+  for (int k = 0; end > text && *end == ':' && k < 2; k++) {
+    if (!k) sum *= 60;
+    value = strtod(text = end + 1, &end);
+    sum += (k ? 1 : 60) * value;
+    if (!(value >= 0 && value < 60)) end = (char *)text;
+  }
+  PetscCheck(end > text && !*end && sum > 0, comm, PETSC_ERR_USER_INPUT,
+             "-max_wall_time needs a number of minutes, as in 90, or hours, minutes and seconds, as in 1:30:00");
+  *seconds = sum;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -checkpoint and its relatives */
+PetscErrorCode OutputReadCheckpoints(Output output)
+{
+  MPI_Comm  comm                     = PetscObjectComm((PetscObject)output);
+  char      path[PETSC_MAX_PATH_LEN] = "", restart[PETSC_MAX_PATH_LEN] = "", limit[64] = "";
+  PetscInt  interval = 0;
+  PetscReal minutes  = 0, seconds;
+  PetscBool has, has_restart, has_limit, has_interval = PETSC_FALSE, has_minutes = PETSC_FALSE, allow = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)output);
+  PetscCall(PetscOptionsString("-checkpoint", "HDF5 file that the run can be continued from", "OutputSetCheckpoint", path, path,
+                               sizeof(path), &has));
+  if (has) {
+    PetscCall(PetscOptionsInt("-checkpoint_interval", "A checkpoint every n controller steps", "OutputSetCheckpoint", interval, &interval,
+                              &has_interval));
+    PetscCall(PetscOptionsReal("-checkpoint_wall_interval", "A checkpoint every t minutes", "OutputSetCheckpoint", minutes, &minutes,
+                               &has_minutes));
+  }
+  PetscCall(PetscOptionsString("-restart", "Checkpoint that the run is continued from", "OutputSetRestart", restart, restart,
+                               sizeof(restart), &has_restart));
+  if (has_restart)
+    PetscCall(PetscOptionsBool("-restart_allow_changes", "Other options than those of the run that is continued", "OutputSetRestart", allow,
+                               &allow, NULL));
+  PetscCall(PetscOptionsString("-max_wall_time", "Minutes, or h:mm:ss, after which the run ends", "OutputSetMaxWallTime", limit, limit,
+                               sizeof(limit), &has_limit));
+  PetscOptionsEnd();
+  PetscCheck(!has_interval || interval > 0, comm, PETSC_ERR_USER_INPUT,
+             "-checkpoint_interval %" PetscInt_FMT " must be a number of controller steps, 1 or more", interval);
+  PetscCheck(!has_minutes || minutes > 0, comm, PETSC_ERR_USER_INPUT, "-checkpoint_wall_interval %.6g must be a positive number of minutes",
+             (double)minutes);
+  if (has) PetscCall(OutputSetCheckpoint(output, path, interval, has_interval || has_minutes ? minutes : WALL_INTERVAL));
+  if (has_restart) PetscCall(OutputSetRestart(output, restart, allow));
+  if (!has_limit) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ReadTime(comm, limit, &seconds));
+  PetscCall(OutputSetMaxWallTime(output, seconds));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

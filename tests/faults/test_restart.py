@@ -1,0 +1,191 @@
+"""A run that is continued from a checkpoint ends with the bits of one that was never interrupted: history, fields, and summary but for its timing."""
+
+import shutil
+
+import h5py
+import pytest
+from conftest import IMPAKT
+
+# Case, ranks, and the part of the run after which it is continued; in each there is contact before or after, or both
+SHORT = [
+    ("-options_file options/impact-high-speed.opts", 1, 0.6),
+    ("-options_file options/impact-penalty.opts", 1, 0.6),
+    ("-options_file options/impact-lagrange.opts", 1, 0.6),
+    ("-options_file options/stack-static.opts", 1, 0.6),  # static, springs of floating bodies
+    ("-options_file options/beam-hit.opts -time_step 2e-4", 1, 0.55),  # steps that are cut in halves
+    ("-options_file options/blocks.opts", 2, 0.55),
+    ("-options_file options/twisting-column.opts -time_end 0.05", 1, 0.55),  # nonlinear, rows that are built again
+]
+LONG = [
+    ("-options_file options/discs.opts", 1, 0.55),
+    ("-options_file options/discs.opts", 3, 0.7),
+    ("-options_file options/bouncing-bar.opts", 2, 0.55),
+    ("-options_file options/cantilever-tied.opts", 1, 0.55),
+    ("-options_file options/impact-solids.opts", 1, 0.55),
+    ("-options_file options/peer-bars.opts", 3, 0.55),
+    ("-options_file options/sliding-flat.opts", 1, 0.55),
+    ("-options_file options/hertz-cylinder.opts", 1, 0.55),
+    ("-options_file options/stack.opts -time_end 0.05", 2, 0.55),
+    ("-options_file options/ten-balls.opts -time_end 0.1", 1, 0.55),
+    ("-options_file options/two-walls.opts", 1, 0.55),
+]
+
+
+def records(where):
+    with h5py.File(where / "h.h5") as history:
+        return len(history["time"]) - 1
+
+
+def continued(run_in, folder, case, ranks, part):
+    """Two folders: of a run, and of one that was continued from a checkpoint amid it. This one has run to its end before, so that the continued one
+    has to cut off what is there already."""
+    whole, other = folder("whole"), folder("continued")
+    run_in(case, whole, ranks)
+    steps = records(whole)
+    middle = min(max(int(part * steps), steps // 2 + 1), steps - 1)  # more than half: the one at the end is the next one
+    run_in(case, other, ranks, "-checkpoint", "c.h5", "-checkpoint_interval", middle)
+    run_in(case, other, ranks, "-restart", "c.prev.h5")
+    return whole, other
+
+
+@pytest.mark.parametrize(("case", "ranks", "part"), SHORT)
+def test_bits(run_in, folder, same_runs, case, ranks, part):
+    same_runs(*continued(run_in, folder, case, ranks, part))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("case", "ranks", "part"), LONG)
+def test_bits_of_more(run_in, folder, same_runs, case, ranks, part):
+    same_runs(*continued(run_in, folder, case, ranks, part))
+
+
+IMPACT = "-options_file options/impact-low-speed.opts"
+
+
+def test_chain(run_in, folder, same_runs):
+    """Continued many times, always from the last checkpoint, by one command: the first time there is none, and after the end nothing is left to do.
+    What ends each run is -time_end, which may differ."""
+    whole, other = folder("whole"), folder("chain")
+    run_in(IMPACT, whole, fields=False)
+    end = float(h5py.File(whole / "h.h5")["time"][-1])
+    for part in (0.1, 0.35, 0.5, 0.51, 0.8, 1, 1):
+        last = run_in(IMPACT, other, 1, "-checkpoint", "c.h5", "-checkpoint_interval", 7, "-restart", "c.h5", "-time_end", part * end, fields=False)
+    assert "continued from c.h5, after controller step 90" in last.stderr
+    same_runs(whole, other)
+    assert (other / "c.h5").exists() and (other / "c.prev.h5").exists()
+
+
+def test_last_one_stays(run_in, folder):
+    """A run that begins with the only checkpoint there is leaves it alone until there is another."""
+    where = folder("run")
+    run_in(IMPACT, where, 1, "-checkpoint", "c.h5", "-checkpoint_interval", 1000, fields=False)
+    before = (where / "c.h5").read_bytes()
+    assert not (where / "c.prev.h5").exists()
+    run_in(IMPACT, where, 1, "-checkpoint", "c.h5", "-restart", "c.h5", fields=False)
+    assert (where / "c.h5").read_bytes() == before and not (where / "c.prev.h5").exists()
+
+
+def test_checkpoints_change_nothing(run_in, folder, same_runs):
+    whole, other = folder("whole"), folder("other")
+    run_in(IMPACT, whole, fields=False)
+    run_in(IMPACT, other, 1, "-checkpoint", "c.h5", "-checkpoint_interval", 1, fields=False)
+    same_runs(whole, other)
+
+
+def test_previous_one(run_in, folder, same_runs):
+    """Where a kill has come between two renames, or the user has deleted the last one, the one before serves."""
+    whole, other = folder("whole"), folder("other")
+    run_in(IMPACT, whole, fields=False)
+    run_in(IMPACT, other, 1, "-checkpoint", "c.h5", "-checkpoint_interval", 40, fields=False)
+    (other / "c.h5").unlink()
+    assert "continued from c.prev.h5, after controller step 80" in run_in(IMPACT, other, 1, "-restart", "c.h5", fields=False).stderr
+    same_runs(whole, other)
+
+
+def made(run_in, folder):
+    where = folder("made")
+    run_in(IMPACT, where, 1, "-checkpoint", "c.h5", "-checkpoint_interval", 40, fields=False)
+    return where
+
+
+def test_other_options(run_in, folder):
+    where = made(run_in, folder)
+    refused = run_in(IMPACT, where, 1, "-restart", "c.prev.h5", "-left_poissons_ratio", "0.1", "-contact_tolerance", "1e-9", code=None, fields=False)
+    assert "-left_poissons_ratio 0.1 (it had none)" in refused.stderr and "-contact_tolerance 1e-9 (it had none)" in refused.stderr
+    assert "-restart_allow_changes" in refused.stderr
+    allowed = run_in(IMPACT, where, 1, "-restart", "c.prev.h5", "-contact_tolerance", "1e-9", "-restart_allow_changes", fields=False)
+    assert "warning: the run that is continued had other options: -contact_tolerance 1e-9 (it had none)" in allowed.stderr
+
+
+def test_other_times(run_in, folder):
+    where = made(run_in, folder)
+    refused = run_in(IMPACT, where, 1, "-restart", "c.prev.h5", "-time_step", "1e-6", "-restart_allow_changes", code=None, fields=False)
+    assert "of a run that starts at 0 s with steps of 2.2259999999999999e-06 s, and this one starts at 0 s with steps of 9.9" in refused.stderr
+
+
+def test_another_mesh(run_in, folder):
+    where = made(run_in, folder)
+    refused = run_in(IMPACT, where, 1, "-restart", "c.prev.h5", "-left_dm_plex_box_faces", "10", "-restart_allow_changes", code=None, fields=False)
+    assert "it is of another problem" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("damage", "says"),
+    [
+        (lambda data: data[:-1], "it is no checkpoint of Impakt, or its end is missing"),
+        (lambda data: data[: len(data) // 2], "its end is missing"),
+        (lambda data: b"", "its end is missing"),
+        (lambda data: data[:5000] + bytes([data[5000] ^ 1]) + data[5001:], "its bytes are not those that were written"),
+        (lambda data: data[:5000] + data[5001:], "it is not as long as it was written"),
+        (lambda data: b"something else\n" * 10, "it is no checkpoint of Impakt"),
+    ],
+)
+def test_damaged(run_in, folder, damage, says):
+    where = made(run_in, folder)
+    (where / "c.h5").write_bytes(damage((where / "c.h5").read_bytes()))
+    refused = run_in(IMPACT, where, 1, "-restart", "c.h5", code=None, fields=False)
+    assert says in refused.stderr and "c.prev.h5: give that" in refused.stderr
+    assert refused.stderr.count("\n") == 1
+
+
+def test_foreign(run_in, folder):
+    where = made(run_in, folder)
+    shutil.copy(where / "h.h5", where / "x.h5")
+    assert "it is no checkpoint of Impakt" in run_in(IMPACT, where, 1, "-restart", "x.h5", code=None, fields=False).stderr
+    assert "it is no file" in run_in(IMPACT, where, 1, "-restart", "options", code=None, fields=False).stderr
+
+
+def test_history_is_gone(run_in, folder):
+    where = made(run_in, folder)
+    (where / "h.h5").unlink()
+    refused = run_in(IMPACT, where, 1, "-restart", "c.prev.h5", code=None, fields=False)
+    assert "-output_history h.h5: the run that is continued has written it, and it is gone" in refused.stderr
+
+
+def test_history_elsewhere(run_in, folder):
+    """Under another path the history begins with the restart."""
+    where, other = made(run_in, folder), folder("other")
+    shutil.copy(where / "c.prev.h5", other / "x.h5")
+    run_in(IMPACT, other, 1, "-restart", "x.h5", "-output_history", "new.h5", fields=False)
+    with h5py.File(where / "h.h5") as whole, h5py.File(other / "new.h5") as part:
+        assert (part["time"][()] == whole["time"][81:]).all()
+        assert (part["body/left/kinetic"][()] == whole["body/left/kinetic"][81:]).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ("-checkpoint_interval 0", "-checkpoint_interval 0 must be a number of controller steps"),
+        ("-checkpoint_wall_interval -1", "-checkpoint_wall_interval -1 must be a positive number of minutes"),
+        ("-max_wall_time x", "-max_wall_time needs a number of minutes"),
+        ("-max_wall_time 1:60", "-max_wall_time needs a number of minutes"),
+        ("-max_wall_time 0", "-max_wall_time needs a number of minutes"),
+        ("-output_history c.h5", "are the same file"),
+        ("-restart s.json -output_summary s.json", "-output_summary s.json is a file that the run reads, by -restart"),
+    ],
+)
+def test_bad_options(launch, folder, options, says):
+    where = folder("run")
+    (where / "s.json").write_text("{}")
+    done = launch([IMPAKT, *IMPACT.split(), "-checkpoint", "c.h5", *options.split()], cwd=where)
+    assert done.returncode not in (0, -11) and says in done.stderr
