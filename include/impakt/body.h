@@ -143,6 +143,7 @@ PETSC_EXTERN PetscErrorCode BodyPrescribesMass(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyRequestsControllerStep(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIntegratesLike(Body, Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetMeasures(Body, BodyMeasures *);
+PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);

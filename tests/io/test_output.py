@@ -64,6 +64,7 @@ SUMMARY = {
             "peak_potential": float,
             "external_work": float,
             "rotation_max": float,
+            "inverted_max": int,
             "total_energy_error_min": float,
             "total_energy_error_max": float,
             "substeps": int,
