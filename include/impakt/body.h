@@ -153,6 +153,7 @@ PETSC_EXTERN PetscReal      BodyMeasuresGetBalance(const BodyMeasures *);
 PETSC_EXTERN PetscErrorCode BodyGetNumReactions(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetReactionSurface(Body, PetscInt, const char *[]);
 PETSC_EXTERN PetscErrorCode BodyGetReactions(Body, PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);

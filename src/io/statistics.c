@@ -2,6 +2,7 @@
 #include "statistics.h"
 #include <controller/energyscale.h>
 #include <math.h>
+#include "linearlimits.h"
 
 /* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
    compared with it */
@@ -184,31 +185,6 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
-/* Notes how far bodies have turned, and tells where a linear one goes too far for its material; once for each body */
-static PetscErrorCode AddRotations(Statistics s, Controller controller, const ControllerFrame *frame)
-{
-  const Body *bodies;
-
-  PetscFunctionBegin;
-  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
-  for (PetscInt i = 0; i < frame->n_bodies; i++) {
-    BodyStatistics *body  = &s->results.bodies[i];
-    const PetscReal angle = Norm(frame->bodies[i].rotation), before = body->rotation_max;
-    const char     *name;
-
-    body->rotation_max = PetscMax(before, angle);
-    if (before > STATISTICS_FAR_TURN || angle <= STATISTICS_FAR_TURN) continue;
-    PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
-    PetscCall(
-        PetscFPrintf(PetscObjectComm((PetscObject)controller), stderr,
-                     "impakt: warning: body '%s' has turned by %.3g rad at time %g s: its linear material counts rotations as strains, so "
-                     "that energy and angular momentum are wrong by terms of the angle squared; set -%s_material_type "
-                     "saint_venant_kirchhoff or neo_hookean\n",
-                     name, (double)angle, (double)frame->time, name));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds a step of one pair, or of all pairs together */
 static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
                        PetscReal time_step, PetscBool cut)
@@ -291,7 +267,7 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   AddEnergies(s, frame);
   AddSupports(s, frame);
   PetscCall(ContactTimesAdd(s->times, frame));
-  PetscCall(AddRotations(s, controller, frame));
+  PetscCall(LinearLimitsCheck(controller, frame, s->results.bodies));
   if (frame->step > 0) {
     const PetscBool cut = (PetscBool)(frame->step_cuts > 0);
 

@@ -30,6 +30,7 @@ typedef struct {
   PetscReal external_work;                      /* at the end, by loads [J] */
   PetscReal damping_work;                       /* at the end, taken by Rayleigh damping [J] */
   PetscReal rotation_max;                       /* largest mean rotation of a linear body, 0 for others [rad] */
+  PetscInt  inverted_max;                       /* most elements of a linear body that were inside out at a time, 0 for others */
   PetscReal energy_error_min,
       energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;

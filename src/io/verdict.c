@@ -55,6 +55,18 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Verdict *verdict)
+{
+  const char *name;
+
+  PetscFunctionBegin;
+  if (!statistics->inverted_max) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectGetName((PetscObject)body, &name));
+  PetscCall(Add(verdict, "up to %" PetscInt_FMT " elements of linear body '%s' were inside out: its figures mean nothing from then on",
+                statistics->inverted_max, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const StatisticsResults *results, Verdict *verdict)
 {
   const char *name;
@@ -86,12 +98,15 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const StatisticsRe
 */
 PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *results, Verdict *verdict)
 {
-  Contact contact;
+  Contact     contact;
+  const Body *bodies;
 
   PetscFunctionBegin;
   verdict->n = 0;
+  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
+  for (PetscInt b = 0; b < results->n_bodies; b++) PetscCall(LookAtBody(bodies[b], &results->bodies[b], verdict));
   for (PetscInt p = 0; p < results->n_pairs && results->steps; p++) PetscCall(LookAtPair(contact, p, results, verdict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

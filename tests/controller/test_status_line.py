@@ -80,7 +80,7 @@ def test_width(take_cores):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_messages_have_lines_of_their_own(ranks, take_cores):
     take_cores(ranks)
-    command = [*(MPIEXEC + ["-n", "2"] if ranks > 1 else []), *RUN, "-monitor_interval", "6000"]
+    command = [*(MPIEXEC + ["-n", "2"] if ranks > 1 else []), *RUN, "-monitor_interval", "6000" if ranks == 1 else "400"]
     with on_terminal(command, 150, stdout=None) as leader:
         text = read_until(leader, lambda text: len(text.split("energy error")) > 5 and "to go" in text.split("energy error")[-3])
     lines = screen(text[: text.rindex("\n") + 1])

@@ -65,6 +65,7 @@ SUMMARY = {
             "external_work": float,
             "damping_work": float,
             "rotation_max": float,
+            "inverted_max": int,
             "total_energy_error_min": float,
             "total_energy_error_max": float,
             "substeps": int,

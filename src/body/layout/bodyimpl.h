@@ -34,6 +34,7 @@ typedef struct {
   Material  linearized_material; /* the same */
   PetscBool linearized;          /* forces are those of the linearized element at present */
   Mat       stiffness;           /* of the undeformed body; NULL until BodyGetStiffness() */
+  PetscReal least_inverting;     /* energy of a linear body with an element inside out, at least; 0 until BodyGetInverted() [J] */
 } BodyModel;
 
 typedef struct {
