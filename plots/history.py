@@ -1,8 +1,8 @@
-"""Draws the history of a run with contact: contact forces, error of the energy, nodes in contact and gaps over time.
+"""Draws the history of a run: contact forces and reactions, error of the energy, nodes in contact and gaps over time.
 
     python plots/history.py history.h5 figure.png
 
-Works for any number of bodies and pairs; nothing is compared with exact solutions, as plots/impact.py does for two bars.
+Works for any number of bodies and pairs, and for held bodies without contact; nothing is compared with exact solutions, as plots/impact.py does for two bars.
 """
 
 import sys
@@ -18,15 +18,18 @@ MOST_NAMED = 8  # pairs; more would fill the figure with their names
 def read(path):
     """Time, and of each pair and each body what is drawn."""
     with history_file(path) as file:
-        pairs = {name: {key: pair[key][()] for key in ("force_vector", "gap", "active")} for name, pair in file["contact"].items()}
-        energies = {name: {key: body[key][()] for key in ("kinetic", "potential", "external_work")} for name, body in file["body"].items()}
-        return {"time": file["time"][()], "pairs": pairs, "bodies": energies}
+        keys = ("kinetic", "potential", "external_work", "damping_work")
+        energies = {name: {key: body[key][()] for key in keys if key in body} for name, body in file["body"].items()}
+        held = {f"{name}.{surface}": group["force"][()] for name, body in file["body"].items() for surface, group in body.get("reaction", {}).items()}
+        contact = file.get("contact", {}) if held else file["contact"]  # without either there is nothing to draw
+        pairs = {name: {key: pair[key][()] for key in ("force_vector", "gap", "active")} for name, pair in contact.items()}
+        return {"time": file["time"][()], "pairs": pairs, "bodies": energies, "held": held}
 
 
 def energy_error(bodies):
-    """Kinetic and potential energy less the work of loads, relative to its start, or to the largest energy of what starts at rest."""
+    """Kinetic and potential energy less the work of loads, with what damping has taken, relative to its start, or to the largest energy of what starts at rest."""
     kinetic, potential, work = (sum(body[key] for body in bodies.values()) for key in ("kinetic", "potential", "external_work"))
-    total = kinetic + potential - work
+    total = kinetic + potential - work + sum(body.get("damping_work", 0) for body in bodies.values())
     largest = (kinetic + potential + np.abs(work)).max()
     start = abs(total[0]) if abs(total[0]) > 1e-9 * largest else largest
     return (total - total[0]) / (start or 1.0)
@@ -51,7 +54,9 @@ def draw(file, path):
 
     figure = Figure(figsize=(10, 7), layout="constrained")
     (force, error), (active, gap) = figure.subplots(2, 2, sharex=True)
-    draw_pairs(force, time, {name: np.linalg.norm(pair["force_vector"], axis=1) for name, pair in pairs.items()}, "contact force", "force", "N")
+    forces = {name: pair["force_vector"] for name, pair in pairs.items()} | history["held"]  # an obstacle's is that of its pairs
+    title = " and ".join(["contact force"] * bool(pairs) + ["reaction"] * bool(history["held"]))
+    draw_pairs(force, time, {name: np.linalg.norm(vector, axis=1) for name, vector in forces.items()}, title, "force", "N")
     draw_pairs(active, time, {name: pair["active"] for name, pair in pairs.items()}, "nodes in contact", "nodes", "1")
     draw_pairs(gap, time, {name: np.where(np.abs(pair["gap"]) < 1e20, pair["gap"], np.nan) for name, pair in pairs.items()}, "smallest gap", "gap", "m")
     error.plot(time, energy_error(history["bodies"]), color=GREEN)
@@ -64,7 +69,8 @@ def draw(file, path):
         axes.margins(x=0.01)
     for axes in (active, gap):
         axes.set_xlabel(f"time [{unit}]")
-    force.legend(frameon=True, framealpha=0.9, edgecolor="0.8")
+    if forces:
+        force.legend(frameon=True, framealpha=0.9, edgecolor="0.8")
     figure.savefig(path, dpi=150)
 
 

@@ -40,7 +40,7 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   Material  material;
   PetscInt  dim;
   Vec       reference, displacement, positions;
-  PetscReal lower, upper, poissons_ratio;
+  PetscReal lower, upper, poissons_ratio, drag;
   PetscBool linear, loaded, slender;
 
   PetscFunctionBegin;
@@ -58,6 +58,12 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
              "-exact: the exact solutions are those of bars without forces from outside, and body '%s' has tractions, body forces or "
              "gravity; leave the option out",
              ((PetscObject)body)->name);
+  PetscCall(BodyGetDamping(body, &drag, NULL)); /* that by the stiffness may be there to smooth waves */
+  PetscCheck(
+      drag == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-exact: the exact solutions are those of bars that nothing slows down, and body '%s' has -%s_damping_mass %g; leave one of the "
+      "options out",
+      ((PetscObject)body)->name, ((PetscObject)body)->name, (double)drag);
   PetscCall(MaterialGetDensity(material, &bar->density));
   PetscCall(MaterialGetUniaxialModulus(material, &bar->modulus));
   PetscCall(BodyGetMass(body, &bar->mass));

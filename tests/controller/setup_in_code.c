@@ -55,6 +55,7 @@ static void expect_equal(const End *a, const End *b)
     near(a->bodies[i].kinetic, b->bodies[i].kinetic, round_off);
     near(a->bodies[i].potential, b->bodies[i].potential, round_off);
     near(a->bodies[i].external_work, b->bodies[i].external_work, round_off);
+    near(a->bodies[i].damping_work, b->bodies[i].damping_work, round_off);
     for (PetscInt d = 0; d < 3; d++) near(a->bodies[i].momentum[d], b->bodies[i].momentum[d], round_off);
     near(a->mass[i], b->mass[i], round_off);
     assert_int_equal(a->substeps[i], b->substeps[i]);
@@ -125,7 +126,8 @@ static void bars(void **state)
              "-contact_tolerance 1e-9");
   AddOptions("-left_dm_plex_dim 1 -left_dm_plex_box_lower -1 -left_dm_plex_box_upper 0 -left_dm_plex_box_faces 8 -left_density 2 "
              "-left_youngs_modulus 3 -left_cross_section 0.5 -left_initial_velocity 0.5 -left_initial_displacement 0.001 "
-             "-left_ts_type centraldifference -left_ts_time_step auto -left_mass_type lumped");
+             "-left_ts_type centraldifference -left_ts_time_step auto -left_mass_type lumped -left_damping_mass 0.3 "
+             "-left_damping_stiffness 0.01");
   AddOptions("-right_dm_plex_dim 1 -right_dm_plex_box_lower 0.002 -right_dm_plex_box_upper 1 -right_dm_plex_box_faces 5 -right_density 1 "
              "-right_youngs_modulus 4 -right_initial_velocity -0.5 -right_ts_time_step 0.01 -right_ts_alpha_radius 0.9 "
              "-right_mass_redistribute false");
@@ -138,6 +140,7 @@ static void bars(void **state)
   ok(BodySetTSType(left, TSCENTRALDIFFERENCE));
   ok(BodySetTimeStep(left, PETSC_DETERMINE));
   ok(BodySetMassType(left, BODY_MASS_LUMPED));
+  ok(BodySetDamping(left, 0.3, 0.01));
   ok(BodySetInitialVelocity(left, &velocity[0]));
   ok(BodySetInitialDisplacement(left, (const PetscReal[]){0.001}));
   ok(BodyGetMassType(left, &mass));

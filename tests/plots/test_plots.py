@@ -16,6 +16,9 @@ FIGURES = {
     "penalty": "-options_file options/impact-penalty.opts",
     "characteristics": "-options_file options/two-materials.opts",
     "three": "-options_file options/three-bars.opts",
+    # held at one end, damped, and without contact
+    "held": "-bodies b -b_dm_plex_dim 1 -b_dm_plex_box_faces 20 -b_density 1000 -b_youngs_modulus 1e9 -b_boundary_displacement xmin "
+    "-b_boundary_displacement_xmin 0 -b_boundary_traction xmax -b_boundary_traction_xmax 1e6 -b_damping_mass 1000 -time_end 5e-3 -time_step 1e-5",
 }
 ENVIRONMENT = {**os.environ, "MPLBACKEND": "Agg"}
 
@@ -31,7 +34,7 @@ def test_figure(name, shared_run, launch, tmp_path):
     assert figure.stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("name", ["schwarz", "three", *long("penalty", "characteristics")])
+@pytest.mark.parametrize("name", ["schwarz", "three", "held", *long("penalty", "characteristics")])
 def test_history_figure(name, shared_run, launch, tmp_path):
     """Four panels, in colours of the lines that there must be: of the force, and of the energy's error."""
     history = shared_run(FIGURES[name]).folder / "history.h5"

@@ -47,6 +47,9 @@ struct _BodyDamping {
   An explicit body takes the velocity at mid-step, half a step before its forces. Its stable step becomes
   (2 / omega) (sqrt(1 + zeta^2) - zeta), with the damping ratio zeta of its fastest vibration omega.
 
+  The trapezoidal rule takes little from vibrations with beta omega^2 dt far beyond 1, which change their sign in each step of dt: beta
+should not be much larger than the step.
+
   What the dashpots take is in `BodyMeasures`, and no error of the energy. A static body has none.
 
 .seealso: `Body`, `BodyGetDamping()`, `BodyMeasures`, `BodyGetStableStep()`

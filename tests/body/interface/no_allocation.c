@@ -66,7 +66,7 @@ static void ExplicitDoesNotAllocate(void **state)
 static void DampingDoesNotAllocate(void **state)
 {
   (void)state;
-  RunCase("-left_damping_mass 10 -left_damping_stiffness 1e-8 -right_damping_stiffness 1e-8");
+  RunCase("-left_damping_mass 10 -left_damping_stiffness 1e-8 -right_damping_stiffness 1e-8 -left_probe -0.1;-0.2 -right_probe 0.1");
   RunCase("-left_ts_type centraldifference -left_damping_stiffness 1e-8 -right_ts_type centraldifference -right_ts_time_step 5e-7 "
           "-right_damping_mass 10");
 }

@@ -170,3 +170,21 @@ def test_obstacle_carries_the_weight(ranks, impakt):
     moment = run.history["obstacle/floor/reaction/moment"][-1] + at_support
     np.testing.assert_allclose(support, 0, atol=2000 * 1e-9)
     np.testing.assert_allclose(moment, [0, 0, 2000], rtol=1e-4)  # the nodes where they are then: 1e-6 m from where they were
+
+
+@pytest.mark.parametrize("held", ["0,free", "0,0"])
+@pytest.mark.parametrize(
+    "more", ["", "-b_ts_type centraldifference -b_damping_stiffness 1e-5", "-b_material_type neo_hookean -b_damping_stiffness 1e-5 -b_damping_mass 100"]
+)
+def test_held_nodes_in_contact(more, held, impakt):
+    """A plate that is held at one side swings down on a floor, which its held corner touches as well: what contact does to held nodes is the floor's
+    reaction, and not the support's. Momentum follows from both, weight and drag, to round-off of 200 steps."""
+    plate = PLATE.replace("upper 2,0.5", "lower 0,1e-5 -b_dm_plex_box_upper 2,0.50001").replace("thickness 0.2", "thickness 1")
+    floor = "-obstacles floor -floor_obstacle_type plane -floor_point 0,0 -floor_normal 0,1 -contact_pairs b.ymin:floor -contact_energy_cap false"
+    run = impakt(f"{plate} {floor} {CLAMPED} {held} -b_gravity 0,-10 -b_initial_velocity 0,-0.1*x -controller_step_cuts 0 -time_end 4e-3 -time_step 2e-5 {more}")
+    time, momentum = run.history["time"][:], run.history["body/b/momentum"][:]
+    at_floor = run.history["obstacle/floor/reaction/force"][:, :2]
+    force = reaction(run, "xmin")[0][:, :2] + at_floor + [0, -1e4] - (100 if "damping_mass" in more else 0) * momentum
+    change = np.diff(momentum, axis=0) - 0.5 * np.diff(time)[:, None] * (force[1:] + force[:-1])
+    assert np.abs(change).max() <= 1e-13 * np.abs(momentum).max()
+    assert at_floor[:, 1].max() > 1e5

@@ -43,7 +43,7 @@ def test_damped_oscillator(case, integrator, impakt):
     else:
         w = OMEGA * np.sqrt(1 - zeta**2)
         exact = np.exp(-zeta * OMEGA * t) * (np.cos(w * t) - zeta / np.sqrt(1 - zeta**2) * np.sin(w * t))
-    tolerance = 5e-5 if "central" not in integrator else 5e-3
+    tolerance = 2e-5 if "central" not in integrator else 5e-3 if case == "critical" else 1e-3  # 2.3e-6 and 2.5e-4 were seen, of the decrement 9e-6 and 3e-4
     np.testing.assert_allclose(p / p[0], exact, atol=tolerance)
     if case != "critical":  # half of the decrement over the half period in which displacement goes from zero to zero
         half = np.pi / w
@@ -96,6 +96,20 @@ def test_rest_is_the_static_solution(integrator, material, impakt):
         np.testing.assert_allclose(run.history[f"body/b/reaction/xmin/{name}"][-1], expected, atol=1e-8 * np.abs(expected).max())
     assert run.summary["bodies"]["b"]["potential"] == pytest.approx(static.summary["bodies"]["b"]["potential"], rel=1e-8)
     assert run.summary["bodies"]["b"]["kinetic"] <= 1e-15 * run.summary["bodies"]["b"]["potential"]
+
+
+def test_settling(shared_run):
+    """options/settling.opts: its first vibration, of 21.4 Hz, has exp(-0.0756 x 134.6/s x 1.6 s) = 9e-8 left; the clamp carries 156 kg x 9.81 m/s^2 and 10 kN,
+    and the tip is at what the same mesh has by statics."""
+    run = shared_run("-options_file options/settling.opts")
+    clamp = run.summary["bodies"]["beam"]["reactions"]["xmin"]
+    np.testing.assert_allclose(clamp["force"], [0, 1e4 + 156 * 9.81, 0], atol=1e-6 * 1e4)
+    assert clamp["moment"][2] == pytest.approx(2 * 1e4 + 156 * 9.81, rel=1e-6)
+    tip, top = (run.history[f"body/beam/probe/{k}"] for k in range(2))
+    assert tip["displacement"][-1] == pytest.approx([0, -1.53659738e-2], rel=1e-6, abs=1e-9)
+    assert tip["displacement"][:, 1].min() < 1.7 * tip["displacement"][-1, 1]  # a load that is there at once bends it nearly twice as far
+    assert top["stress"][-1, 0] == pytest.approx(8.74521e7, rel=1e-5)
+    assert np.abs(energy(run, "beam") - energy(run, "beam")[0]).max() <= 1e-9 * run.summary["bodies"]["beam"]["potential"]
 
 
 @pytest.mark.parametrize("integrator, step", [(IMPLICIT, 4e-4), (EXPLICIT, 1e-4)])
@@ -188,6 +202,11 @@ def test_a_block_comes_to_rest_on_the_floor(impakt):
     assert run.summary["bodies"]["b"]["damping_work"] > 5
     assert run.summary["system"]["energy_error_max"] <= 1e-3
     assert run.summary["system"]["energy_error_min"] >= -1e-2
+
+
+def test_exact_solutions_have_no_drag(impakt):
+    run = impakt("-options_file options/impact-high-speed.opts -left_damping_mass 1", expect_failure=True)
+    assert re.search("-exact.*'left'.*-left_damping_mass", run.stderr)
 
 
 @pytest.mark.parametrize("option, words", [("-b_damping_mass -1", "-b_damping_mass.*negative"), ("-b_damping_stiffness -1e-9", "-b_damping_stiffness.*negative"),
