@@ -44,6 +44,7 @@ PETSC_EXTERN PetscErrorCode OutputSetHistory(Output, const char[]);
 PETSC_EXTERN PetscErrorCode OutputSetFields(Output, const char[], PetscInt, OutputPrecision);
 PETSC_EXTERN PetscErrorCode OutputSetCheckpoint(Output, const char[], PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode OutputSetRestart(Output, const char[], PetscBool);
+PETSC_EXTERN PetscErrorCode OutputSetRestartState(Output, const char[]);
 PETSC_EXTERN PetscErrorCode OutputSetMaxWallTime(Output, PetscReal);
 PETSC_EXTERN PetscErrorCode OutputCatchSignals(Output);
 PETSC_EXTERN PetscErrorCode OutputSetFromOptions(Output);

@@ -130,6 +130,7 @@ static PetscErrorCode WriteBodies(hid_t file, PetscInt n, const Body bodies[], c
   for (PetscInt b = 0; b < n; b++) {
     const char *name;
     PetscInt    dim;
+    PetscBool   without_inertia;
     Vec         positions, u, v, a;
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[b], &name));
@@ -138,6 +139,8 @@ static PetscErrorCode WriteBodies(hid_t file, PetscInt n, const Body bodies[], c
     PetscCall(BodyGetSolution(bodies[b], &u, &v, &a));
     PetscCall(WriteVec(file, name, "position", dim, positions, path));
     PetscCall(WriteVec(file, name, "displacement", dim, u, path));
+    PetscCall(BodyIsStatic(bodies[b], &without_inertia));
+    if (without_inertia) continue;
     PetscCall(WriteVec(file, name, "velocity", dim, v, path));
     PetscCall(WriteVec(file, name, "acceleration", dim, a, path));
   }

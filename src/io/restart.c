@@ -51,6 +51,40 @@ PetscErrorCode OutputSetRestart(Output output, const char path[], PetscBool allo
 }
 
 /*@
+  OutputSetRestartState - sets the checkpoint whose state the bodies begin with
+
+  Logically Collective
+
+  Input Parameters:
++ output - the `Output`
+- path   - a checkpoint of bodies with the same names and meshes
+
+  Options Database Key:
+. -restart_state path - the checkpoint
+
+  Level: beginner
+
+  Notes:
+  The run begins at its own start, with its own loads, integrators and contact method, and on any number of ranks. Displacements and
+  velocities are those of the checkpoint, but for velocities of bodies without inertia, which begin with their own; then ties, gaps and
+  the balance of massless nodes are found as at any start, so that a preload is there from the first step on. Bodies that the checkpoint
+  does not have begin as their options say.
+
+  `OutputRestart()` takes the state, unless it has a checkpoint to go on from.
+
+.seealso: `Output`, `OutputRestart()`, `OutputSetRestart()`, `BodySetInitialState()`, `ContactCheckInitialGap()`
+@*/
+PetscErrorCode OutputSetRestartState(Output output, const char path[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  PetscAssertPointer(path, 2);
+  PetscCheck(path[0], PetscObjectComm((PetscObject)output), PETSC_ERR_USER_INPUT, "-restart_state needs the path of a checkpoint");
+  PetscCall(PetscStrncpy(output->checkpoints.state, path, sizeof(output->checkpoints.state)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   OutputRestart - goes on from the checkpoint of `OutputSetRestart()`, if there is one
 
   Collective
@@ -64,7 +98,8 @@ PetscErrorCode OutputSetRestart(Output output, const char path[], PetscBool allo
   On as many ranks as before the run goes on to the last bit as if it had not been interrupted, with history, fields and summary: what had
   been written after the checkpoint is cut off.
 
-  Options that change the problem must be the same; those of files, terminal and -time_end may differ.
+  Options that change the problem must be the same; those of files, terminal and -time_end may differ. Without a checkpoint yet the run
+  begins at its start, or with the state of `OutputSetRestartState()`.
 
 .seealso: `Output`, `OutputSetRestart()`, `OutputSetCheckpoint()`, `ControllerSolve()`
 @*/
@@ -72,7 +107,7 @@ PetscErrorCode OutputRestart(Output output)
 {
   Checkpoints   *c;
   MPI_Comm       comm;
-  PetscBool      exists, same;
+  PetscBool      exists = PETSC_FALSE, same;
   CheckpointFile file;
   Checkpoint     checkpoint;
   PetscMPIInt    size;
@@ -82,9 +117,12 @@ PetscErrorCode OutputRestart(Output output)
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   c    = &output->checkpoints;
   comm = PetscObjectComm((PetscObject)output);
+  if (c->restart[0]) {
+    PetscCall(OutputLock(output));
+    PetscCall(CheckpointFileFind(comm, c->restart, sizeof(path), path, &exists));
+  }
+  if (!exists && c->state[0]) PetscCall(OutputTakeState(output, c->state));
   if (!c->restart[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OutputLock(output));
-  PetscCall(CheckpointFileFind(comm, c->restart, sizeof(path), path, &exists));
   if (!exists) {
     PetscCall(PetscFPrintf(comm, stderr, "impakt: there is no checkpoint %s yet: the run begins at its start\n", c->restart));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -130,10 +168,10 @@ static PetscErrorCode ReadTime(MPI_Comm comm, const char text[], PetscReal *seco
 PetscErrorCode OutputReadCheckpoints(Output output)
 {
   MPI_Comm  comm                     = PetscObjectComm((PetscObject)output);
-  char      path[PETSC_MAX_PATH_LEN] = "", restart[PETSC_MAX_PATH_LEN] = "", limit[64] = "";
+  char      path[PETSC_MAX_PATH_LEN] = "", restart[PETSC_MAX_PATH_LEN] = "", state[PETSC_MAX_PATH_LEN] = "", limit[64] = "";
   PetscInt  interval = 0;
   PetscReal minutes  = 0, seconds;
-  PetscBool has, has_restart, has_limit, has_interval = PETSC_FALSE, has_minutes = PETSC_FALSE, allow = PETSC_FALSE;
+  PetscBool has, has_restart, has_state, has_limit, has_interval = PETSC_FALSE, has_minutes = PETSC_FALSE, allow = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)output);
@@ -150,6 +188,8 @@ PetscErrorCode OutputReadCheckpoints(Output output)
   if (has_restart)
     PetscCall(PetscOptionsBool("-restart_allow_changes", "Other options than those of the run that is continued", "OutputSetRestart", allow,
                                &allow, NULL));
+  PetscCall(PetscOptionsString("-restart_state", "Checkpoint whose state the bodies begin with", "OutputSetRestartState", state, state,
+                               sizeof(state), &has_state));
   PetscCall(PetscOptionsString("-max_wall_time", "Minutes, or h:mm:ss, after which the run ends", "OutputSetMaxWallTime", limit, limit,
                                sizeof(limit), &has_limit));
   PetscOptionsEnd();
@@ -159,6 +199,7 @@ PetscErrorCode OutputReadCheckpoints(Output output)
              (double)minutes);
   if (has) PetscCall(OutputSetCheckpoint(output, path, interval, has_interval || has_minutes ? minutes : WALL_INTERVAL));
   if (has_restart) PetscCall(OutputSetRestart(output, restart, allow));
+  if (has_state) PetscCall(OutputSetRestartState(output, state));
   if (!has_limit) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ReadTime(comm, limit, &seconds));
   PetscCall(OutputSetMaxWallTime(output, seconds));

@@ -12,12 +12,12 @@ SHORT = [
     ("-options_file options/impact-penalty.opts", 1, 0.6),
     ("-options_file options/impact-lagrange.opts", 1, 0.6),
     ("-options_file options/stack-static.opts", 1, 0.6),  # static, springs of floating bodies
-    ("-options_file options/beam-hit.opts -time_step 2e-4", 1, 0.55),  # steps that are cut in halves
-    ("-options_file options/blocks.opts", 2, 0.55),
+    ("-options_file options/beam-hit.opts -time_step 2e-4 -time_end 4e-3", 2, 0.55),  # steps that are cut in halves
     ("-options_file options/blocks.opts -left_damping_mass 1e3 -right_damping_stiffness 1e-8 -left_probe -0.02,0.02", 1, 0.55),
     ("-options_file options/twisting-column.opts -time_end 0.05", 1, 0.55),  # nonlinear, rows that are built again
 ]
 LONG = [
+    ("-options_file options/blocks.opts", 2, 0.55),
     ("-options_file options/discs.opts", 1, 0.55),
     ("-options_file options/discs.opts", 3, 0.7),
     ("-options_file options/bouncing-bar.opts", 2, 0.55),

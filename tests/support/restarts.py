@@ -52,10 +52,8 @@ def differences(a, b, tolerance=0):
         if not (a / name).exists():
             continue
         with h5py.File(a / name) as first, h5py.File(b / name) as second:
-            names = []
-            first.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
-            assert names and set(names) == set(names_of(second))
-            for dataset in names:
+            assert set(names_of(first)) == set(names_of(second))
+            for dataset in names_of(first):
                 x, y = first[dataset][()], second[dataset][()]
                 same = x.shape == y.shape and (x.tobytes() == y.tobytes() if not tolerance else close(x, y, tolerance))
                 found += [] if same else [f"{name}:{dataset}"]
@@ -66,6 +64,7 @@ def differences(a, b, tolerance=0):
 def names_of(file):
     names = []
     file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+    assert names
     return names
 
 

@@ -1,0 +1,196 @@
+"""Runs that are killed, or asked to end, at any moment: continued by the same command they end with the bits of one that was not interrupted."""
+
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+
+import h5py
+import pytest
+from conftest import ALONE, cores
+from restarts import command
+
+# Contact from the start on, fields of two dimensions, 600 steps in about a second
+CASE = "-options_file options/blocks.opts"
+
+
+def children(pid):
+    with open(f"/proc/{pid}/task/{pid}/children") as file:
+        return [int(word) for word in file.read().split()]
+
+
+def begin(where, ranks, *more, case=CASE):
+    return subprocess.Popen(
+        command(case, ranks, "-checkpoint", "c.h5", "-restart", "c.h5", *more),
+        cwd=where,
+        env=os.environ | (ALONE if ranks == 1 else {}),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def caught(pid):
+    """Whether a process handles SIGINT itself: from the end of its set-up on."""
+    with open(f"/proc/{pid}/status") as status:
+        mask = int(re.search(r"SigCgt:\s*(\w+)", status.read())[1], 16)
+    return bool(mask >> (signal.SIGINT - 1) & 1)
+
+
+def await_caught(process, expected=True):
+    late = time.monotonic() + 30
+    while caught(process.pid) != expected:
+        assert process.poll() is None and time.monotonic() < late
+        time.sleep(0.001)
+
+
+def kill_after(process, seconds, ranks, chance):
+    """Kills the run with signal 9: on several ranks one of them, as the kernel does where memory ends, or all."""
+    try:
+        process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        victims = [process.pid] if ranks == 1 else children(process.pid)
+        for victim in victims if chance.random() < 0.5 else victims[-1:]:
+            os.kill(victim, signal.SIGKILL)
+        process.wait(60)
+    return process.stderr.read()
+
+
+def kill_often(where, kills, ranks, interval, longest, seed):
+    """Continues a run that is killed again and again, then to its end; how many times there was something to continue."""
+    chance = random.Random(seed)
+    with cores(ranks):
+        told = [kill_after(begin(where, ranks, "-checkpoint_interval", interval), chance.uniform(0, longest), ranks, chance) for _ in range(kills)]
+        last = begin(where, ranks, "-checkpoint_interval", interval)
+        told.append(last.communicate(timeout=200)[1])
+    assert last.returncode == 0, told[-1]
+    return sum("continued from" in text for text in told)
+
+
+def readable(where):
+    """Whatever is there after a kill can be read, and ends with whole records."""
+    if (where / "h.h5").exists():
+        with h5py.File(where / "h.h5") as history:
+            assert len(history["time"]) == len(history["schwarz/iterations"])
+
+
+@pytest.mark.parametrize(("interval", "seed"), [(40, 1), pytest.param(1, 2, marks=pytest.mark.long)])
+def test_kill(run_in, folder, same_runs, interval, seed):
+    """With an interval of one step most of the time goes into checkpoints: kills come while one is written."""
+    whole, other = folder("whole"), folder("killed")
+    run_in(CASE, whole)
+    assert kill_often(other, 3, 1, interval, 0.9, seed) > 0
+    readable(other)
+    same_runs(whole, other)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("ranks", "interval", "kills", "seed"), [(1, 30, 15, 3), (1, 1, 15, 4), (2, 20, 6, 5), (2, 1, 4, 6), (3, 20, 6, 7), (3, 1, 4, 8)])
+def test_many_kills(run_in, folder, same_runs, ranks, interval, kills, seed):
+    """50 kills in all. Ranks that share cores are slow to start, so that a kill comes later."""
+    whole = folder("whole")
+    run_in(CASE, whole, ranks)
+    chance = random.Random(100 + seed)
+    while kills > 0:
+        chain = min(kills, 5)
+        other = folder(f"killed-{kills}")
+        assert kill_often(other, chain, ranks, interval, 0.9 if ranks == 1 else 3.0, chance.random()) > 0
+        readable(other)
+        same_runs(whole, other)
+        kills -= chain
+
+
+def end_by(where, number, seconds, *more, ranks=1, case=CASE):
+    with cores(ranks):
+        process = begin(where, ranks, "-checkpoint_interval", 100000, *more, case=case)
+        if ranks == 1:
+            await_caught(process)
+        time.sleep(seconds)
+        os.kill(process.pid, number)
+        stderr = process.communicate(timeout=60)[1]
+    return process.returncode, stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.long)])
+def test_end_in_good_order(run_in, folder, same_runs, number):
+    whole, other = folder("whole"), folder("ended")
+    run_in(CASE, whole)
+    code, stderr = end_by(other, number, 0.1)
+    assert code == 75, stderr
+    found = re.search(rf"^impakt: ended by {number.name} after controller step (\d+) of 600; to continue, give the same command with -restart c.h5$", stderr, re.MULTILINE)
+    assert found
+    with h5py.File(other / "h.h5") as history:
+        assert len(history["time"]) == int(found[1]) + 1
+    assert (other / "s.json").exists()
+    run_in(CASE, other, 1, "-restart", "c.h5", "-checkpoint", "c.h5")
+    same_runs(whole, other)
+
+
+@pytest.mark.long
+def test_checkpoint_by_signal(run_in, folder, same_runs):
+    whole, other = folder("whole"), folder("asked")
+    run_in(CASE, whole)
+    with cores(1):
+        process = begin(other, 1, "-checkpoint_interval", 100000)
+        await_caught(process)
+        time.sleep(0.1)
+        os.kill(process.pid, signal.SIGUSR1)
+        process.communicate(timeout=60)
+    assert process.returncode == 0
+    same_runs(whole, other)
+    with h5py.File(other / "c.prev.h5") as asked:
+        assert 0 < asked.attrs["step"] < 600
+    run_in(CASE, other, 1, "-restart", "c.prev.h5")
+    same_runs(whole, other)
+
+
+@pytest.mark.long
+def test_second_interrupt(folder):
+    """Ends the run at once, though its step may take long."""
+    other = folder("interrupted")
+    with cores(1):
+        process = begin(other, 1, case="-options_file options/hertz-sphere.opts")
+        for expected in (True, False):  # each signal is sent when the one before has been taken
+            await_caught(process, expected)
+            os.kill(process.pid, signal.SIGINT)
+        process.communicate(timeout=20)
+    assert process.returncode == -signal.SIGINT
+
+
+def test_wall_time(run_in, folder, same_runs):
+    whole, other = folder("whole"), folder("limited")
+    run_in(CASE, whole)
+    options = ("-checkpoint", "c.h5", "-restart", "c.h5", "-max_wall_time", "0:00:00.5")
+    done = run_in(CASE, other, 1, *options, code=75)
+    assert "impakt: ended by -max_wall_time after controller step" in done.stderr
+    run_in(CASE, other, 1, "-restart", "c.h5")
+    same_runs(whole, other)
+
+
+@pytest.mark.long
+def test_without_checkpoint(folder):
+    """The files are whole all the same, and it is said that the run cannot be continued."""
+    where = folder("run")
+    with cores(1):
+        process = subprocess.Popen(command(CASE, 1), cwd=where, env=os.environ | ALONE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        await_caught(process)
+        process.send_signal(signal.SIGTERM)
+        stderr = process.communicate(timeout=30)[1]
+    assert process.returncode == 75
+    assert "without -checkpoint the run cannot be continued" in stderr
+    readable(where)
+    assert (where / "s.json").exists()
+
+
+@pytest.mark.long
+def test_mpiexec(run_in, folder, same_runs):
+    """Open MPI's mpiexec hands the signal on, and ends with a code of its own."""
+    whole, other = folder("whole"), folder("ended")
+    run_in(CASE, whole, 2)
+    code, stderr = end_by(other, signal.SIGTERM, 2.5, ranks=2)
+    assert code != 0 and "impakt: ended by SIGTERM after controller step" in stderr
+    run_in(CASE, other, 2, "-restart", "c.h5")
+    same_runs(whole, other)
