@@ -3,6 +3,7 @@
 #pragma once
 #include <impakt.h>
 #include <petsc/private/petscimpl.h>
+#include <signal.h>
 #include <stdint.h>
 #include <unistd.h>
 
@@ -19,12 +20,14 @@ static inline PetscErrorCode FuzzIgnore(MPI_Comm comm, int line, const char func
 /* Starts Impakt, before libFuzzer installs its signal handlers, and without the words of its command line */
 int LLVMFuzzerInitialize(int *argc, char ***argv)
 {
+  const int   fatal[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL};
   static char name[] = "fuzz", *words[] = {name, NULL};
   int         n   = 1;
   char      **own = words;
 
   (void)argc, (void)argv;
   if (ImpaktInitialize(&n, &own) || PetscPopSignalHandler() || PetscPushErrorHandler(FuzzIgnore, NULL)) abort();
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(fatal); i++) (void)signal(fatal[i], SIG_DFL); /* MPI has handlers too */
   return 0;
 }
 
