@@ -209,6 +209,15 @@ def test_exact_solutions_have_no_drag(impakt):
     assert re.search("-exact.*'left'.*-left_damping_mass", run.stderr)
 
 
+def test_elements_at_massless_nodes(impakt):
+    """They have no dashpots, which the view says; where all are, damping by the stiffness would do nothing, and is refused."""
+    case = "-options_file options/blocks.opts -time_end 1e-5 -left_damping_stiffness 1e-6"
+    left = re.search(r"body left:.*\n +(\d+) cells.*\n(?:.*\n)*? +Rayleigh damping: .* in (\d+) elements", impakt(case).stdout)
+    assert 0 < int(left.group(2)) < int(left.group(1))
+    run = impakt(f"{case} -left_dm_plex_box_faces 1,4", expect_failure=True)
+    assert re.search("-left_damping_stiffness has no effect.*-left_mass_redistribute", run.stderr)
+
+
 @pytest.mark.parametrize("option, words", [("-b_damping_mass -1", "-b_damping_mass.*negative"), ("-b_damping_stiffness -1e-9", "-b_damping_stiffness.*negative"),
                                            ("-b_ts_type static -b_damping_mass 1", "-b_damping_mass")])  # fmt: skip
 def test_bad_input(option, words, impakt):
