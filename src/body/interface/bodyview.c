@@ -67,13 +67,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
       type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscCall(ViewLayer(body, viewer));
-  if (BodyIsDamped(body)) {
-    PetscReal mass, stiffness;
-
-    PetscCall(BodyGetDamping(body, &mass, &stiffness));
-    PetscCall(
-        PetscViewerASCIIPrintf(viewer, "  Rayleigh damping: %g 1/s of the mass, %g s of the stiffness\n", (double)mass, (double)stiffness));
-  }
+  PetscCall(BodyViewDamping(body, viewer));
   if (body->springs.n)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "  floating, held by contact or ties alone: artificial springs of %g N/m on %" PetscInt_FMT

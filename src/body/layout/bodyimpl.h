@@ -253,6 +253,7 @@ PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
 PETSC_INTERN PetscErrorCode BodyDescribeMotions(PetscInt, const PetscReal[], size_t, char[]);
 PETSC_INTERN PetscBool      BodyIsDamped(Body);
+PETSC_INTERN PetscErrorCode BodyViewDamping(Body, PetscViewer);
 PETSC_INTERN PetscErrorCode BodySetUpDamping(Body);
 PETSC_INTERN PetscErrorCode BodySetUpPoints(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyPoints(Body);

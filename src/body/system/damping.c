@@ -14,7 +14,8 @@
 struct _BodyDamping {
   PetscReal mass, stiffness; /* alpha [1/s], beta [s] */
   /* below: with a stiffness part */
-  PetscInt *connectivity; /* of the elements that touch no massless node */
+  PetscInt  counts[2];    /* of all ranks: elements that touch no massless node, and all */
+  PetscInt *connectivity; /* of the former on this rank */
   Element   element;      /* these; linear */
   Material  material;     /* of a nonlinear body: theirs */
   Vec       work;         /* M v, M a */
@@ -101,6 +102,21 @@ PetscBool BodyIsDamped(Body body)
   return (PetscBool)(body->damping && body->integrator->has_inertia && (body->damping->mass > 0 || body->damping->stiffness > 0));
 }
 
+/* For BodyView() */
+PetscErrorCode BodyViewDamping(Body body, PetscViewer viewer)
+{
+  const struct _BodyDamping *damping = body->damping;
+
+  PetscFunctionBegin;
+  if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  Rayleigh damping: %g 1/s of the mass, %g s of the stiffness", (double)damping->mass,
+                                   (double)damping->stiffness));
+  if (damping->counts[0] < damping->counts[1])
+    PetscCall(PetscViewerASCIIPrintf(viewer, " in %" PetscInt_FMT " elements, those at massless nodes left out", damping->counts[0]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Elements none of whose nodes is massless: their number and connectivity */
 static PetscErrorCode SelectElements(Body body, PetscInt *count, PetscInt **connectivity)
 {
@@ -139,6 +155,14 @@ PetscErrorCode BodySetUpDamping(Body body)
              "-%sdamping_stiffness: elements of shape '%s' do not support it with nonlinear materials", ((PetscObject)body)->prefix,
              DMPolytopeTypes[body->mesh.cell_shape]);
   PetscCall(SelectElements(body, &count, &damping->connectivity));
+  damping->counts[0] = count;
+  damping->counts[1] = body->model.element->count;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, damping->counts, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCheck(
+      damping->counts[0], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-%sdamping_stiffness has no effect: all elements of body '%s' are at massless contact nodes, which have no dashpots; refine the "
+      "mesh, or set -%smass_redistribute false, or near",
+      ((PetscObject)body)->prefix, body->hdr.name, ((PetscObject)body)->prefix);
   if (!body->model.linear) PetscCall(MaterialLinearize(body->model.material, &damping->material));
   PetscCall(ElementDuplicate(body->model.element, damping->material, &damping->element));
   PetscCall(ElementSetUp(damping->element, count, damping->connectivity, body->mesh.coordinates));

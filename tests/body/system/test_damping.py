@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from cases import long
 
 # The first mode of a bar of 1 m and 1000 m/s that is held at one end, sin(pi x / 2), is one of its discrete bar too: one oscillator
 LENGTH, ELEMENTS = 1.0, 20
@@ -59,7 +60,7 @@ SOLIDS = {
 
 
 @pytest.mark.parametrize("ranks", [1, 3])
-@pytest.mark.parametrize("integrator", [IMPLICIT, EXPLICIT, f"{EXPLICIT} -b_ts_time_step auto", "-b_ts_time_step 5e-6", f"{EXPLICIT} -b_mass_type averaged"])
+@pytest.mark.parametrize("integrator", [IMPLICIT, EXPLICIT, "-b_ts_time_step 5e-6", *long(f"{EXPLICIT} -b_ts_time_step auto", f"{EXPLICIT} -b_mass_type averaged")])
 @pytest.mark.parametrize("kind", SOLIDS)
 def test_balance_under_loads(kind, integrator, ranks, impakt):
     """What dashpots take is what is missing from energies and work of loads, to round-off, at a support that stands."""
@@ -129,7 +130,7 @@ def test_a_nonlinear_body_spins_freely(integrator, step, impakt):
     assert np.abs(energy(runs[1]) - energy(runs[1])[0]).max() <= max(2 * np.abs(energy(runs[0]) - energy(runs[0])[0]).max(), 1e-5 * total)
 
 
-@pytest.mark.parametrize("alpha, beta", [(0, 0), (0, 2e-5), (3e3, 0), (1e4, 1e-4)])
+@pytest.mark.parametrize("alpha, beta", [(0, 2e-5), (1e4, 1e-4), *(pytest.param(*case, marks=pytest.mark.long) for case in ((0, 0), (3e3, 0)))])
 def test_stable_step(alpha, beta, impakt):
     """The step that is told is the largest for which z^2 - (2 - w^2 dt^2 - 2 c dt) z + 1 - 2 c dt = 0 has no root beyond 1, with 2 c = alpha + beta w^2, of
     a bar with lumped mass whose fastest vibration has w = 2 c / h."""
@@ -153,7 +154,7 @@ SIDES = {"II": "", "EE": "-left_ts_type centraldifference -right_ts_type central
          "substeps": "-right_ts_time_step 5e-7", "EE substeps": "-left_ts_type centraldifference -right_ts_type centraldifference -right_ts_time_step 5e-7"}  # fmt: skip
 
 
-@pytest.mark.parametrize("sides", SIDES)
+@pytest.mark.parametrize("sides", ["II", "EE", *long("IE", "substeps", "EE substeps")])
 def test_contact_of_damped_bodies(sides, impakt):
     """options/blocks.opts with stiffness damping, which keeps momentum: it is kept as without, and so is energy but for what the dashpots take, some percent
     of it. Their massless layers stay massless."""
@@ -170,7 +171,7 @@ def test_contact_of_damped_bodies(sides, impakt):
     assert run.summary["contact"]["impulse"] == pytest.approx(plain.summary["contact"]["impulse"], rel=0.05)
 
 
-@pytest.mark.parametrize("integrator", [IMPLICIT, EXPLICIT])
+@pytest.mark.parametrize("integrator", [IMPLICIT, *long(EXPLICIT)])
 def test_ties_of_damped_bars(integrator, impakt):
     """A bar cut in two and tied moves as the whole one, dashpots and all, as tied nodes keep their mass."""
     common = "-dm_plex_dim 1 -density 1000 -youngs_modulus 1e9 -damping_mass 100 -damping_stiffness 2e-6 -initial_velocity sin(pi*x)"
@@ -207,6 +208,15 @@ def test_a_block_comes_to_rest_on_the_floor(impakt):
 def test_exact_solutions_have_no_drag(impakt):
     run = impakt("-options_file options/impact-high-speed.opts -left_damping_mass 1", expect_failure=True)
     assert re.search("-exact.*'left'.*-left_damping_mass", run.stderr)
+
+
+def test_elements_at_massless_nodes(impakt):
+    """They have no dashpots, which the view says; where all are, damping by the stiffness would do nothing, and is refused."""
+    case = "-options_file options/blocks.opts -time_end 1e-5 -left_damping_stiffness 1e-6"
+    left = re.search(r"body left:.*\n +(\d+) cells.*\n(?:.*\n)*? +Rayleigh damping: .* in (\d+) elements", impakt(case).stdout)
+    assert 0 < int(left.group(2)) < int(left.group(1))
+    run = impakt(f"{case} -left_dm_plex_box_faces 1,4", expect_failure=True)
+    assert re.search("-left_damping_stiffness has no effect.*-left_mass_redistribute", run.stderr)
 
 
 @pytest.mark.parametrize("option, words", [("-b_damping_mass -1", "-b_damping_mass.*negative"), ("-b_damping_stiffness -1e-9", "-b_damping_stiffness.*negative"),
