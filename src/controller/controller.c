@@ -112,6 +112,7 @@ PetscErrorCode ControllerSolve(Controller controller)
   getrusage(RUSAGE_SELF, &cpu[0]);
   PetscCall(ControllerNotify(controller, 0));
   for (PetscInt step = 1; step <= controller->steps; step++) {
+    controller->step = step;
     PetscCall(ControllerMakeStep(controller));
     PetscCall(ControllerNotify(controller, step));
   }

@@ -27,6 +27,7 @@ struct _p_Controller {
   const char    *whole;     /* why steps are not cut, or NULL */
   PetscInt       most_cuts; /* how often a step may be cut in halves */
   ControllerCuts cuts;
+  PetscInt       step;                           /* number of the controller step under way */
   PetscInt       step_cuts, step_sweeps;         /* of the controller step under way; the sweeps with those of steps that failed */
   PetscReal      initial_energy, largest_energy; /* of all bodies, with the work of loads: at the start; so far [J] */
   /* observers */
