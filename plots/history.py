@@ -9,27 +9,11 @@ import sys
 
 import matplotlib
 import numpy as np
-from figures import COLOURS, GREEN, command_line, history_file, scale
+from figures import COLOURS, GREEN, CannotDraw, command_line, scale
+from impakt_results import read
 from matplotlib.figure import Figure
 
 MOST_NAMED = 8  # pairs; more would fill the figure with their names
-
-
-def read(path):
-    """Time, and of each pair and each body what is drawn."""
-    with history_file(path) as file:
-        pairs = {name: {key: pair[key][()] for key in ("force_vector", "gap", "active")} for name, pair in file["contact"].items()}
-        energies = {name: {key: body[key][()] for key in ("kinetic", "potential", "external_work")} for name, body in file["body"].items()}
-        return {"time": file["time"][()], "pairs": pairs, "bodies": energies}
-
-
-def energy_error(bodies):
-    """Kinetic and potential energy less the work of loads, relative to its start, or to the largest energy of what starts at rest."""
-    kinetic, potential, work = (sum(body[key] for body in bodies.values()) for key in ("kinetic", "potential", "external_work"))
-    total = kinetic + potential - work
-    largest = (kinetic + potential + np.abs(work)).max()
-    start = abs(total[0]) if abs(total[0]) > 1e-9 * largest else largest
-    return (total - total[0]) / (start or 1.0)
 
 
 def draw_pairs(axes, time, series, title, quantity, unit):
@@ -43,18 +27,20 @@ def draw_pairs(axes, time, series, title, quantity, unit):
 
 
 def draw(file, path):
-    history = read(file)
+    run = read(file)
+    if not run.pairs:
+        raise CannotDraw(f"{file} is not the history of an Impakt run with contact")
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.2, "axes.axisbelow": True})
-    span = np.ptp(history["time"])
+    span = np.ptp(run.time)
     factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
-    time, pairs = factor * history["time"], history["pairs"]
+    time, pairs = factor * run.time, run.pairs
 
     figure = Figure(figsize=(10, 7), layout="constrained")
     (force, error), (active, gap) = figure.subplots(2, 2, sharex=True)
     draw_pairs(force, time, {name: np.linalg.norm(pair["force_vector"], axis=1) for name, pair in pairs.items()}, "contact force", "force", "N")
     draw_pairs(active, time, {name: pair["active"] for name, pair in pairs.items()}, "nodes in contact", "nodes", "1")
-    draw_pairs(gap, time, {name: np.where(np.abs(pair["gap"]) < 1e20, pair["gap"], np.nan) for name, pair in pairs.items()}, "smallest gap", "gap", "m")
-    error.plot(time, energy_error(history["bodies"]), color=GREEN)
+    draw_pairs(gap, time, {name: run.gap(name) for name in pairs}, "smallest gap", "gap", "m")
+    error.plot(time, run.energy_error, color=GREEN)
     error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
     error.set_title("error of the energy of all bodies")
     error.set_ylabel("rel. error [1]")
