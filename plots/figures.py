@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
+from impakt_results import CannotRead
 
 # Okabe and Ito's colours, told apart with any colour vision
 BLUE, ORANGE, GREEN, PURPLE, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"
@@ -13,8 +14,8 @@ DASHED = {"color": BLACK, "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
-class CannotDraw(Exception):
-    """The file is not what it should be; the message says why."""
+class CannotDraw(CannotRead):
+    """What is in the file cannot be drawn; the message says why."""
 
 
 def scale(largest, unit):
@@ -49,7 +50,7 @@ def command_line(usage, draw):
     try:
         Path(figure).parent.mkdir(parents=True, exist_ok=True)
         draw(*files, path=figure)
-    except (CannotDraw, OSError, ValueError) as error:
+    except (CannotRead, OSError, ValueError) as error:
         print(f"plots/{program}: {error}", file=sys.stderr)
         return 1
     print(figure)

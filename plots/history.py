@@ -9,30 +9,11 @@ import sys
 
 import matplotlib
 import numpy as np
-from figures import COLOURS, GREEN, command_line, history_file, scale
+from figures import COLOURS, GREEN, CannotDraw, command_line, scale
+from impakt_results import read
 from matplotlib.figure import Figure
 
 MOST_NAMED = 8  # pairs; more would fill the figure with their names
-
-
-def read(path):
-    """Time, and of each pair and each body what is drawn."""
-    with history_file(path) as file:
-        keys = ("kinetic", "potential", "external_work", "damping_work")
-        energies = {name: {key: body[key][()] for key in keys if key in body} for name, body in file["body"].items()}
-        held = {f"{name}.{surface}": group["force"][()] for name, body in file["body"].items() for surface, group in body.get("reaction", {}).items()}
-        contact = file.get("contact", {}) if held else file["contact"]  # without either there is nothing to draw
-        pairs = {name: {key: pair[key][()] for key in ("force_vector", "gap", "active")} for name, pair in contact.items()}
-        return {"time": file["time"][()], "pairs": pairs, "bodies": energies, "held": held}
-
-
-def energy_error(bodies):
-    """Kinetic and potential energy less the work of loads, with what damping has taken, relative to its start, or to the largest energy of what starts at rest."""
-    kinetic, potential, work = (sum(body[key] for body in bodies.values()) for key in ("kinetic", "potential", "external_work"))
-    total = kinetic + potential - work + sum(body.get("damping_work", 0) for body in bodies.values())
-    largest = (kinetic + potential + np.abs(work)).max()
-    start = abs(total[0]) if abs(total[0]) > 1e-9 * largest else largest
-    return (total - total[0]) / (start or 1.0)
 
 
 def draw_pairs(axes, time, series, title, quantity, unit):
@@ -46,20 +27,23 @@ def draw_pairs(axes, time, series, title, quantity, unit):
 
 
 def draw(file, path):
-    history = read(file)
+    run = read(file)
+    held = {name: reaction["force"] for name, reaction in run.reactions.items() if name.partition(".")[0] in run.bodies}  # an obstacle's is that of its pairs
+    if not run.pairs and not held:
+        raise CannotDraw(f"{file} is not the history of an Impakt run with contact, or with held surfaces")
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.2, "axes.axisbelow": True})
-    span = np.ptp(history["time"])
+    span = np.ptp(run.time)
     factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
-    time, pairs = factor * history["time"], history["pairs"]
+    time, pairs = factor * run.time, run.pairs
 
     figure = Figure(figsize=(10, 7), layout="constrained")
     (force, error), (active, gap) = figure.subplots(2, 2, sharex=True)
-    forces = {name: pair["force_vector"] for name, pair in pairs.items()} | history["held"]  # an obstacle's is that of its pairs
-    title = " and ".join(["contact force"] * bool(pairs) + ["reaction"] * bool(history["held"]))
+    forces = {name: pair["force_vector"] for name, pair in pairs.items()} | held
+    title = " and ".join(["contact force"] * bool(pairs) + ["reaction"] * bool(held))
     draw_pairs(force, time, {name: np.linalg.norm(vector, axis=1) for name, vector in forces.items()}, title, "force", "N")
     draw_pairs(active, time, {name: pair["active"] for name, pair in pairs.items()}, "nodes in contact", "nodes", "1")
-    draw_pairs(gap, time, {name: np.where(np.abs(pair["gap"]) < 1e20, pair["gap"], np.nan) for name, pair in pairs.items()}, "smallest gap", "gap", "m")
-    error.plot(time, energy_error(history["bodies"]), color=GREEN)
+    draw_pairs(gap, time, {name: run.gap(name) for name in pairs}, "smallest gap", "gap", "m")
+    error.plot(time, run.energy_error, color=GREEN)
     error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
     error.set_title("error of the energy of all bodies")
     error.set_ylabel("rel. error [1]")

@@ -17,29 +17,29 @@ from figures import (
     DASHED,
     GREEN,
     ORANGE,
+    CannotDraw,
     command_line,
-    history_file,
     scale,
 )
+from impakt_results import read as read_results
 from matplotlib.figure import Figure
 
 
 def read(path):
     """All that is drawn, from the history file."""
-    with history_file(path) as file:
-        pairs = list(file["contact"])
-        options = {name: str(value) for name, value in file.attrs.items()}
-        first = options.get("-contact_pairs", "").split(",")[0]
-        pairs.sort(key=lambda name: name != first)
-        names = bodies_of(pairs[0], list(file["body"]))
-        return {
-            "options": options,
-            "time": file["time"][()],
-            "sweeps": file["schwarz/iterations"][()],
-            "forces": {name: file[f"contact/{name}/force"][()] for name in pairs},
-            "pair": names,
-            "bodies": {name: {key: data[()] for key, data in body.items()} for name, body in file["body"].items()},
-        }
+    run = read_results(path)
+    if not run.pairs:
+        raise CannotDraw(f"{path} is not the history of an Impakt run with contact")
+    first = run.options.get("-contact_pairs", "").split(",")[0]
+    pairs = sorted(run.pairs, key=lambda name: name != first)
+    return {
+        "options": run.options,
+        "time": run.time,
+        "sweeps": run.sweeps,
+        "forces": {name: run.pairs[name]["force"] for name in pairs},
+        "pair": bodies_of(pairs[0], list(run.bodies)),
+        "bodies": run.bodies,
+    }
 
 
 def bodies_of(pair, names):

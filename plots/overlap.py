@@ -13,10 +13,10 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
-import h5py
 import matplotlib
 import numpy as np
 from figures import COLOURS, CannotDraw, command_line
+from impakt_results import Fields
 from matplotlib.figure import Figure
 
 FLOOR = 1e-9  # of an element: what is drawn of frames without overlap
@@ -40,17 +40,11 @@ class Bodies:
     """Positions of all nodes in each frame, and the outline of each body."""
 
     def __init__(self, path):
-        if not Path(path).is_file():
-            raise CannotDraw(f"there is no file {path}")
-        try:
-            with h5py.File(path, "r") as file:
-                body, cells = file["mesh/body"][()], file["mesh/cells"][()]
-                flat = np.ptp(file["mesh/positions"][:, 2]) == 0
-                self.reference = file["mesh/positions"][:, :2]
-                self.times = file["time"][()]
-                self.frames = [self.reference + file["displacement"][frame][:, :2] for frame in sorted(file["displacement"])]
-        except (KeyError, OSError) as error:
-            raise CannotDraw(f"{path} has no fields of an Impakt run: {error}") from error
+        fields = Fields(path)
+        body, cells, self.times = fields.body, fields.cells, fields.times
+        flat = np.ptp(fields.nodes[:, 2]) == 0
+        self.reference = fields.nodes[:, :2]
+        self.frames = [fields.positions(frame)[:, :2] for frame in range(len(fields))]
         if not flat or cells.ndim != 2 or cells.shape[1] < 3:
             raise CannotDraw(f"{path}: overlaps are measured in two dimensions, and between bodies of one kind of element")
         self.outlines = [outline(cells[body == b], self.reference) for b in range(body.max() + 1)]

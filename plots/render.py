@@ -4,7 +4,8 @@
     python plots/render.py fields.xdmf film.gif --field velocity --fps 15
     python plots/render.py fields.xdmf --field contact_pressure --step 40 --cut y --output picture.png
 
-Colours mean the same in all frames; grey is where there are no numbers. No display is needed.
+Colours mean the same in all frames; grey is where there are no numbers. They end at the 99th percentile of the frame with the largest numbers, so
+that the peak of one element does not leave a whole body dark; the scale says where there is more. No display is needed.
 """
 
 import argparse
@@ -30,6 +31,8 @@ import pyvista
 NAMES = {"von_mises": "von Mises stress", "contact_force": "contact force", "contact_pressure": "contact pressure", "contact_gap": "gap", "contact_active": "in contact", "rank": "rank", "body": "body"}
 AXES = "xyz"
 VIEWS = {"iso": ((-1, -1.5, 1), (0, 0, 1)), "xy": ((0, 0, 1), (0, 1, 0)), "xz": ((0, -1, 0), (0, 0, 1)), "yz": ((1, 0, 0), (0, 0, 1))}
+PART = ((0.02, 0.82), (0.02, 0.91))  # of the picture, from left to right and from below, that the bodies fill; the rest is for scale and title
+MOST_NAMES = 8  # of bodies, beside the scale
 MOST_EDGES = 20_000  # cells with their edges drawn; in finer meshes there would be nothing but edges
 
 
@@ -86,14 +89,30 @@ class Fields:
         units = self.data(field[0], 0).attrs.get("units", "1")
         return units.decode() if isinstance(units, bytes) else units
 
-    def limits(self, field):
-        """Smallest and largest number in all frames, but for not-a-numbers: the gap of nodes that are on no contact surface."""
-        found = [self.colours(field, frame) for frame in (range(len(self)) if field[0] not in ("rank", "body") else [0])]
+    def limits(self, field, percentile):
+        """Between which numbers of all frames colours change, but for not-a-numbers: the gap of nodes that are on no contact surface. So many percent
+        of the numbers, by size, are within, in that frame which needs the widest colours; beyond are the peaks of a few elements."""
+        whole = field[0] in ("rank", "body")
+        found = [self.colours(field, frame) for frame in ([0] if whole else range(len(self)))]
         found = [values[~np.isnan(values)] for values in found]
-        low, high = (float(choose([choose(values) for values in found if values.size], default=np.nan)) for choose in (min, max))
-        if not np.isfinite([low, high]).all():
+        ends = [(values.min(), values.max()) for values in found if values.size]
+        if not ends or not np.isfinite(ends).all():
             raise CannotDraw(f"{field[0]} has numbers that are not finite")
-        return low, high
+        low, high = float(min(low for low, _ in ends)), float(max(high for _, high in ends))
+        if whole or percentile >= 100:
+            return low, high
+        sizes = [np.abs(values[values != 0]) for values in found]  # zeros are where nothing touches, and where no wave has come yet
+        size = max((np.percentile(values, percentile) for values in sizes if values.size), default=0)
+        return (max(low, -size), min(high, size)) if size > 0 else (low, high)
+
+    def corners(self, factor, frames, axes):
+        """Nodes that are outermost in some frame, along three axes and between any two of them."""
+        ways = [a * first + b * other for i, first in enumerate(axes) for other in axes[i:] for a in (-1, 1) for b in (-1, 1)]
+        found = []
+        for frame in frames:
+            points = self.points + factor * self.data("displacement", frame)[()]
+            found.append(points[np.unique((points @ np.transpose(ways)).argmax(axis=0))])
+        return np.concatenate(found)
 
     def bounds(self, factor, frames):
         """A box around all frames: xmin, xmax, ymin, ymax, zmin, zmax."""
@@ -154,14 +173,14 @@ def ribbon(line, width):
 
 
 class Camera:
-    """Draws frames, all from the same place."""
+    """Draws frames, all from the same place, from which they fill the picture."""
 
-    def __init__(self, fields, options):
+    def __init__(self, fields, options, frames):
         self.fields, self.factor = fields, options.scale
         self.field = fields.field(options.field)
-        self.frames = range(len(fields))
-        self.bounds = fields.bounds(options.scale, self.frames)
-        low, high = fields.limits(self.field)
+        self.frames = frames
+        self.bounds = fields.bounds(options.scale, range(len(fields)))
+        low, high = fields.limits(self.field, options.percentile)
         self.unit_factor, unit = unit_scale(max(abs(low), abs(high)), fields.units(self.field)) if fields.units(self.field) != "1" else (1, "")
         if abs(low + high) < 1e-3 * (high - low):
             low = -high  # so that 0 is in the middle
@@ -170,27 +189,49 @@ class Camera:
             self.limits = self.limits + np.array((-0.5, 0.5)) * max(1, abs(self.limits[0]))
         name, component = self.field
         self.label = NAMES.get(name, name) if component is None else options.field.replace("_", " ")
-        self.label += f" [{unit}]" if unit else ""
+        self.label = self.label.replace(" ", "\n") + (f"\n[{unit}]" if unit else "")
         if name == "body":
-            self.label += ": " + ", ".join(f"{i} {each}" for i, each in enumerate(fields.data(name, 0).attrs["names"].split(",")))
+            self.label += ":\n" + "\n".join(f"{i} {each}" for i, each in enumerate(fields.data(name, 0).attrs["names"].split(",")[:MOST_NAMES]))
+        peak = max(np.abs(fields.limits(self.field, 100)))
+        if peak > (1 + 1e-9) * max(abs(low), abs(high)):
+            self.label += f"\npeak {peak * self.unit_factor:.3g}"
         self.title, self.size = options.title, options.size
         self.view = options.view or ("iso" if flatness(self.bounds) == 3 else "xy")
         self.cut = cut_plane(options.cut, self.bounds, self.view) if options.cut else None
         self.plotter = pyvista.Plotter(off_screen=True, window_size=options.size)
         self.plotter.set_background("white")
-        self.text = int(max(8, options.size[1] / 45))
+        self.text = int(max(8, min(options.size[1] / 45, options.size[0] / 60)))
+        self.outline = None
 
     def place(self):
-        direction, up = VIEWS[self.view]
-        self.plotter.camera.parallel_projection = self.view != "iso"
-        centre = (self.bounds[::2] + self.bounds[1::2]) / 2
-        self.plotter.camera_position = [tuple(centre + np.array(direction)), tuple(centre), up]
-        self.plotter.reset_camera(bounds=self.bounds)
-        if self.view == "iso":
-            self.plotter.camera.zoom(1.1)
-        else:
-            across, up = (np.ptp(self.bounds[2 * AXES.index(axis) :][:2]) for axis in self.view)
-            self.plotter.camera.parallel_scale = 0.5 * max(up / 0.65, across / 0.9 * self.size[1] / self.size[0])
+        """The bodies of the frames that are drawn fill their part of the picture; the scale is beside them."""
+        toward, up = (np.array(vector) / np.linalg.norm(vector) for vector in VIEWS[self.view])
+        right = np.cross(up, toward) / np.linalg.norm(np.cross(up, toward))
+        up = np.cross(toward, right)
+        camera = self.plotter.camera
+        camera.parallel_projection = self.view != "iso"
+        (left, end), (low, high) = PART
+        reach = np.array((end - left, (high - low) * self.size[1] / self.size[0])) * self.size[0] / self.size[1]  # of a picture of height 1
+        if self.outline is None:
+            self.outline = self.fields.corners(self.factor, self.frames, (right, up, toward))
+        centre, distance = self.outline.mean(axis=0), 10 * np.linalg.norm(np.ptp(self.outline, axis=0))
+        slope = 2 * np.tan(np.radians(camera.view_angle) / 2)  # height of the picture by the distance
+        for _ in range(50 if self.view == "iso" else 1):
+            near = self.outline - centre
+            seen = np.column_stack((near @ right, near @ up))
+            if self.view == "iso":
+                seen /= (distance - near @ toward)[:, None] * slope
+            ends = np.array((seen.min(axis=0), seen.max(axis=0)))
+            fill = (np.ptp(ends, axis=0) / reach).max()
+            shift = ends.mean(axis=0) * (distance * slope if self.view == "iso" else 1)
+            centre = centre + shift[0] * right + shift[1] * up
+            distance *= fill if self.view == "iso" else 1
+            distance = max(distance, 1.05 * ((self.outline - centre) @ toward).max())
+        camera.position, camera.focal_point, camera.up = tuple(centre + distance * toward), tuple(centre), tuple(up)
+        if self.view != "iso":
+            camera.parallel_scale = fill / 2
+        camera.SetWindowCenter(1 - left - end, 1 - low - high)
+        self.plotter.renderer.ResetCameraClippingRange()
 
     def shoot(self, frame):
         """A picture of a frame: height, width, red-green-blue."""
@@ -221,20 +262,21 @@ class Camera:
             lighting=not flat,
             scalar_bar_args={
                 "title": self.label + "\n",  # the empty line keeps it off the numbers
+                "vertical": True,
                 "color": "black",
                 "title_font_size": self.text + 2,
                 "label_font_size": self.text,
                 "fmt": "%.0f" if whole else "%.3g",
                 "n_labels": min(5, int(self.limits[1] - self.limits[0]) + 1) if whole else 5,
-                "position_x": 0.2,
-                "position_y": 0.03,
-                "width": 0.6,
-                "height": 0.12,
+                "position_x": PART[0][1] + 0.03,
+                "position_y": 0.25,
+                "width": 0.07,
+                "height": 0.6,
             },
         )
         plotter.add_text(heading(self.title, fields.times[frame], fields.times[-1] - fields.times[0]), position="upper_left", font_size=self.text * 0.75, color="black")
         if not flat:
-            plotter.add_axes(color="black")
+            plotter.add_axes(color="black", viewport=(PART[0][1] + 0.02, 0, 1, 0.22))
         self.place()
         return plotter.screenshot(return_img=True)
 
@@ -282,10 +324,11 @@ def write(path, fields, options):
     if kind not in (".png", ".gif", ".mp4"):
         raise CannotDraw(f"{path}: give the name of a .png, .gif or .mp4")
     ffmpeg = find_ffmpeg() if kind == ".mp4" else None
-    camera = Camera(fields, options)
+    frames = [chosen(options.frame, len(fields))] if kind == ".png" else range(len(fields))
+    camera = Camera(fields, options, frames)
     path.parent.mkdir(parents=True, exist_ok=True)
     if kind == ".png":
-        Image.fromarray(camera.shoot(chosen(options.frame, len(fields)))).save(path)
+        Image.fromarray(camera.shoot(frames[0])).save(path)
         return
     pictures = (camera.shoot(frame) for frame in camera.frames)
     if kind == ".gif":
@@ -301,6 +344,12 @@ def size(text):
     return width, height
 
 
+def percent(text):
+    if not 0 < float(text) <= 100:
+        raise ValueError
+    return float(text)
+
+
 def rate(text):
     if not 0 < float(text) <= 100:
         raise ValueError
@@ -314,6 +363,7 @@ def parse(arguments):
     parser.add_argument("--output", type=Path, metavar="OUT", help="the same, by name")
     parser.add_argument("--frame", "--step", default="last", help="of a .png: a number from 0, the initial state, or last (default)")
     parser.add_argument("--field", default="von_mises", help="von_mises (default), displacement, velocity, displacement_x, stress_xx, ..., contact_pressure, contact_gap, body, rank")
+    parser.add_argument("--percentile", type=percent, default=99, metavar="P", help="colours up to the P-th percentile of the sizes of the numbers, default 99; 100: to the largest")
     parser.add_argument("--scale", type=float, default=1, help="factor for displacements, default 1")
     parser.add_argument("--view", choices=list(VIEWS), help="default iso, xy for bodies in one or two dimensions")
     parser.add_argument("--cut", metavar="AXIS[=X]", help="cut away what is before the plane x, y or z = X [m], default through the middle; solids only")

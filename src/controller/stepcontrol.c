@@ -204,7 +204,7 @@ static PetscErrorCode TryStep(Controller controller, PetscInt level, PetscBool *
   PetscCall(ContactTryStep(controller->contact, may_cut, most, &reason));
   PetscCall(ContactGetCounts(controller->contact, &counts));
   controller->step_sweeps += counts.sweeps;
-  if (reason < 0 && !may_cut) PetscCall(ContactRaiseFailure(controller->contact, level));
+  if (reason < 0 && !may_cut) PetscCall(ContactRaiseFailure(controller->contact, controller->step + 1, level));
   if (reason >= 0 && controller->most_cuts) PetscCall(ContactGetEnergyLoss(controller->contact, &loss));
   changes = (PetscBool)(PetscAbsReal(loss) > most);
   if (changes && !may_cut) controller->cuts.lossy_steps++;

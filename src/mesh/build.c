@@ -64,6 +64,7 @@ PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *
   PetscFunctionBegin;
   PetscCall(MeshOnFirstRank(comm, SelectCells, file, where));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank && file->path) PetscCall(MeshFileDoubt(file, where));
   sizes[0] = file->dim;
   sizes[1] = file->corners;
   PetscCallMPI(MPI_Bcast(sizes, 2, MPIU_INT, 0, comm));

@@ -291,9 +291,9 @@ def test_png(pictured, launch, tmp_path):
         assert picture.size == ((400, 300) if name == "fields" else (1000, 700))
         assert picture.getpixel((picture.width - 1, picture.height // 2))[:3] == (BACKGROUND,) * 3
         shares[name] = coloured(picture)
-    # the colour bar alone, 600 by 30 or so of 1000 by 700 pixels, is 0.026; seen: 0.046, and 0.078 for the least of the others
-    assert shares["bars"] > 0.035
-    assert min(shares["solids"], shares["fields"], shares["moved"]) > 0.06
+    # the colour bar alone, 26 by 315 or so of 1000 by 700 pixels, is 0.012; seen: 0.038, and 0.143 for the least of the others
+    assert shares["bars"] > 0.03
+    assert min(shares["solids"], shares["fields"], shares["moved"]) > 0.12
 
 
 @pytest.mark.long

@@ -363,6 +363,9 @@ static inline PetscBool ContactFailed(Contact contact)
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
+PETSC_INTERN PetscErrorCode ContactRefuseInside(Contact, const ContactPair *, PetscReal);
+PETSC_INTERN PetscErrorCode ContactRefuseTurned(Contact, const ContactPair *);
+PETSC_INTERN PetscErrorCode ContactWarnOfObstacles(Contact);
 PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);

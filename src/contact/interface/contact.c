@@ -275,7 +275,7 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  energy limited: contact may gain %g of it in all%s%s\n", (double)contact->energy.excess,
                                      contact->energy.not_always ? "; not in every step, since " : "",
                                      contact->energy.not_always ? contact->energy.not_always : ""));
-  PetscTryTypeMethod(contact, view, viewer);
+  if (contact->rows.n_all) PetscTryTypeMethod(contact, view, viewer); /* without rows the method has not been set up */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

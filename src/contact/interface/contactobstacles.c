@@ -135,3 +135,67 @@ PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *
   while (*i >= 0 && contact->obstacles[*i] != contact->pairs[pair].obstacle) (*i)--;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* What may be wrong where a body is on the wrong side of an obstacle */
+static PetscErrorCode AdviseObstacle(const ContactPair *pair, size_t size, char advice[])
+{
+  const char  *name;
+  ObstacleType type;
+
+  PetscFunctionBegin;
+  PetscCall(ObstacleGetName(pair->obstacle, &name));
+  PetscCall(ObstacleGetType(pair->obstacle, &type));
+  if (type == OBSTACLE_PLANE)
+    PetscCall(PetscSNPrintf(advice, size, "-%s_normal may point the wrong way (it points from what is solid to where bodies are)", name));
+  else PetscCall(PetscSNPrintf(advice, size, "what is solid is the inside, so that a body cannot be in '%s'", name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The error of a body that is inside an obstacle at the start */
+PetscErrorCode ContactRefuseInside(Contact contact, const ContactPair *pair, PetscReal depth)
+{
+  char advice[512];
+
+  PetscFunctionBegin;
+  PetscCall(AdviseObstacle(pair, sizeof(advice), advice));
+  SETERRQ(
+      PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-contact_pairs %s: the body is %g m inside the obstacle at the start; move one of them, or look whether it is on the wrong side: "
+      "%s",
+      pair->name, (double)depth, advice);
+}
+
+/* The error of a surface that looks away from the obstacle it is to touch */
+PetscErrorCode ContactRefuseTurned(Contact contact, const ContactPair *pair)
+{
+  char advice[512];
+
+  PetscFunctionBegin;
+  PetscCall(AdviseObstacle(pair, sizeof(advice), advice));
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "-contact_pairs %s: no face of the body's surface faces the obstacle; %s", pair->name, advice);
+}
+
+/* Warns of obstacles that no body can touch */
+PetscErrorCode ContactWarnOfObstacles(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt o = 0; o < contact->n_obstacles; o++) {
+    PetscInt    pairs = 0;
+    int         rows  = 0;
+    const char *name;
+
+    for (PetscInt p = 0; p < contact->n_pairs; p++) {
+      if (contact->pairs[p].obstacle != contact->obstacles[o]) continue;
+      pairs++;
+      rows |= contact->pairs[p].end > contact->pairs[p].begin;
+    }
+    PetscCall(ContactOr(contact, &rows));
+    if (rows) continue;
+    PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+    PetscCall(PetscFPrintf(
+        PetscObjectComm((PetscObject)contact), stderr, "impakt: warning: no body can touch the obstacle '%s': %s\n", name,
+        pairs ? "no face of any body faces it; is it, or its normal, where it should be?" : "it is in no pair of -contact_pairs"));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -97,6 +97,7 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   PetscCall(ContactFindDimension(contact));
   StatusLineTell("contact surfaces");
   PetscCall(ContactSetUpRows(contact));
+  PetscCall(ContactWarnOfObstacles(contact));
   contact->surfaces_known = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,8 +182,7 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
     ContactPairState   state;
 
     PetscCall(ContactGetPairState(contact, p, &state));
-    PetscCheck(!pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_pairs %s: the body is %g m inside the obstacle at the start; move one of them", pair->name, (double)-state.gap);
+    if (pair->obstacle && state.gap < -contact->options.tolerance) PetscCall(ContactRefuseInside(contact, pair, -state.gap));
     PetscCheck(pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,

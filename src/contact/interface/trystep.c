@@ -1,6 +1,8 @@
 /* Controller steps that may fail, and be made again in halves. */
 #include <impakt/private/contactimpl.h>
 
+enum { MOST_PAIRS = 3 }; /* that a message names */
+
 /*@
   ContactTryStep - as `ContactStep()`, for those who can make a step that fails again in halves
 
@@ -36,6 +38,29 @@ PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The pairs that were in contact when the step failed, three of them at most, as text; of bodies that failed by themselves nothing, since
+   the message names them */
+static PetscErrorCode NamePairs(Contact contact, size_t size, char text[])
+{
+  const StepConvergedReason reason = contact->attempt.failure.reason;
+  PetscInt                  n      = 0;
+  size_t                    used   = 0;
+
+  PetscFunctionBegin;
+  if (reason != STEP_DIVERGED_OUTER && reason != STEP_DIVERGED_ACTIVE_SET) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    int touches = contact->n_pairs == 1;
+
+    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) touches |= contact->end.active[i];
+    PetscCall(ContactOr(contact, &touches));
+    if (!touches || n++ >= MOST_PAIRS) continue;
+    PetscCall(PetscSNPrintf(text + used, size - used, "%s%s", n == 1 ? ", in contact: " : ", ", contact->pairs[p].name));
+    PetscCall(PetscStrlen(text, &used));
+  }
+  if (n > MOST_PAIRS) PetscCall(PetscSNPrintf(text + used, size - used, " and %" PetscInt_FMT " more", n - MOST_PAIRS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactRaiseFailure - ends with an error that says why the last step has failed
 
@@ -43,22 +68,30 @@ PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most
 
   Input Parameters:
 + contact - the `Contact`, after `ContactTryStep()`
-- cuts    - how often the step had been cut in halves, for the message
+. step    - number of the controller step, for the message
+- cuts    - how often it had been cut in halves, for the message
 
   Level: developer
 
 .seealso: `Contact`, `ContactTryStep()`
 @*/
-PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt cuts)
+PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt step, PetscInt cuts)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  MPI_Comm comm       = PetscObjectComm((PetscObject)contact);
+  char     pairs[512] = "", halves[128] = "";
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  if (!cuts) PetscCall(StepFailureRaise(comm, &contact->attempt.failure));
-  PetscCheck(contact->attempt.failure.reason >= 0, comm, contact->attempt.failure.code,
-             "%s [after the controller step had been cut in halves %" PetscInt_FMT " time%s, to %g s: -controller_step_cuts]",
-             contact->attempt.failure.message, cuts, cuts == 1 ? "" : "s", (double)contact->step);
+  PetscValidLogicalCollectiveInt(contact, step, 2);
+  PetscValidLogicalCollectiveInt(contact, cuts, 3);
+  if (contact->attempt.failure.reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NamePairs(contact, sizeof(pairs), pairs));
+  if (cuts)
+    PetscCall(PetscSNPrintf(halves, sizeof(halves),
+                            ", which had been cut in halves %" PetscInt_FMT " time%s, to %g s: -controller_step_cuts", cuts,
+                            cuts == 1 ? "" : "s", (double)contact->step));
+  SETERRQ(comm, contact->attempt.failure.code, "%s [in controller step %" PetscInt_FMT "%s%s]", contact->attempt.failure.message, step,
+          pairs, halves);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

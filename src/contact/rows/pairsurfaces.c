@@ -124,6 +124,7 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
     PetscCall(ContactOr(contact, &any[side]));
     PetscCall(SurfaceDestroy(&surfaces[side]));
   }
+  if (pair->obstacle && !any[0]) PetscCall(ContactRefuseTurned(contact, pair));
   PetscCheck(any[0] && any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
   PetscFunctionReturn(PETSC_SUCCESS);

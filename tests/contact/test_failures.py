@@ -1,0 +1,30 @@
+"""Steps that do not converge: the message names the controller step, its time, and the pair or body."""
+
+import pytest
+from conftest import ROOT
+from messages import check_message
+
+BLOCKS = f"-options_file {ROOT}/options/blocks.opts"
+NEVER = {
+    "schwarz": ("-schwarz_snes_max_it 1 -schwarz_snes_type nrichardson -schwarz_snes_atol 1e-20 -schwarz_snes_rtol 1e-20", "left:right"),
+    "penalty": ("-contact_type penalty -penalty_snes_max_it 1 -penalty_snes_rtol 1e-20", "left:right"),
+    "lagrange": ("-contact_type lagrange -lagrange_snes_max_it 1 -lagrange_snes_atol 1e-30", "left:right"),
+    "augmented": ("-contact_type augmented_lagrangian -contact_augmentation_max_it 1", "left:right"),
+    "newton": ("-left_material_type neo_hookean -left_snes_max_it 1 -left_snes_rtol 1e-14 -left_snes_atol 1e-30 -left_snes_stol 0", "'left'"),
+}
+
+
+@pytest.mark.parametrize("cuts", [0, 2])
+@pytest.mark.parametrize("method", NEVER)
+def test_step_time_and_pair(method, cuts, impakt):
+    options, who = NEVER[method]
+    run = impakt(f"{BLOCKS} {options} -controller_step_cuts {cuts}", expect_failure=True)
+    assert run.returncode > 0
+    check_message(run, ["in controller step ", " time ", who, *(["cut in halves 2 times"] if cuts else [])])
+
+
+def test_pairs_in_contact_of_many(impakt):
+    """A row of balls: only those that touch are named."""
+    run = impakt(f"-options_file {ROOT}/options/cradle-3.opts -schwarz_snes_type nrichardson -schwarz_snes_max_it 1 -schwarz_snes_atol 1e-25 -schwarz_snes_rtol 1e-25", expect_failure=True)
+    assert run.returncode > 0
+    check_message(run, ["in controller step ", "in contact: "])

@@ -1,0 +1,151 @@
+"""plots/impakt_results.py reads runs; plots/compare.py and plots/convergence.py draw several of them."""
+
+import math
+import os
+import re
+import sys
+
+import h5py
+import impakt_results
+import numpy as np
+import pytest
+from cases import DEFAULTS
+from conftest import ROOT
+
+ENVIRONMENT = {**os.environ, "MPLBACKEND": "Agg"}
+COMPARE = [sys.executable, ROOT / "plots/compare.py"]
+CONVERGENCE = [sys.executable, ROOT / "plots/convergence.py"]
+PNG = b"\x89PNG\r\n\x1a\n"
+SPRING = "-bodies b -b_dm_plex_dim 1 -b_dm_plex_box_faces 1 -b_density 1 -b_youngs_modulus 1 -b_initial_displacement 0.01*(x-0.5) -b_mass_type consistent -time_end 1"
+
+
+def files(run):
+    return run.folder / "history.h5", run.folder / "summary.json"
+
+
+@pytest.fixture
+def bars(shared_run):
+    run = shared_run(DEFAULTS)
+    return impakt_results.read(*files(run))
+
+
+def test_read(bars):
+    assert list(bars.bodies) == ["left", "right"]
+    assert list(bars.pairs) == ["left:right"]
+    assert len(bars.time) == len(bars.pairs["left:right"]["force"]) == len(bars.bodies["left"]["kinetic"])
+    assert bars.number("-time_step") == pytest.approx(np.diff(bars.time).mean())
+    assert bars.units["contact/left:right/force"] == "N"
+    assert bars.units["body/left/kinetic"] == "J"
+    assert bars.series("body/left/kinetic") is bars.bodies["left"]["kinetic"]
+    assert set(bars.names) >= {"body/left/kinetic", "contact/left:right/gap"}
+    assert bars.summary["contact"]["impulse"] == pytest.approx(np.linalg.norm(bars.pairs["left:right"]["impulse"][-1]), rel=1e-9)
+    assert np.abs(bars.energy_error).max() == pytest.approx(max(abs(bars.summary["system"][f"energy_error_{end}"]) for end in ("min", "max")), rel=1e-6, abs=1e-15)
+    assert np.isfinite(bars.gap("left:right")).all()
+
+
+def test_fields(impakt, tmp_path):
+    run = impakt(f"-options_file options/blocks.opts -time_end 1e-5 -output_fields {tmp_path}/f.h5")
+    for read in (impakt_results.read(run.folder / "history.h5"), impakt_results.read(tmp_path / "f.xdmf"), impakt_results.read(tmp_path / "f.h5")):
+        fields = read.fields
+        assert len(fields) == len(fields.times)
+        assert fields.times[-1] == pytest.approx(1e-5)
+        assert fields.names == ["left", "right"]
+        assert fields["velocity", 0].shape == (len(fields.nodes), 3)
+        assert fields["von_mises", -1].shape == (len(fields.cells),)
+        assert (fields.positions(0) == fields.nodes + fields["displacement", 0]).all()
+        assert fields.units("von_mises") == "Pa"
+        with pytest.raises(impakt_results.CannotRead, match=r"no field heat.*von_mises"):
+            fields["heat", 0]
+
+
+def test_what_cannot_be_read(bars, tmp_path):
+    (tmp_path / "text.h5").write_text("not HDF5\n")
+    h5py.File(tmp_path / "empty.h5", "w").close()
+    for path, words in ((tmp_path / "nowhere.h5", "no file"), (tmp_path / "text.h5", "cannot be read as HDF5"), (tmp_path / "empty.h5", "not the history")):
+        with pytest.raises(impakt_results.CannotRead, match=words):
+            impakt_results.read(path)
+    with pytest.raises(impakt_results.CannotRead, match="was not given -nothing"):
+        bars.number("-nothing")
+    with pytest.raises(impakt_results.CannotRead, match="no series body/left/heat"):
+        bars.series("body/left/heat")
+
+
+def test_compare_with_itself(bars, launch, tmp_path):
+    run = launch([*COMPARE, bars.path, bars.path, tmp_path / "new/figure.png"], env=ENVIRONMENT)
+    assert run.returncode == 0, run.stderr
+    assert (tmp_path / "new/figure.png").read_bytes()[:8] == PNG
+    differences = [float(line.split()[-3]) for line in run.stdout.splitlines() if line.startswith(("body/", "contact/", "system/"))]
+    assert len(differences) > 15
+    assert not any(differences)
+    assert "options that differ" not in run.stdout
+
+
+def test_compare(impakt, launch, tmp_path):
+    """A body with half the density has half the kinetic energy and momentum; steps differ, and times are found all the same."""
+    base = "-bodies b -b_dm_plex_dim 1 -b_dm_plex_box_faces 2 -b_youngs_modulus 1 -b_initial_velocity 2 -time_end 1"
+    one = impakt(f"{base} -b_density 1 -time_step 0.1")
+    other = impakt(f"{base} -b_density 0.5 -time_step 0.025")
+    run = launch([*COMPARE, *(each.folder / "history.h5" for each in (one, other))], env=ENVIRONMENT)
+    assert run.returncode == 0, run.stderr
+    rows = {line.split()[0]: line.split()[1:] for line in run.stdout.splitlines() if line.startswith("body/")}
+    assert rows["body/b/kinetic"][:4] == ["J", "2", "1.000e+00", "5.0e-01"]
+    assert rows["body/b/momentum"][-1] == "1.000e+00"
+    assert rows["body/b/momentum"][-3] == "5.0e-01"
+    assert float(rows["body/b/mean_velocity"][-1]) < 1e-12
+    assert "-b_density: 1 | 0.5" in run.stdout
+    assert "-time_step: 0.1 | 0.025" in run.stdout
+
+
+def test_convergence(impakt, launch, tmp_path):
+    """A spring between two masses swings: the trapezoidal rule's error in its displacement falls by 4 where the step is halved."""
+    omega = math.sqrt(12)  # of a bar element of length, stiffness and mass 1 with its consistent mass matrix
+    exact = f"-b_exact_displacement 0.01*(x-0.5)*cos({omega!r}*t)"
+    runs = [impakt(f"{SPRING} {exact} -time_step {step}") for step in (0.1, 0.025, 0.05)]
+    histories = []
+    for i, run in enumerate(runs):
+        history, summary = files(run)
+        histories.append(history.rename(tmp_path / f"{i}.h5"))
+        summary.rename(tmp_path / f"{i}.json")
+    drawn = launch([*CONVERGENCE, *histories, tmp_path / "new/figure.png"], env=ENVIRONMENT)
+    assert drawn.returncode == 0, drawn.stderr
+    assert (tmp_path / "new/figure.png").read_bytes()[:8] == PNG
+    head, row = drawn.stdout.splitlines()[:2]
+    assert head.split() == ["-time_step", "0.025", "0.05", "0.1", "slope"]
+    assert row.startswith("bodies/b/displacement_error")
+    assert float(row.split()[-1]) == pytest.approx(2, abs=0.1)  # terms of fourth order change it by some hundredths
+    other = launch([*CONVERGENCE, *histories, tmp_path / "other.png", "--figure", "bodies/b/potential"], env=ENVIRONMENT)
+    assert other.returncode == 0, other.stderr
+    assert re.search(r"bodies/b/potential +- ", other.stdout)  # the run that others are compared with
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--figure", "contact/heat"], "no contact/heat"),
+        (["--against", "contact_penalty"], "was not given -contact_penalty"),
+        ([], "is the same in all runs"),
+    ],
+)
+def test_convergence_of_what_is_not_there(words, message, bars, launch, tmp_path):
+    (tmp_path / "a.h5").write_bytes(bars.path.read_bytes())
+    (tmp_path / "b.h5").write_bytes(bars.path.read_bytes())
+    with h5py.File(tmp_path / "b.h5", "r+") as file:
+        if "--figure" in words:
+            file.attrs["-time_step"] = "1e-9"
+    for name in "ab":
+        (tmp_path / f"{name}.json").write_text(bars.summary_path.read_text())
+    run = launch([*CONVERGENCE, tmp_path / "a.h5", tmp_path / "b.h5", tmp_path / "figure.png", *words], env=ENVIRONMENT)
+    assert run.returncode == 1
+    assert message in run.stderr
+    assert "Traceback" not in run.stderr
+
+
+@pytest.mark.parametrize("command", [COMPARE, CONVERGENCE], ids=["compare", "convergence"])
+def test_bad_files(command, launch, tmp_path):
+    (tmp_path / "text.h5").write_text("not HDF5\n")
+    for name in ("text.h5", "nowhere.h5"):
+        run = launch([*command, tmp_path / name, tmp_path / name, tmp_path / "figure.png"], env=ENVIRONMENT)
+        assert run.returncode == 1
+        assert name in run.stderr
+        assert "Traceback" not in run.stderr
+    assert launch(command, env=ENVIRONMENT).returncode > 0
