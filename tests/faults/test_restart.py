@@ -16,6 +16,35 @@ SHORT = [
     ("-options_file options/beam-hit.opts -time_step 2e-4 -time_end 4e-3", 2, 0.55),  # steps that are cut in halves
     ("-options_file options/twisting-column.opts -time_end 0.05", 1, 0.55),  # nonlinear, rows that are built again
 ]
+# Two blocks off-centre, with meshes that do not match
+BLOCKS = (
+    "-bodies left,right -left_dm_plex_box_faces 8,8 -left_density 1000 -left_youngs_modulus 1e9 -left_poissons_ratio 0.25 -left_initial_velocity 20,1 "
+    "-right_dm_plex_box_faces 6,6 -right_density 1000 -right_youngs_modulus 1e9 -right_translate 1.005,0.1 -time_step 1e-5 -time_end 1.6e-3 "
+)
+NONLINEAR = BLOCKS + "-left_material_type neo_hookean -right_material_type saint_venant_kirchhoff "
+EXPLICIT = "-left_ts_type centraldifference -left_ts_time_step auto "
+VARIANTS = {
+    "nonlinear": NONLINEAR,
+    "nonlinear, explicit": NONLINEAR + EXPLICIT,
+    "nonlinear, both explicit": NONLINEAR + EXPLICIT + EXPLICIT.replace("left", "right"),
+    "nonlinear, cut steps": NONLINEAR + "-time_step 4e-5",
+    "nonlinear, multipliers": NONLINEAR + "-contact_type lagrange",
+    "nonlinear, balance": NONLINEAR + "-contact_balance true",
+    "penalty": BLOCKS + "-contact_type penalty",
+    "cut steps, penalty": BLOCKS + "-time_step 4e-5 -contact_type penalty",
+    "augmented Lagrangian": BLOCKS + "-contact_type augmented_lagrangian",
+    "bonded": BLOCKS + "-contact_law bonded",
+    "Robin": BLOCKS + "-schwarz_transmission robin",
+    "impedance": BLOCKS + "-schwarz_transmission impedance",
+    "Anderson": BLOCKS + "-schwarz_snes_type anderson",
+    "Aitken": BLOCKS + "-schwarz_snes_type nrichardson -schwarz_relaxation aitken",
+    "conjugate gradients": BLOCKS + "-schwarz_dense_limit 0",
+    "sweeps on bodies": BLOCKS + "-schwarz_condense 0",
+    "gap rate": BLOCKS + "-contact_constraint gap_rate",
+    "mass not diagonal": BLOCKS + "-left_mass_type consistent -right_mass_type averaged",
+    "substeps": BLOCKS + EXPLICIT,
+    "damped": BLOCKS + "-left_ts_alpha_radius 0.8",
+}
 LONG = [
     ("-options_file options/blocks.opts", 2, 0.55),
     ("-options_file options/discs.opts", 1, 0.55),
@@ -58,6 +87,16 @@ def test_bits(run_in, folder, same_runs, case, ranks, part):
 @pytest.mark.parametrize(("case", "ranks", "part"), LONG)
 def test_bits_of_more(run_in, folder, same_runs, case, ranks, part):
     same_runs(*continued(run_in, folder, case, ranks, part))
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[] if name == "nonlinear, explicit" else pytest.mark.long) for name in VARIANTS])
+def test_bits_of_variants(run_in, folder, same_runs, name):
+    """In contact when they are continued."""
+    whole, other = continued(run_in, folder, VARIANTS[name], 1, 0.51)
+    with h5py.File(whole / "h.h5") as history:
+        (pair,) = history["contact"]  # the side that takes displacements is named first
+        assert history[f"contact/{pair}/active"][records(whole) // 2 + 1] > 0
+    same_runs(whole, other)
 
 
 IMPACT = "-options_file options/impact-low-speed.opts"
