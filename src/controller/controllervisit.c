@@ -69,7 +69,7 @@ static PetscErrorCode CheckTimes(Controller controller, Checkpoint checkpoint)
 }
 
 /*
-  ControllerVisit - the state of a simulation after an accepted controller step, to or from a checkpoint
+  ControllerVisit - what all ranks have of the state of a simulation after an accepted controller step, to or from a checkpoint
 
   Collective
 
@@ -94,7 +94,7 @@ PetscErrorCode ControllerVisit(Controller controller, Checkpoint checkpoint)
   PetscCall(CheckpointVisitBools(checkpoint, "from rest", 1, &controller->scale.from_rest));
   PetscCall(CheckpointVisitReals(checkpoint, "guard largest", 1, &controller->guard.largest));
   PetscCall(CheckpointVisitReals(checkpoint, "guard start", controller->n_bodies, controller->guard.start));
-  PetscCall(ContactVisit(controller->contact, checkpoint));
+  PetscCall(ContactVisitShared(controller->contact, checkpoint));
   if (CheckpointLoads(checkpoint)) controller->goes_on = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

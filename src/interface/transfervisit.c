@@ -38,9 +38,6 @@ static PetscErrorCode VisitFollow(Transfer transfer, Checkpoint checkpoint)
   Follow        *follow = &transfer->follow;
 
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitBools(checkpoint, "has_last", 1, &follow->has_last));
-  PetscCall(CheckpointVisitReals(checkpoint, "step", 1, &follow->step));
-  PetscCall(CheckpointVisitReals(checkpoint, "scale", 1, &follow->scale));
   PetscCall(CheckpointVisitReals(checkpoint, "x", 3 * n, follow->x[0]));
   PetscCall(CheckpointVisitReals(checkpoint, "partner_x", 3 * partners, follow->x[1]));
   PetscCall(CheckpointVisitReals(checkpoint, "moved", 3 * n, follow->moved));
@@ -56,18 +53,34 @@ static PetscErrorCode VisitBalance(Transfer transfer, Checkpoint checkpoint)
   Balance       *balance = &transfer->balance;
 
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitReals(checkpoint, "turn", 1, &balance->turn));
-  PetscCall(CheckpointVisitReals(checkpoint, "rate", 1, &balance->rate));
-  PetscCall(CheckpointVisitReals(checkpoint, "gain", 1, &balance->gain));
-  PetscCall(CheckpointVisitInts(checkpoint, "n_active", 1, &balance->n_active));
   PetscCall(CheckpointVisitReals(checkpoint, "uneven", n, balance->uneven));
   PetscCall(CheckpointVisitReals(checkpoint, "present gap", n, balance->gap));
   PetscCall(CheckpointVisitReals(checkpoint, "turned", n, balance->turned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TransferVisitShared - what all ranks have of the state of a transfer, to or from a checkpoint */
+PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
+{
+  Follow  *follow  = &transfer->follow;
+  Balance *balance = &transfer->balance;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitReals(checkpoint, "built_near", 1, &transfer->built_near));
+  PetscCall(CheckpointVisitReals(checkpoint, "smallest_size", 1, &transfer->smallest_size));
+  PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(transfer->counts), &transfer->counts));
+  PetscCall(CheckpointVisitBools(checkpoint, "has_last", 1, &follow->has_last));
+  PetscCall(CheckpointVisitReals(checkpoint, "step", 1, &follow->step));
+  PetscCall(CheckpointVisitReals(checkpoint, "scale", 1, &follow->scale));
+  PetscCall(CheckpointVisitReals(checkpoint, "turn", 1, &balance->turn));
+  PetscCall(CheckpointVisitReals(checkpoint, "rate", 1, &balance->rate));
+  PetscCall(CheckpointVisitReals(checkpoint, "gain", 1, &balance->gain));
+  PetscCall(CheckpointVisitInts(checkpoint, "n_active", 1, &balance->n_active));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
-  TransferVisit - the state of a transfer, to or from a checkpoint
+  TransferVisit - what a rank has of the state of a transfer, to or from a checkpoint
 
   Collective
 
@@ -83,15 +96,12 @@ PetscErrorCode TransferVisit(Transfer transfer, Checkpoint checkpoint)
   PetscCall(CheckpointBegin(checkpoint, "contact surfaces"));
   PetscCall(CheckpointCheckInts(checkpoint, "contact nodes", 2, sizes));
   PetscCall(VisitRows(transfer, checkpoint));
-  PetscCall(CheckpointVisitReals(checkpoint, "built_near", 1, &transfer->built_near));
-  PetscCall(CheckpointVisitReals(checkpoint, "smallest_size", 1, &transfer->smallest_size));
   PetscCall(CheckpointVisitReals(checkpoint, "built_x", 3 * n, transfer->built_x[0]));
   PetscCall(CheckpointVisitReals(checkpoint, "built_slip", 3 * n, transfer->built_slip));
   PetscCall(CheckpointVisitReals(checkpoint, "slip", n, transfer->slip));
   PetscCall(CheckpointVisitBools(checkpoint, "keep", n, transfer->keep));
   PetscCall(CheckpointVisitBools(checkpoint, "followed", n, transfer->followed));
   PetscCall(CheckpointVisitBools(checkpoint, "goes_on", n, transfer->goes_on));
-  PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(transfer->counts), &transfer->counts));
   PetscCall(VisitBalance(transfer, checkpoint));
   if (CheckpointLoads(checkpoint)) transfer->saved.builds = 0; /* what has been put aside is of other rows */
   if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,10 @@
 /* The state of a transfer, for checkpoints. Private to Impakt. */
 #pragma once
 #include <checkpoint/checkpoint.h>
+#include <checkpoint/tables.h>
 #include <impakt/transfer.h>
 
 PETSC_INTERN PetscErrorCode TransferVisit(Transfer, Checkpoint);
+PETSC_INTERN PetscErrorCode TransferVisitShared(Transfer, Checkpoint);
+PETSC_INTERN PetscErrorCode TransferPack(Transfer, const char[], Tables);
+PETSC_INTERN PetscErrorCode TransferUnpack(Transfer, const char[], Tables);

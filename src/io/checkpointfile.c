@@ -238,21 +238,51 @@ static PetscErrorCode Store(hid_t file, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The stream that all ranks have, and the tables, on the first rank */
+static PetscErrorCode WriteShared(hid_t file, const CheckpointContents *contents, const char path[])
+{
+  const void *bytes;
+  size_t      size;
+  hsize_t     length[2];
+  PetscInt    n_tables;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointGetBytes(contents->shared, &size, &bytes));
+  length[0] = size;
+  PetscCall(WriteDataset(file, "shared", H5T_NATIVE_UCHAR, 1, length, bytes, path));
+  TablesGetNumber(contents->tables, &n_tables);
+  for (PetscInt i = 0; i < n_tables; i++) {
+    const char      *name;
+    const PetscReal *values;
+    PetscInt         n, width;
+    char             place[32];
+    hid_t            dataset;
+
+    PetscCall(TablesGetTable(contents->tables, i, &name, &n, &width, &values));
+    length[0] = (hsize_t)n;
+    length[1] = (hsize_t)width;
+    PetscCall(PetscSNPrintf(place, sizeof(place), "tables/%" PetscInt_FMT, i));
+    PetscCall(WriteDataset(file, place, H5T_NATIVE_DOUBLE, 2, length, values, path));
+    dataset = H5Dopen2(file, place, H5P_DEFAULT);
+    PetscCall(HDF5Check(dataset, "open a table", path));
+    PetscCall(HDF5WriteText(dataset, "name", name, path));
+    PetscCall(HDF5Check(H5Dclose(dataset), "write a table", path));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   CheckpointFileWrite - writes a checkpoint, and keeps the one before
 
   Collective
 
   Input Parameters:
-+ comm       - communicator
-. path       - where
-. info       - what it says of its run
-. checkpoint - the streams of all ranks
-. n          - number of bodies
-- bodies     - the bodies
++ comm     - communicator
+. path     - where
+. info     - what it says of its run
+- contents - what it has in it
 */
-PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const CheckpointInfo *info, Checkpoint checkpoint, PetscInt n,
-                                   const Body bodies[])
+PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const CheckpointInfo *info, const CheckpointContents *contents)
 {
   PetscErrorCode error = PETSC_SUCCESS;
   PetscMPIInt    rank, code;
@@ -261,8 +291,9 @@ PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const Check
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (!rank) PetscCall(CreateInMemory(path, info, &file));
-  PetscCall(WriteStreams(comm, file, checkpoint, path));
-  PetscCall(WriteBodies(file, n, bodies, path));
+  if (!rank) PetscCall(WriteShared(file, contents, path));
+  PetscCall(WriteStreams(comm, file, contents->state, path));
+  PetscCall(WriteBodies(file, contents->n_bodies, contents->bodies, path));
   if (!rank) {
     error = Store(file, path);
     H5Fclose(file);

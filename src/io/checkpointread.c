@@ -187,14 +187,12 @@ PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFi
 }
 
 /* A dataset of bytes, on the first rank */
-static PetscErrorCode ReadStream(const CheckpointFile *checkpoint, PetscMPIInt rank, size_t *size, char **bytes)
+static PetscErrorCode ReadStream(const CheckpointFile *checkpoint, const char name[], size_t *size, char **bytes)
 {
   hsize_t length[1] = {0};
-  char    name[32];
   hid_t   dataset, space;
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, sizeof(name), "state/%d", (int)rank));
   dataset = H5Dopen2(checkpoint->file, name, H5P_DEFAULT);
   PetscCall(HDF5Check(dataset, "open a state", checkpoint->path));
   space = H5Dget_space(dataset);
@@ -228,7 +226,10 @@ PetscErrorCode CheckpointFileRead(MPI_Comm comm, const CheckpointFile *file, Che
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   for (PetscMPIInt r = 0; r < file->info.ranks && !rank; r++) {
-    PetscCall(ReadStream(file, r, &size, &bytes));
+    char name[32];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "state/%d", (int)r));
+    PetscCall(ReadStream(file, name, &size, &bytes));
     if (!r) {
       own      = bytes;
       own_size = size;
@@ -246,6 +247,83 @@ PetscErrorCode CheckpointFileRead(MPI_Comm comm, const CheckpointFile *file, Che
       PetscCallMPI(MPI_Recv(own + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, own_size - at), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE));
   }
   PetscCall(CheckpointCreateFromBytes(comm, own_size, own, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* CheckpointFileReadShared - the stream that all ranks have; Collective */
+PetscErrorCode CheckpointFileReadShared(MPI_Comm comm, const CheckpointFile *file, Checkpoint *checkpoint)
+{
+  PetscMPIInt rank;
+  size_t      size = 0;
+  char       *bytes;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) PetscCall(ReadStream(file, "shared", &size, &bytes));
+  PetscCallMPI(MPI_Bcast(&size, sizeof(size), MPI_BYTE, 0, comm));
+  if (rank) PetscCall(PetscMalloc1(size, &bytes));
+  for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
+    PetscCallMPI(MPI_Bcast(bytes + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, 0, comm));
+  PetscCall(CheckpointCreateFromBytes(comm, size, bytes, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A table, on the first rank */
+static PetscErrorCode ReadTable(const CheckpointFile *file, PetscInt i, char name[512], PetscInt size[2], PetscReal **values)
+{
+  char    place[32], *text;
+  hsize_t length[2] = {0, 0};
+  hid_t   dataset, space;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(place, sizeof(place), "tables/%" PetscInt_FMT, i));
+  dataset = H5Dopen2(file->file, place, H5P_DEFAULT);
+  PetscCall(HDF5Check(dataset, "open a table", file->path));
+  PetscCall(ReadText(dataset, "name", &text, file->path));
+  PetscCall(PetscStrncpy(name, text, 512));
+  PetscCall(PetscFree(text));
+  space = H5Dget_space(dataset);
+  PetscCall(HDF5Check(H5Sget_simple_extent_dims(space, length, NULL), "read a table", file->path));
+  PetscCall(PetscMalloc1((size_t)(length[0] * length[1]), values));
+  if (length[0])
+    PetscCall(HDF5Check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values), "read a table", file->path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", file->path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "read a table", file->path));
+  size[0] = (PetscInt)length[0];
+  size[1] = (PetscInt)length[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* CheckpointFileReadTables - all tables, to every rank; Collective */
+PetscErrorCode CheckpointFileReadTables(MPI_Comm comm, const CheckpointFile *file, Tables *tables)
+{
+  PetscMPIInt rank;
+  hsize_t     n = 0;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(TablesCreate(comm, tables));
+  if (!rank) {
+    const hid_t group = H5Gopen2(file->file, "tables", H5P_DEFAULT);
+
+    PetscCall(HDF5Check(group, "open the tables", file->path));
+    PetscCall(HDF5Check(H5Gget_num_objs(group, &n), "count the tables", file->path));
+    PetscCall(HDF5Check(H5Gclose(group), "close the tables", file->path));
+  }
+  PetscCallMPI(MPI_Bcast(&n, sizeof(n), MPI_BYTE, 0, comm));
+  for (PetscInt i = 0; i < (PetscInt)n; i++) {
+    char       name[512] = "";
+    PetscInt   size[2];
+    PetscReal *values = NULL;
+
+    if (!rank) PetscCall(ReadTable(file, i, name, size, &values));
+    PetscCallMPI(MPI_Bcast(size, 2, MPIU_INT, 0, comm));
+    PetscCallMPI(MPI_Bcast(name, sizeof(name), MPI_CHAR, 0, comm));
+    if (rank) PetscCall(PetscMalloc1(size[0] * size[1], &values));
+    for (PetscInt row = 0; row < size[0]; row += 1 << 20)
+      PetscCallMPI(MPI_Bcast(values + row * size[1], (PetscMPIInt)(PetscMin(1 << 20, size[0] - row) * size[1]), MPIU_REAL, 0, comm));
+    PetscCall(TablesShare(*tables, name, size[0], size[1], values));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

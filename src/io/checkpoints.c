@@ -33,10 +33,11 @@ static PetscErrorCode Write(Output output, PetscInt step)
   Checkpoints   *c    = &output->checkpoints;
   MPI_Comm       comm = PetscObjectComm((PetscObject)output);
   CheckpointInfo info = {.step = step};
-  const Body    *bodies;
-  PetscInt       n, steps;
+  PetscInt       steps;
   PetscReal      start, dt;
-  Checkpoint     checkpoint;
+  Contact        contact;
+
+  CheckpointContents contents;
 
   PetscFunctionBegin;
   if (!c->path[0] || c->last_step == step) PetscFunctionReturn(PETSC_SUCCESS);
@@ -46,11 +47,18 @@ static PetscErrorCode Write(Output output, PetscInt step)
   info.time = start + step * dt;
   PetscCallMPI(MPI_Comm_size(comm, &info.ranks));
   PetscCall(PetscOptionsGetAll(NULL, &info.options));
-  PetscCall(CheckpointCreate(comm, &checkpoint));
-  PetscCall(OutputVisit(output, checkpoint));
-  PetscCall(ControllerGetBodies(output->controller, &n, &bodies));
-  PetscCall(CheckpointFileWrite(comm, c->path, &info, checkpoint, n, bodies));
-  PetscCall(CheckpointDestroy(&checkpoint));
+  PetscCall(ControllerGetContact(output->controller, &contact));
+  PetscCall(CheckpointCreate(comm, &contents.shared));
+  PetscCall(OutputVisitShared(output, PETSC_TRUE, contents.shared));
+  PetscCall(CheckpointCreate(comm, &contents.state));
+  PetscCall(ContactVisit(contact, contents.state));
+  PetscCall(TablesCreate(comm, &contents.tables));
+  PetscCall(ContactPack(contact, contents.tables));
+  PetscCall(ControllerGetBodies(output->controller, &contents.n_bodies, &contents.bodies));
+  PetscCall(CheckpointFileWrite(comm, c->path, &info, &contents));
+  PetscCall(CheckpointDestroy(&contents.shared));
+  PetscCall(CheckpointDestroy(&contents.state));
+  PetscCall(TablesDestroy(&contents.tables));
   PetscCall(PetscFree(info.options));
   c->last_step = step;
   PetscCall(PetscTime(&c->written));

@@ -444,12 +444,13 @@ static PetscErrorCode TakeUp(Fields fields, PetscInt written)
   Input Parameters:
 + fields     - the `Fields`; `NULL`: there are none
 . comm       - communicator of the run
+. same_ranks - it is continued on as many ranks as before, by which the numbers in the file are ordered
 - checkpoint - the `Checkpoint`
 
   Note:
   Fields whose path is not that of the run that is continued begin with the restart.
 */
-PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, Checkpoint checkpoint)
+PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, PetscBool same_ranks, Checkpoint checkpoint)
 {
   char     path[PETSC_MAX_PATH_LEN] = "", own[PETSC_MAX_PATH_LEN] = "";
   PetscInt numbers[3] = {fields ? fields->written : 0, fields ? fields->n_frames : 0, fields ? fields->interval : 0};
@@ -464,6 +465,11 @@ PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, Checkpoint checkpoint)
   same = !strcmp(own, path);
   PetscCallMPI(MPI_Bcast(&same, 1, MPI_INT, 0, comm));
   if (!same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(
+      same_ranks, comm, PETSC_ERR_USER_INPUT,
+      "-output_fields %s: the file is ordered by the ranks of the run that is continued, and these are more or fewer; give another path, "
+      "where the fields begin with the restart",
+      fields->path);
   PetscCheck(numbers[1] == fields->n_frames && numbers[2] == fields->interval, comm, PETSC_ERR_USER_INPUT,
              "-output_fields %s has places for %" PetscInt_FMT " frames, one every %" PetscInt_FMT
              " steps, and this run wants %" PetscInt_FMT ", one every %" PetscInt_FMT

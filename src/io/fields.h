@@ -12,4 +12,4 @@ PETSC_INTERN PetscErrorCode      FieldsFinish(Fields);
 PETSC_INTERN PetscErrorCode      FieldsGetPaths(Fields, const char *[], const char *[]);
 PETSC_INTERN PetscErrorCode      FieldsDestroy(Fields *);
 PETSC_INTERN PetscErrorCode      FieldsSync(Fields);
-PETSC_INTERN PetscErrorCode      FieldsVisit(Fields, MPI_Comm, Checkpoint);
+PETSC_INTERN PetscErrorCode      FieldsVisit(Fields, MPI_Comm, PetscBool, Checkpoint);

@@ -27,7 +27,7 @@ struct _p_Output {
 PETSC_INTERN PetscErrorCode OutputCheckPaths(MPI_Comm, const char[], const char[], const char[], const char[]);
 PETSC_INTERN PetscErrorCode OutputLock(Output);
 PETSC_INTERN PetscErrorCode OutputStartClock(Output);
-PETSC_INTERN PetscErrorCode OutputVisit(Output, Checkpoint);
+PETSC_INTERN PetscErrorCode OutputVisitShared(Output, PetscBool, Checkpoint);
 PETSC_INTERN PetscErrorCode OutputReadCheckpoints(Output);
 PETSC_INTERN PetscErrorCode OutputTakeState(Output, const char[]);
 PETSC_INTERN PetscErrorCode OutputCompareOptions(MPI_Comm, const char[], PetscBool, const char[]);

@@ -1,5 +1,6 @@
 /* Runs that are continued from a checkpoint, and the options of all this. */
 #include "outputimpl.h"
+#include <contact/interface/contactvisit.h>
 #include <controller/controllervisit.h>
 #include <exact/exactvisit.h>
 #include <stdlib.h>
@@ -7,8 +8,9 @@
 /* Minutes between checkpoints where the user says nothing */
 #define WALL_INTERVAL 15
 
-/* All that a run goes on from: the simulation, and what its observers have gathered */
-PetscErrorCode OutputVisit(Output output, Checkpoint checkpoint)
+/* What all ranks have of that which a run goes on from: the simulation, and what its observers have gathered. `same_ranks`: it is loaded on
+   as many ranks as before */
+PetscErrorCode OutputVisitShared(Output output, PetscBool same_ranks, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   PetscCall(ControllerVisit(output->controller, checkpoint));
@@ -16,7 +18,7 @@ PetscErrorCode OutputVisit(Output output, Checkpoint checkpoint)
   if (output->exact) PetscCall(ExactVisit(output->exact, checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "files"));
   PetscCall(HistoryVisit(output->history, checkpoint));
-  PetscCall(FieldsVisit(output->fields, PetscObjectComm((PetscObject)output), checkpoint));
+  PetscCall(FieldsVisit(output->fields, PetscObjectComm((PetscObject)output), same_ranks, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,6 +86,35 @@ PetscErrorCode OutputSetRestartState(Output output, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All of a checkpoint: to the last bit on as many ranks as before, else to round-off */
+static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool same_ranks)
+{
+  MPI_Comm   comm = PetscObjectComm((PetscObject)output);
+  Contact    contact;
+  Checkpoint shared, state;
+  Tables     tables;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetContact(output->controller, &contact));
+  PetscCall(CheckpointFileReadShared(comm, file, &shared));
+  PetscCall(OutputVisitShared(output, same_ranks, shared));
+  PetscCall(CheckpointFinish(shared));
+  PetscCall(CheckpointDestroy(&shared));
+  if (!same_ranks) {
+    PetscCall(CheckpointFileReadTables(comm, file, &tables));
+    PetscCall(ContactUnpack(contact, tables));
+    PetscCall(TablesDestroy(&tables));
+    PetscCall(PetscFPrintf(comm, stderr, "impakt: the checkpoint is of %d ranks: on another number of them the run goes on to round-off\n",
+                           file->info.ranks));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CheckpointFileRead(comm, file, &state));
+  PetscCall(ContactVisit(contact, state));
+  PetscCall(CheckpointFinish(state));
+  PetscCall(CheckpointDestroy(&state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   OutputRestart - goes on from the checkpoint of `OutputSetRestart()`, if there is one
 
@@ -96,7 +127,7 @@ PetscErrorCode OutputSetRestartState(Output output, const char path[])
 
   Notes:
   On as many ranks as before the run goes on to the last bit as if it had not been interrupted, with history, fields and summary: what had
-  been written after the checkpoint is cut off.
+  been written after the checkpoint is cut off. On another number of ranks it goes on to round-off, and fields need another path.
 
   Options that change the problem must be the same; those of files, terminal and -time_end may differ. Without a checkpoint yet the run
   begins at its start, or with the state of `OutputSetRestartState()`.
@@ -109,7 +140,6 @@ PetscErrorCode OutputRestart(Output output)
   MPI_Comm       comm;
   PetscBool      exists = PETSC_FALSE, same;
   CheckpointFile file;
-  Checkpoint     checkpoint;
   PetscMPIInt    size;
   char           path[PETSC_MAX_PATH_LEN];
 
@@ -130,12 +160,7 @@ PetscErrorCode OutputRestart(Output output)
   PetscCall(CheckpointFileOpen(comm, path, &file));
   PetscCall(OutputCompareOptions(comm, file.info.options, c->allow_changes, path));
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCheck(file.info.ranks == size, comm, PETSC_ERR_SUP, "-restart %s was written by %d ranks, and these are %d: continue on as many",
-             path, file.info.ranks, size);
-  PetscCall(CheckpointFileRead(comm, &file, &checkpoint));
-  PetscCall(OutputVisit(output, checkpoint));
-  PetscCall(CheckpointFinish(checkpoint));
-  PetscCall(CheckpointDestroy(&checkpoint));
+  PetscCall(Load(output, &file, (PetscBool)(file.info.ranks == size)));
   PetscCall(PetscFPrintf(comm, stderr, "impakt: continued from %s, after controller step %" PetscInt_FMT " at time %g s\n", path,
                          file.info.step, (double)file.info.time));
   PetscCall(PetscStrcmp(path, c->path, &same));

@@ -6,6 +6,7 @@
 #include <petsc/private/petscimpl.h>
 
 typedef struct _n_Checkpoint *Checkpoint; /* src/checkpoint/checkpoint.h */
+typedef struct _n_Tables     *Tables;     /* src/checkpoint/tables.h */
 
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
@@ -430,6 +431,8 @@ PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactVisitImpulses(Contact, Checkpoint);
+PETSC_INTERN PetscErrorCode ContactPackImpulses(Contact, Tables);
+PETSC_INTERN PetscErrorCode ContactUnpackImpulses(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);

@@ -6,7 +6,8 @@ typedef struct {
   PetscReal alpha_m, alpha_f, gamma, beta; /* of TSALPHA2 */
   Mat       matrix;                        /* K + shift M, its held dofs eliminated: body->solver has its factors */
   Mat       matrices[STEP_MAX_CUTS + 1];   /* that of each level of cut steps which there has been */
-  Vec       points[STEP_MAX_CUTS + 1];     /* displacement at which that of a nonlinear body was assembled last; NULL: undeformed [m] */
+  Vec       points[STEP_MAX_CUTS + 1];     /* displacement at which that of a nonlinear body was assembled last [m] */
+  PetscBool deformed[STEP_MAX_CUTS + 1];   /* it was, and not at none */
   PetscReal shift;                         /* [1/s^2]; 0 without inertia */
   PetscReal shift_velocity;                /* of C where the body is damped [1/s] */
   PetscReal terms, round_off; /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */

@@ -129,9 +129,12 @@ PetscErrorCode BodyImplicitPrescribe(Body body, Vec U)
  * eliminated */
 static PetscErrorCode AssembleMatrix(Body body, Vec u)
 {
-  const BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  const Vec     point    = implicit->points[body->time.level];
 
   PetscFunctionBegin;
+  implicit->deformed[body->time.level] = (PetscBool)(u != NULL);
+  if (u && u != point) PetscCall(VecCopy(u, point));
   PetscCall(BodyAssembleTangent(body, u, implicit->matrix));
   if (implicit->shift > 0 && body->mass.diagonal) {
     PetscCall(VecCopy(body->mass.diagonal, body->work.nodes[0]));
@@ -294,6 +297,7 @@ static PetscErrorCode CreateSolver(Body body, Vec u)
   SetShifts(body);
   PetscCall(BodyCreateMatrix(body, &implicit->matrix));
   implicit->matrices[body->time.level] = implicit->matrix;
+  if (!body->model.linear) PetscCall(BodyCreateVec(body, &implicit->points[body->time.level]));
   if (!body->model.linear && implicit->unit_strain == 0) PetscCall(ComputeUnitStrainForce(body));
   PetscCall(AssembleMatrix(body, u));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
@@ -419,12 +423,11 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
 PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoint)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  PetscBool     has      = (PetscBool)(implicit->points[level] != NULL);
+  PetscBool     deformed = implicit->deformed[level];
 
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitBools(checkpoint, "linearised", 1, &has));
-  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!implicit->points[level]) PetscCall(VecDuplicate(body->state.u, &implicit->points[level]));
+  PetscCall(CheckpointVisitBools(checkpoint, "linearised", 1, &deformed));
+  if (!deformed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckpointVisitVec(checkpoint, "linearised at", implicit->points[level]));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AssembleMatrix(body, implicit->points[level]));

@@ -17,10 +17,6 @@ static PetscErrorCode VisitState(Body body, BodyState *state, Checkpoint checkpo
   PetscCall(CheckpointVisitVec(checkpoint, "internal force", state->internal_force));
   PetscCall(CheckpointVisitVec(checkpoint, "applied force", state->applied));
   PetscCall(CheckpointVisitVec(checkpoint, "damping force", state->damping));
-  PetscCall(CheckpointVisitReals(checkpoint, "external work", 1, &state->external_work));
-  PetscCall(CheckpointVisitReals(checkpoint, "damping work", 1, &state->damping_work));
-  PetscCall(CheckpointVisitReals(checkpoint, "time", 1, &state->time));
-  PetscCall(CheckpointVisitInts(checkpoint, "step", 1, &state->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,14 +161,12 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   PetscCall(VisitState(body, &body->saved, checkpoint));
   PetscCall(VisitLevels(body, checkpoint));
   PetscCall(VisitState(body, &body->state, checkpoint));
-  PetscCall(CheckpointVisitInts(checkpoint, "accepted level", 1, &body->time.accepted_level));
   PetscCall(VisitTraces(body, checkpoint));
   PetscCall(VisitConditions(body, checkpoint));
   PetscCall(VisitMassSolver(body, checkpoint));
   PetscCall(CheckpointVisitReals(checkpoint, "springs start", BODY_MAX_RIGID, body->springs.start));
   PetscCall(CheckpointVisitReals(checkpoint, "springs place", BODY_MAX_RIGID, body->springs.place));
   PetscCall(CheckpointVisitReals(checkpoint, "springs reached", BODY_MAX_RIGID, body->springs.reached));
-  PetscCall(CheckpointVisitInt64s(checkpoint, "substeps", 1, &body->statistics.substeps));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscCall(BodyHandoverEnd(body));

@@ -1,7 +1,12 @@
 /* The state of a body, for checkpoints. Private to Impakt. */
 #pragma once
 #include <checkpoint/checkpoint.h>
+#include <checkpoint/tables.h>
 #include <impakt/body.h>
 
 PETSC_INTERN PetscErrorCode BodyVisit(Body, Checkpoint);
 PETSC_INTERN PetscErrorCode BodyVisitMesh(Body, Checkpoint);
+PETSC_INTERN PetscErrorCode BodyVisitShared(Body, Checkpoint);
+PETSC_INTERN PetscErrorCode BodyPack(Body, Tables);
+PETSC_INTERN PetscErrorCode BodyUnpack(Body, Tables);
+PETSC_INTERN PetscErrorCode BodyTakeRows(Body);

@@ -14,11 +14,8 @@ static PetscErrorCode VisitPairs(Contact contact, Checkpoint checkpoint)
     ContactPair *pair = &contact->pairs[p];
 
     PetscCall(CheckpointBegin(checkpoint, pair->name));
-    PetscCall(CheckpointVisitInts(checkpoint, "dirichlet", 1, &pair->dirichlet));
-    PetscCall(CheckpointVisitBools(checkpoint, "bonded", 1, &pair->bonded));
     PetscCall(TransferVisit(pair->transfer, checkpoint));
   }
-  PetscCall(CheckpointVisitInts(checkpoint, "order", contact->n_bodies, contact->order));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,6 +94,9 @@ static PetscErrorCode VisitRowStates(Contact contact, Checkpoint checkpoint)
     PetscCall(CheckpointVisitReals(checkpoint, "gap", n, states[k]->gap));
     PetscCall(CheckpointVisitBools(checkpoint, "active", n, states[k]->active));
   }
+  PetscCall(CheckpointVisitReals(checkpoint, "last force", n, contact->energy.last_force));
+  PetscCall(CheckpointVisitReals(checkpoint, "accepted force", n, contact->energy.accepted_force));
+  PetscCall(CheckpointVisitReals(checkpoint, "last stored", n, contact->energy.last_stored));
   if (contact->release.intervals) {
     PetscCall(CheckpointVisitInts(checkpoint, "intervals", n, contact->release.intervals));
     PetscCall(CheckpointVisitReals(checkpoint, "released forces", n * contact->release.room, contact->release.forces));
@@ -127,9 +127,6 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "group work", contact->n_bodies, energy->group_work));
   PetscCall(CheckpointVisitReals(checkpoint, "start energy", contact->n_bodies, energy->start_energy));
   PetscCall(CheckpointVisitReals(checkpoint, "pair sums", 2 * contact->n_pairs, energy->pair_sums));
-  PetscCall(CheckpointVisitReals(checkpoint, "last force", contact->rows.n, energy->last_force));
-  PetscCall(CheckpointVisitReals(checkpoint, "accepted force", contact->rows.n, energy->accepted_force));
-  PetscCall(CheckpointVisitReals(checkpoint, "last stored", contact->rows.n, energy->last_stored));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,34 +162,55 @@ PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactVisitShared - what all ranks have of the state of contact and of its bodies, to or from a checkpoint */
+PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
+{
+  const PetscInt sizes[] = {contact->n_bodies, contact->n_pairs, contact->rows.n_all, contact->parts};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointBegin(checkpoint, "contact"));
+  PetscCall(CheckpointCheckInts(checkpoint, "bodies, pairs, rows and parts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(VisitNumbers(contact, checkpoint));
+  PetscCall(VisitEnergy(contact, checkpoint));
+  PetscCall(CheckpointVisitInts(checkpoint, "order", contact->n_bodies, contact->order));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(CheckpointBegin(checkpoint, pair->name));
+    PetscCall(CheckpointVisitInts(checkpoint, "dirichlet", 1, &pair->dirichlet));
+    PetscCall(CheckpointVisitBools(checkpoint, "bonded", 1, &pair->bonded));
+    PetscCall(TransferVisitShared(pair->transfer, checkpoint));
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitShared(contact->bodies[b], checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
-  ContactVisit - the state of contact and of its bodies after an accepted controller step, to or from a checkpoint
+  ContactVisit - what a rank has of the state of contact and of its bodies, to or from a checkpoint
 
   Collective
 
   Input Parameters:
-+ contact    - the `Contact`, set up; loading: in its first state
++ contact    - the `Contact`, set up; loading: in its first state, after ContactVisitShared()
 - checkpoint - the `Checkpoint`
 */
 PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
 {
-  const PetscInt sizes[] = {contact->n_bodies, contact->n_pairs, contact->rows.n, contact->rows.n_all, contact->parts};
+  const PetscInt sizes[] = {contact->rows.n, contact->rows.begin};
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitMesh(contact->bodies[b], checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact"));
-  PetscCall(CheckpointCheckInts(checkpoint, "bodies, pairs, rows, all rows and parts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
+  PetscCall(CheckpointCheckInts(checkpoint, "rows, and the first of them", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
   PetscCall(VisitPairs(contact, checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact rows"));
   PetscCall(VisitRows(contact, checkpoint));
   PetscCall(VisitHeld(contact, checkpoint));
   PetscCall(VisitMatrices(contact, checkpoint));
-  PetscCall(VisitNumbers(contact, checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact method"));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, visit, checkpoint);
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
   PetscCall(VisitRowStates(contact, checkpoint));
-  PetscCall(VisitEnergy(contact, checkpoint));
   PetscCall(ContactVisitImpulses(contact, checkpoint));
   PetscCall(VisitObstacleTraces(contact, checkpoint));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));

@@ -1,0 +1,172 @@
+/* Tables of numbers, a row for each node. While they are written the first rank has them; read, every rank has all of them. */
+#include "tables.h"
+#include <string.h>
+
+#define MOST_NAME 512
+
+typedef struct {
+  char       name[MOST_NAME];
+  PetscInt   n, width;
+  PetscReal *values;
+  PetscInt  *order; /* of the rows by their keys; NULL until one is looked for */
+} Table;
+
+struct _n_Tables {
+  MPI_Comm comm;
+  PetscInt n;
+  Table   *tables;
+};
+
+PetscErrorCode TablesCreate(MPI_Comm comm, Tables *tables)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscNew(tables));
+  (*tables)->comm = comm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TablesDestroy(Tables *tables)
+{
+  PetscFunctionBegin;
+  if (!*tables) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < (*tables)->n; i++) {
+    PetscCall(PetscFree((*tables)->tables[i].values));
+    PetscCall(PetscFree((*tables)->tables[i].order));
+  }
+  PetscCall(PetscFree((*tables)->tables));
+  PetscCall(PetscFree(*tables));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TablesShare - takes over a table that every rank has; values from PetscMalloc() */
+PetscErrorCode TablesShare(Tables tables, const char name[], PetscInt n, PetscInt width, PetscReal values[])
+{
+  Table *table;
+
+  PetscFunctionBegin;
+  PetscCall(PetscRealloc((size_t)(tables->n + 1) * sizeof(Table), &tables->tables));
+  table = &tables->tables[tables->n++];
+  PetscCall(PetscMemzero(table, sizeof(*table)));
+  PetscCall(PetscStrncpy(table->name, name, sizeof(table->name)));
+  table->n      = n;
+  table->width  = width;
+  table->values = values;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TablesAdd - gathers the rows of all ranks on the first one; Collective */
+PetscErrorCode TablesAdd(Tables tables, const char name[], PetscInt n, PetscInt width, const PetscReal values[])
+{
+  PetscMPIInt rank, size, mine, *counts, *offsets, total = 0;
+  PetscReal  *all = NULL;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(tables->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(tables->comm, &size));
+  PetscCall(PetscMPIIntCast(n * width, &mine));
+  PetscCall(PetscMalloc2(size, &counts, size, &offsets));
+  PetscCallMPI(MPI_Gather(&mine, 1, MPI_INT, counts, 1, MPI_INT, 0, tables->comm));
+  for (PetscMPIInt r = 0; r < size && !rank; total += counts[r++]) offsets[r] = total;
+  PetscCall(PetscMalloc1(total, &all));
+  PetscCallMPI(MPI_Gatherv(values, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, 0, tables->comm));
+  PetscCall(PetscFree2(counts, offsets));
+  PetscCall(TablesShare(tables, name, total / width, width, all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void TablesGetNumber(Tables tables, PetscInt *n)
+{
+  *n = tables->n;
+}
+
+/* TablesGetTable - one of them; all pointers are owned by the tables */
+PetscErrorCode TablesGetTable(Tables tables, PetscInt i, const char *name[], PetscInt *n, PetscInt *width, const PetscReal *values[])
+{
+  const Table *table = &tables->tables[i];
+
+  PetscFunctionBegin;
+  *name   = table->name;
+  *n      = table->n;
+  *width  = table->width;
+  *values = table->values;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FindTable(Tables tables, const char name[], Table **table)
+{
+  PetscFunctionBegin;
+  *table = NULL;
+  for (PetscInt i = 0; i < tables->n && !*table; i++)
+    if (!strcmp(tables->tables[i].name, name)) *table = &tables->tables[i];
+  PetscCheck(*table, tables->comm, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has no table '%s': it is of another problem", name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TablesGet - the table of a name, with so many columns */
+PetscErrorCode TablesGet(Tables tables, const char name[], PetscInt width, PetscInt *n, const PetscReal *values[])
+{
+  Table *table;
+
+  PetscFunctionBegin;
+  PetscCall(FindTable(tables, name, &table));
+  PetscCheck(table->width == width, tables->comm, PETSC_ERR_FILE_UNEXPECTED,
+             "The checkpoint has %" PetscInt_FMT " numbers for each row of '%s' where this run has %" PetscInt_FMT
+             ": it is of another problem",
+             table->width, name, width);
+  *n      = table->n;
+  *values = table->values;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static int CompareKeys(const PetscReal a[], const PetscReal b[])
+{
+  for (PetscInt d = 0; d < TABLES_KEY; d++)
+    if (a[d] != b[d]) return a[d] < b[d] ? -1 : 1;
+  return 0;
+}
+
+static int CompareRows(const void *a, const void *b, void *context)
+{
+  const Table *table = (const Table *)context;
+
+  return CompareKeys(table->values + *(const PetscInt *)a * table->width, table->values + *(const PetscInt *)b * table->width);
+}
+
+/* TablesLookFor - the row of the node at a place, which must be the only one there; -1 if there is none */
+PetscErrorCode TablesLookFor(Tables tables, const char name[], const PetscReal key[], PetscInt *row)
+{
+  PetscInt low = 0, high;
+  Table   *table;
+
+  PetscFunctionBegin;
+  PetscCall(FindTable(tables, name, &table));
+  high = table->n;
+  if (!table->order) {
+    PetscCall(PetscMalloc1(table->n, &table->order));
+    for (PetscInt i = 0; i < table->n; i++) table->order[i] = i;
+    if (table->n > 1) PetscCall(PetscTimSort(table->n, table->order, sizeof(PetscInt), CompareRows, table));
+    for (PetscInt i = 1; i < table->n; i++)
+      PetscCheck(CompareRows(table->order + i - 1, table->order + i, table), tables->comm, PETSC_ERR_SUP,
+                 "Two nodes of '%s' lie at one place, and cannot be told from each other: continue the run on as many ranks as before",
+                 name);
+  }
+  while (high - low > 1) {
+    const PetscInt middle = (low + high) / 2;
+
+    if (CompareKeys(table->values + table->order[middle] * table->width, key) <= 0) low = middle;
+    else high = middle;
+  }
+  *row = table->n && !CompareKeys(table->values + table->order[low] * table->width, key) ? table->order[low] : -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TablesFind - the row of the node at a place, which must be there */
+PetscErrorCode TablesFind(Tables tables, const char name[], const PetscReal key[], PetscInt *row)
+{
+  PetscFunctionBegin;
+  PetscCall(TablesLookFor(tables, name, key, row));
+  PetscCheck(*row >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+             "The checkpoint has no node of '%s' at (%.9g, %.9g, %.9g) m: it is of another mesh", name, (double)key[0], (double)key[1],
+             (double)key[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

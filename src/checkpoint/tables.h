@@ -1,0 +1,18 @@
+/* Numbers of the nodes of all ranks, found by the places of the nodes in the mesh: what a run is continued from on another number of ranks.
+ */
+#pragma once
+#include <petscsys.h>
+
+typedef struct _n_Tables *Tables;
+
+#define TABLES_KEY 3 /* the first columns of each row: the reference position of a node, zeros beyond the dimension of space [m] */
+
+PETSC_INTERN PetscErrorCode TablesCreate(MPI_Comm, Tables *);
+PETSC_INTERN PetscErrorCode TablesDestroy(Tables *);
+PETSC_INTERN PetscErrorCode TablesAdd(Tables, const char[], PetscInt, PetscInt, const PetscReal[]);
+PETSC_INTERN PetscErrorCode TablesShare(Tables, const char[], PetscInt, PetscInt, PetscReal[]);
+PETSC_INTERN void           TablesGetNumber(Tables, PetscInt *);
+PETSC_INTERN PetscErrorCode TablesGetTable(Tables, PetscInt, const char *[], PetscInt *, PetscInt *, const PetscReal *[]);
+PETSC_INTERN PetscErrorCode TablesGet(Tables, const char[], PetscInt, PetscInt *, const PetscReal *[]);
+PETSC_INTERN PetscErrorCode TablesFind(Tables, const char[], const PetscReal[], PetscInt *);
+PETSC_INTERN PetscErrorCode TablesLookFor(Tables, const char[], const PetscReal[], PetscInt *);

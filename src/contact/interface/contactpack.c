@@ -1,0 +1,156 @@
+/*
+   The state of contact and of its bodies as tables of nodes, by which a run is continued on another number of ranks: to round-off. What the
+   method and the bodies remember beside it, compliance, secants, factors, they find anew.
+*/
+#include <impakt/private/contactimpl.h>
+#include <body/interface/bodyvisit.h>
+#include <interface/transfervisit.h>
+#include "contactvisit.h"
+
+/* Numbers of a row */
+enum { N_ROW = 24 };
+
+static void CopyReal(PetscBool back, PetscReal *own, PetscReal **packed)
+{
+  *(back ? own : *packed) = back ? **packed : *own;
+  ++*packed;
+}
+
+static void CopyBool(PetscBool back, PetscBool *own, PetscReal **packed)
+{
+  if (back) *own = (PetscBool)(**packed != 0);
+  else **packed = *own ? 1 : 0;
+  ++*packed;
+}
+
+static void CopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *packed)
+{
+  ContactState *const states[] = {&contact->start, &contact->end};
+
+  for (PetscInt d = 0; d < 3; d++) CopyReal(back, &contact->rows.normal[3 * i + d], &packed);
+  CopyReal(back, &contact->rows.initial_gap[i], &packed);
+  CopyReal(back, &contact->rows.area[i], &packed);
+  CopyReal(back, &contact->rows.gap_shift[i], &packed);
+  CopyReal(back, &contact->held.merged_gap[i], &packed);
+  CopyBool(back, &contact->rows.opposite[i], &packed);
+  CopyBool(back, &contact->rows.tied[i], &packed);
+  CopyBool(back, &contact->rows.changed[i], &packed);
+  CopyBool(back, &contact->rows.followed[i], &packed);
+  CopyBool(back, &contact->held.dropped[i], &packed);
+  CopyBool(back, &contact->held.heir[i], &packed);
+  CopyBool(back, &contact->ties.holds[i], &packed);
+  CopyReal(back, &contact->ties.distance[i], &packed);
+  for (PetscInt k = 0; k < 2; k++) {
+    CopyReal(back, &states[k]->force[i], &packed);
+    CopyReal(back, &states[k]->gap[i], &packed);
+    CopyBool(back, &states[k]->active[i], &packed);
+  }
+  CopyReal(back, &contact->energy.last_force[i], &packed);
+  CopyReal(back, &contact->energy.accepted_force[i], &packed);
+  CopyReal(back, &contact->energy.last_stored[i], &packed);
+}
+
+/* All rows of a pair to a table, a line for each node, or back */
+static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, Tables tables)
+{
+  const PetscInt     components = pair->components, width = TABLES_KEY + components * N_ROW;
+  const PetscReal   *values = NULL;
+  const SurfaceData *data;
+  PetscReal         *packed;
+  PetscInt           n, n_all;
+  char               name[256];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/contact", pair->name));
+  PetscCall(SurfaceGetData(pair->surfaces[0], &data));
+  n = (pair->end - pair->begin) / components;
+  PetscCall(PetscCalloc1(PetscMax(n, 1) * width, &packed));
+  if (back) PetscCall(TablesGet(tables, name, width, &n_all, &values));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal *line = packed + (back ? 0 : i * width);
+    PetscInt   row;
+
+    PetscCall(PetscArraycpy(line, data->reference + 3 * i, 3));
+    if (back) {
+      PetscCall(TablesFind(tables, name, line, &row));
+      PetscCall(PetscArraycpy(line, values + row * width, width));
+    }
+    for (PetscInt k = 0; k < components; k++) CopyRow(contact, pair->begin + i * components + k, back, line + TABLES_KEY + k * N_ROW);
+  }
+  if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
+  PetscCall(PetscFree(packed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ContactPack - adds the tables of contact and of its bodies
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, after an accepted step
+- tables  - the tables
+*/
+PetscErrorCode ContactPack(Contact contact, Tables tables)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPack(contact->bodies[b], tables));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscCall(TransferPack(contact->pairs[p].transfer, contact->pairs[p].name, tables));
+    PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, tables));
+  }
+  PetscCall(ContactPackImpulses(contact, tables));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows, and the matrices that bodies have of them */
+static PetscErrorCode UnpackRows(Contact contact, Tables tables)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscCall(TransferUnpack(contact->pairs[p].transfer, contact->pairs[p].name, tables));
+    PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
+  }
+  PetscCall(ContactMergeDroppedRows(contact));
+  PetscCall(ContactLeaveOutObstacles(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
+  contact->rows.filled      = PETSC_FALSE;
+  contact->rows.patterns[0] = contact->rows.patterns[1] = -1;
+  PetscCall(ContactFillMatrices(contact));
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.moved));
+    PetscCall(BodyTakeRows(contact->bodies[b]));
+  }
+  contact->rows.filled = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ContactUnpack - the state of contact and of its bodies from the tables of a run with any number of ranks
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, in its first state, whose numbers for all ranks have been loaded by ContactVisitShared()
+- tables  - the tables
+*/
+PetscErrorCode ContactUnpack(Contact contact, Tables tables)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    PetscCheck(contact->pairs[p].dirichlet == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+               "-contact_swap_sides: a run whose sides are swapped at the checkpoint can be continued on as many ranks as before alone");
+  contact->attempt.level = 0; /* each controller step begins whole */
+  contact->step          = contact->attempt.whole_step;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyUnpack(contact->bodies[b], tables));
+  if (contact->rows.n_all) {
+    PetscCall(UnpackRows(contact, tables));
+    for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE; /* to the method all are new */
+    PetscTryTypeMethod(contact, rowschanged);
+    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
+  }
+  PetscCall(ContactUnpackImpulses(contact, tables));
+  contact->saved.moved = contact->attempt.again = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

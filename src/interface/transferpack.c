@@ -1,0 +1,257 @@
+/*
+   The state of a transfer as tables of its nodes, by which a run is continued on another number of ranks: what belongs to each node of the
+   first side, what to each of the partner's, and the shares of the partner's nodes in the rows.
+*/
+#include "interfaceimpl.h"
+#include "transfervisit.h"
+
+#define N_ROW     38 /* numbers of a node of the first side: key, 35 more */
+#define N_SHARE   8  /* key of its row, position of the partner's node, weight and goal */
+#define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
+
+/* Copies numbers to a packed row or back, and goes on behind them */
+static void Copy(PetscBool back, PetscInt n, PetscReal own[], PetscReal **packed)
+{
+  for (PetscInt i = 0; i < n; i++) *(back ? &own[i] : &(*packed)[i]) = back ? (*packed)[i] : own[i];
+  *packed += n;
+}
+
+static void CopyBool(PetscBool back, PetscBool *own, PetscReal **packed)
+{
+  if (back) *own = (PetscBool)(**packed != 0);
+  else **packed = *own ? 1 : 0;
+  ++*packed;
+}
+
+/* One node of the first side; `packed` behind its key */
+static void CopyRow(Transfer transfer, PetscInt i, PetscBool back, PetscReal *packed)
+{
+  RowSet        *rows = &transfer->rows;
+  const PetscInt dim  = transfer->dim;
+
+  CopyBool(back, &rows->opposite[i], &packed);
+  CopyBool(back, &rows->beyond[i], &packed);
+  Copy(back, 1, &rows->gap[i], &packed);
+  Copy(back, 1, &rows->area[i], &packed);
+  Copy(back, 1, &rows->bow[i], &packed);
+  Copy(back, 1, &rows->rest[i], &packed);
+  Copy(back, dim, rows->normals + dim * i, &packed);
+  packed += 3 - dim;
+  Copy(back, 3, transfer->built_x[0] + 3 * i, &packed);
+  Copy(back, 3, transfer->built_slip + 3 * i, &packed);
+  Copy(back, 1, &transfer->slip[i], &packed);
+  CopyBool(back, &transfer->keep[i], &packed);
+  CopyBool(back, &transfer->followed[i], &packed);
+  CopyBool(back, &transfer->goes_on[i], &packed);
+  Copy(back, 1, &transfer->balance.uneven[i], &packed);
+  Copy(back, 1, &transfer->balance.gap[i], &packed);
+  Copy(back, 1, &transfer->balance.turned[i], &packed);
+  if (!transfer->neumann) return;
+  Copy(back, 3, transfer->follow.x[0] + 3 * i, &packed);
+  Copy(back, 3, transfer->follow.moved + 3 * i, &packed);
+  Copy(back, 3, transfer->follow.slip + 3 * i, &packed);
+  CopyBool(back, &transfer->follow.known[i], &packed);
+}
+
+static void CopyPartner(Transfer transfer, PetscInt i, PetscBool back, PetscReal *packed)
+{
+  Copy(back, 3, transfer->built_x[1] + 3 * i, &packed);
+  Copy(back, 3, transfer->follow.x[1] + 3 * i, &packed);
+  Copy(back, 3, transfer->follow.partner_moved + 3 * i, &packed);
+}
+
+/* The three tables of a pair */
+static PetscErrorCode Name(const char pair[], const char what[], char name[], size_t size)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, size, "%s/%s", pair, what));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables tables)
+{
+  const RowSet    *rows      = &transfer->rows;
+  const PetscInt   n         = rows->offsets[transfer->n];
+  const PetscReal *reference = transfer->dirichlet->data.reference;
+  PetscReal       *packed;
+  char             name[256];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n * N_SHARE, &packed));
+  for (PetscInt i = 0; i < transfer->n; i++)
+    for (PetscInt j = rows->offsets[i]; j < rows->offsets[i + 1]; j++) {
+      PetscCall(PetscArraycpy(packed + N_SHARE * j, reference + 3 * i, 3));
+      PetscCall(PetscArraycpy(packed + N_SHARE * j + 3, transfer->column_reference + 3 * rows->columns[j], 3));
+      packed[N_SHARE * j + 6] = rows->shares[j].value;
+      packed[N_SHARE * j + 7] = rows->shares[j].goal;
+    }
+  PetscCall(Name(pair, "shares", name, sizeof(name)));
+  PetscCall(TablesAdd(tables, name, n, N_SHARE, packed));
+  PetscCall(PetscFree(packed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  TransferPack - adds the tables of a transfer
+
+  Collective
+
+  Input Parameters:
++ transfer - the `Transfer`
+. pair     - what the names of its tables begin with
+- tables   - the tables
+*/
+PetscErrorCode TransferPack(Transfer transfer, const char pair[], Tables tables)
+{
+  const PetscInt partners = transfer->neumann ? transfer->neumann->data.n_owned : 0;
+  PetscReal     *packed;
+  char           name[256];
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(PetscMax(transfer->n * N_ROW, partners * N_PARTNER), &packed));
+  for (PetscInt i = 0; i < transfer->n; i++) {
+    PetscCall(PetscArraycpy(packed + N_ROW * i, transfer->dirichlet->data.reference + 3 * i, 3));
+    CopyRow(transfer, i, PETSC_FALSE, packed + N_ROW * i + 3);
+  }
+  PetscCall(Name(pair, "rows", name, sizeof(name)));
+  PetscCall(TablesAdd(tables, name, transfer->n, N_ROW, packed));
+  for (PetscInt i = 0; i < partners; i++) {
+    PetscCall(PetscArraycpy(packed + N_PARTNER * i, transfer->neumann->data.reference + 3 * i, 3));
+    CopyPartner(transfer, i, PETSC_FALSE, packed + N_PARTNER * i + 3);
+  }
+  PetscCall(Name(pair, "partners", name, sizeof(name)));
+  PetscCall(TablesAdd(tables, name, partners, N_PARTNER, packed));
+  PetscCall(PetscFree(packed));
+  PetscCall(PackShares(transfer, pair, tables));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where each node of the partner is: rank, number there, first displacement; a table beside the others, of this run */
+static PetscErrorCode ShareOwners(Transfer transfer, Tables *owners)
+{
+  const SurfaceData *data = &transfer->neumann->data;
+  PetscMPIInt        rank, size, mine, *counts, *offsets, total = 0;
+  PetscReal         *packed, *all;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(transfer->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(transfer->comm, &size));
+  PetscCall(PetscMalloc3(6 * data->n_owned, &packed, size, &counts, size, &offsets));
+  for (PetscInt i = 0; i < data->n_owned; i++) {
+    PetscCall(PetscArraycpy(packed + 6 * i, data->reference + 3 * i, 3));
+    packed[6 * i + 3] = rank;
+    packed[6 * i + 4] = (PetscReal)i;
+    packed[6 * i + 5] = (PetscReal)data->dofs[i];
+  }
+  PetscCall(PetscMPIIntCast(6 * data->n_owned, &mine));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, transfer->comm));
+  for (PetscMPIInt r = 0; r < size; total += counts[r++]) offsets[r] = total;
+  PetscCall(PetscMalloc1(total, &all));
+  PetscCallMPI(MPI_Allgatherv(packed, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, transfer->comm));
+  PetscCall(PetscFree3(packed, counts, offsets));
+  PetscCall(TablesCreate(transfer->comm, owners));
+  PetscCall(TablesShare(*owners, "owners", total / 6, 6, all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static int CompareShares(const void *a, const void *b, void *context)
+{
+  const Share *left = (const Share *)a, *right = (const Share *)b;
+
+  (void)context;
+  if (left->row != right->row) return left->row < right->row ? -1 : 1;
+  return left->dof < right->dof ? -1 : left->dof > right->dof;
+}
+
+/* The shares of the rows of this rank, and room for its rows */
+static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables tables)
+{
+  const SurfaceData *data = &transfer->dirichlet->data;
+  PetscInt           n, count = 0, n_owners;
+  const PetscReal   *packed, *owner;
+  Share             *shares;
+  Tables             own, owners = NULL;
+  PetscReal         *keys;
+  char               name[256];
+
+  PetscFunctionBegin;
+  PetscCall(Name(pair, "shares", name, sizeof(name)));
+  PetscCall(TablesGet(tables, name, N_SHARE, &n, &packed));
+  PetscCall(PetscMalloc1(n, &shares));
+  /* the rows of this rank by their keys, with those of other ranks left out */
+  PetscCall(TablesCreate(PETSC_COMM_SELF, &own));
+  PetscCall(PetscMalloc1(4 * transfer->n, &keys));
+  for (PetscInt i = 0; i < transfer->n; i++) {
+    PetscCall(PetscArraycpy(keys + 4 * i, data->reference + 3 * i, 3));
+    keys[4 * i + 3] = (PetscReal)i;
+  }
+  PetscCall(TablesShare(own, "own", transfer->n, 4, keys));
+  if (transfer->neumann) PetscCall(ShareOwners(transfer, &owners));
+  for (PetscInt j = 0; j < n; j++) {
+    PetscInt row, node;
+
+    PetscCall(TablesLookFor(own, "own", packed + N_SHARE * j, &row));
+    if (row < 0) continue;
+    PetscCall(TablesFind(owners, "owners", packed + N_SHARE * j + 3, &node));
+    PetscCall(TablesGet(owners, "owners", 6, &n_owners, &owner));
+    owner += 6 * node;
+    shares[count++] = (Share){.row         = row,
+                              .owner_rank  = (PetscMPIInt)owner[3],
+                              .owner_index = (PetscInt)owner[4],
+                              .dof         = (PetscInt)owner[5],
+                              .value       = packed[N_SHARE * j + 6],
+                              .goal        = packed[N_SHARE * j + 7]};
+  }
+  if (count > 1) PetscCall(PetscTimSort(count, shares, sizeof(Share), CompareShares, NULL));
+  PetscCall(RowSetDestroy(&transfer->rows));
+  PetscCall(RowSetAllocate(transfer->dim, transfer->n, count, &transfer->rows));
+  PetscCall(PetscArraycpy(transfer->rows.shares, shares, count));
+  for (PetscInt j = 0; j < count; j++) transfer->rows.offsets[shares[j].row + 1]++;
+  for (PetscInt i = 0; i < transfer->n; i++) transfer->rows.offsets[i + 1] += transfer->rows.offsets[i];
+  PetscCall(PetscFree(shares));
+  PetscCall(TablesDestroy(&own));
+  PetscCall(TablesDestroy(&owners));
+  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, transfer->n, &transfer->rows));
+  PetscCall(TransferAllocateColumns(transfer));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  TransferUnpack - the state of a transfer from the tables of a run with any number of ranks
+
+  Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, whose numbers for all ranks have been loaded by TransferVisitShared()
+. pair     - what the names of its tables begin with
+- tables   - the tables
+*/
+PetscErrorCode TransferUnpack(Transfer transfer, const char pair[], Tables tables)
+{
+  const PetscReal *packed;
+  PetscInt         n, row;
+  PetscReal        copy[N_ROW];
+  char             name[256];
+
+  PetscFunctionBegin;
+  PetscCall(UnpackShares(transfer, pair, tables));
+  PetscCall(Name(pair, "rows", name, sizeof(name)));
+  PetscCall(TablesGet(tables, name, N_ROW, &n, &packed));
+  for (PetscInt i = 0; i < transfer->n; i++) {
+    PetscCall(TablesFind(tables, name, transfer->dirichlet->data.reference + 3 * i, &row));
+    PetscCall(PetscArraycpy(copy, packed + N_ROW * row, N_ROW));
+    CopyRow(transfer, i, PETSC_TRUE, copy + 3);
+  }
+  transfer->saved.builds = 0;
+  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Name(pair, "partners", name, sizeof(name)));
+  PetscCall(TablesGet(tables, name, N_PARTNER, &n, &packed));
+  for (PetscInt i = 0; i < transfer->neumann->data.n_owned; i++) {
+    PetscCall(TablesFind(tables, name, transfer->neumann->data.reference + 3 * i, &row));
+    PetscCall(PetscArraycpy(copy, packed + N_PARTNER * row, N_PARTNER));
+    CopyPartner(transfer, i, PETSC_TRUE, copy + 3);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
