@@ -102,6 +102,12 @@ def run_that_writes(fields, folder):
     return f"-options_file options/{fields.removeprefix('out/').removesuffix('-fields')}.opts"
 
 
+def run_with_history(history):
+    """Options of the run in a README that writes this history; of the default one otherwise."""
+    commands = (command for command in of_kind("run") if f"-output_history {history}" in command)
+    return next((command.removeprefix("build/impakt ") for command in commands), DEFAULTS)
+
+
 @pytest.mark.parametrize("command", of_kind("run"))
 def test_command(command, shared_run, launch, tmp_path):
     """As it stands, in a folder that looks like the repository; figures are made of a history or of fields that are there already."""
@@ -115,7 +121,7 @@ def test_command(command, shared_run, launch, tmp_path):
     if "plots/" in command:
         (tmp_path / "out").mkdir()
         for word in re.findall(r"\bout/\S+\.h5\b", command):
-            (tmp_path / word).symlink_to(shared_run(DEFAULTS).folder / "history.h5")
+            (tmp_path / word).symlink_to(shared_run(run_with_history(word)).folder / "history.h5")
         for fields in re.findall(r"\b(out/\S+-fields)\.xdmf\b", command):
             made = shared_run(run_that_writes(fields, tmp_path)).folder / "out"  # beside the history, which the run puts elsewhere
             for file in made.glob(f"{fields.removeprefix('out/')}.*"):

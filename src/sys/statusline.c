@@ -17,6 +17,7 @@
 
 #define BAR_AFTER  1.0    /* s: shorter runs have no line */
 #define BAR_EVERY  0.2    /* s */
+#define BAR_QUIET  0.05   /* s: after a message, which may take its way to the terminal */
 #define BAR_TEXT   40     /* columns for what stands beside the bar */
 #define BAR_LEAST  10     /* columns: less is no bar */
 #define LOG_FIRST  60.0   /* s: then after twice the time, and so on */
@@ -146,6 +147,13 @@ static void PrintLine(double now)
   fflush(stderr);
 }
 
+/* How long nothing is drawn after a message: its line may not be complete, and `mpiexec` takes its time [s] */
+static double Quiet(void)
+{
+  if (status.inside) return BAR_AFTER;
+  return status.terminal == STDERR_FILENO ? BAR_QUIET : BAR_EVERY;
+}
+
 /* The thread: draws when it is time to */
 static void *Draw(void *ctx)
 {
@@ -153,16 +161,18 @@ static void *Draw(void *ctx)
   pthread_mutex_lock(&status.mutex);
   while (!status.ends) {
     const double    now = Now();
+    double          next;
     struct timespec due;
 
-    if (now >= status.due && !status.inside && now - status.printed >= BAR_EVERY) {
+    if (now >= status.due && now - status.printed >= Quiet()) {
       if (status.bar) DrawBar(now);
       else PrintLine(now);
       if (status.bar) status.due = now + BAR_EVERY;
       else status.due = now + (now - status.begin < LOG_RARELY ? now - status.begin : LOG_RARELY);
     }
-    due.tv_sec  = (time_t)(status.due > now ? status.due : now + BAR_EVERY);
-    due.tv_nsec = (long)(1e9 * ((status.due > now ? status.due : now + BAR_EVERY) - (double)due.tv_sec));
+    next        = status.due > now ? status.due : now + BAR_QUIET;
+    due.tv_sec  = (time_t)next;
+    due.tv_nsec = (long)(1e9 * (next - (double)due.tv_sec));
     pthread_cond_timedwait(&status.ended, &status.mutex, &due);
   }
   Erase();

@@ -58,6 +58,19 @@ def test_fields(impakt, tmp_path):
             fields["heat", 0]
 
 
+def test_lines_of_the_readme(bars, launch, tmp_path):
+    """What plots/README.md shows for notebooks runs as it stands there."""
+    (lines,) = re.findall(r"```python\n(.*?)```", (ROOT / "plots/README.md").read_text(), re.DOTALL)
+    (tmp_path / "plots").symlink_to(ROOT / "plots")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/impact-high-speed.h5").write_bytes(bars.path.read_bytes())
+    (tmp_path / "out/impact-high-speed.json").write_text(bars.summary_path.read_text())
+    run = launch([sys.executable, "-c", lines], cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.splitlines()[0].split()[1] == "N"
+    assert float(run.stdout.split()[-1]) == bars.summary["contact"]["impulse"]
+
+
 def test_what_cannot_be_read(bars, tmp_path):
     (tmp_path / "text.h5").write_text("not HDF5\n")
     h5py.File(tmp_path / "empty.h5", "w").close()
