@@ -14,7 +14,7 @@ NEVER = {
 }
 
 
-@pytest.mark.parametrize("cuts", [0, 2])
+@pytest.mark.parametrize("cuts", [pytest.param(0, marks=pytest.mark.long), 2])
 @pytest.mark.parametrize("method", NEVER)
 def test_step_time_and_pair(method, cuts, impakt):
     options, who = NEVER[method]

@@ -77,7 +77,7 @@ def test_width(take_cores):
         assert all(len(part) < columns for part in text.split("\r"))
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_messages_have_lines_of_their_own(ranks, take_cores):
     take_cores(ranks)
     command = [*(MPIEXEC + ["-n", "2"] if ranks > 1 else []), *RUN, "-monitor_interval", "6000" if ranks == 1 else "400"]

@@ -22,7 +22,7 @@ def speed(value, shape):
     return f"-b_initial_velocity {value}*(1-2*(x>0.5)){zeros}"
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
 @pytest.mark.parametrize("shape", BODIES)
 def test_inverted(shape, ranks, impakt):
     run = impakt(f"{COMMON} {BODIES[shape]} {speed(400, shape)}", ranks)

@@ -75,7 +75,7 @@ def test_pieces_apart(tmp_path, impakt):
     assert "(0 do)" in line
 
 
-@pytest.mark.parametrize("shift", [0, 0.25, 0.75])
+@pytest.mark.parametrize("shift", [0, 0.25, pytest.param(0.75, marks=pytest.mark.long)])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_overlap(shape, shift, tmp_path, impakt):
     """The same cell again, at the same place or not quite."""

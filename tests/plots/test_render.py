@@ -58,8 +58,8 @@ def test_peak_of_one_element(fields, tmp_path):
     assert np.percentile(greens("--percentile", "100"), 90) < 60
 
 
-@pytest.mark.parametrize("size", ["700x500", "500x700"])
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("size", ["700x500", pytest.param("500x700", marks=pytest.mark.long)])
+@pytest.mark.parametrize("name", ["solid", pytest.param("plane", marks=pytest.mark.long), pytest.param("tall", marks=pytest.mark.long)])
 def test_bodies_fill_the_picture(name, size, fields, tmp_path):
     """They reach from one end of their part of the picture to the other, across or upward; nothing lies under the scale."""
     top, bottom, left, right = drawn(draw(fields, name, tmp_path, "--size", size))
