@@ -38,7 +38,7 @@ static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *fr
     gap = PetscMin(gap, frame->pairs[p].gap);
     active += frame->pairs[p].active;
   }
-  if (!frame->step) lines->initial_energy = energy;
+  lines->initial_energy = controller->initial_energy;
   PetscCall(PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e s  energy error %10.3e", frame->step, (double)frame->time,
                         (double)(lines->initial_energy > 0 ? energy / lines->initial_energy - 1 : energy)));
   if (frame->n_pairs)
@@ -59,7 +59,7 @@ static PetscErrorCode ShowProgress(Controller controller, const ControllerFrame 
   PetscFunctionBegin;
   (void)controller;
   PetscCall(PetscTime(&now));
-  if (!frame->step) progress->begin = progress->last = now;
+  if (progress->begin == 0) progress->begin = progress->last = now;
   if (frame->step == frame->steps) {
     if (progress->shown) fprintf(stderr, "\r%79s\r", "");
     PetscFunctionReturn(PETSC_SUCCESS);
