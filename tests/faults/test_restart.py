@@ -10,8 +10,6 @@ from restarts import differences
 # Case, ranks, and the part of the run after which it is continued; in each there is contact before or after, or both
 SHORT = [
     ("-options_file options/impact-high-speed.opts", 1, 0.6),
-    ("-options_file options/impact-penalty.opts", 1, 0.6),
-    ("-options_file options/impact-lagrange.opts", 1, 0.6),
     ("-options_file options/stack-static.opts", 1, 0.6),  # static, springs of floating bodies
     ("-options_file options/beam-hit.opts -time_step 2e-4 -time_end 4e-3", 2, 0.55),  # steps that are cut in halves
     ("-options_file options/twisting-column.opts -time_end 0.05", 1, 0.55),  # nonlinear, rows that are built again
@@ -46,6 +44,8 @@ VARIANTS = {
     "damped": BLOCKS + "-left_ts_alpha_radius 0.8",
 }
 LONG = [
+    ("-options_file options/impact-penalty.opts", 1, 0.6),
+    ("-options_file options/impact-lagrange.opts", 1, 0.6),
     ("-options_file options/blocks.opts", 2, 0.55),
     ("-options_file options/discs.opts", 1, 0.55),
     ("-options_file options/discs.opts", 3, 0.7),
