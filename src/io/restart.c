@@ -1,5 +1,6 @@
 /* Runs that are continued from a checkpoint, and the options of all this. */
 #include "outputimpl.h"
+#include <body/interface/bodyvisit.h>
 #include <contact/interface/contactvisit.h>
 #include <controller/controllervisit.h>
 #include <exact/exactvisit.h>
@@ -86,6 +87,28 @@ PetscErrorCode OutputSetRestartState(Output output, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says of which bodies the solvers do not repeat themselves to the last bit, so that the run does not either */
+static PetscErrorCode TellSolvers(Output output)
+{
+  const Body *bodies;
+  PetscInt    n;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(output->controller, &n, &bodies));
+  for (PetscInt b = 0; b < n; b++) {
+    const char *name;
+    PetscBool   repeats;
+
+    PetscCall(BodyRepeatsBits(bodies[b], &repeats));
+    PetscCall(PetscObjectGetName((PetscObject)bodies[b], &name));
+    if (!repeats)
+      PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
+                             "impakt: the solver of body '%s' need not repeat itself to the last bit: the run goes on to round-off\n",
+                             name));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All of a checkpoint: to the last bit on as many ranks as before, else to round-off */
 static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool same_ranks)
 {
@@ -108,6 +131,7 @@ static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool 
                            file->info.ranks));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(TellSolvers(output));
   PetscCall(CheckpointFileRead(comm, file, &state));
   PetscCall(ContactVisit(contact, state));
   PetscCall(CheckpointFinish(state));

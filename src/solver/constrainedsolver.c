@@ -641,3 +641,19 @@ PetscErrorCode ConstrainedSolverVisit(ConstrainedSolver s, Checkpoint checkpoint
   if (!s->dense && !s->iterative) PetscCall(CreateIterative(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Whether solutions are the same to the last bit in another run: factors of PETSc's own, or of one rank, are. Iterations and factors that
+   several ranks have together are not always. */
+PetscErrorCode ConstrainedSolverRepeats(ConstrainedSolver s, PetscBool *repeats)
+{
+  PetscBool redundant = PETSC_FALSE, lu = PETSC_FALSE, cholesky = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (s->direct) {
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCREDUNDANT, &redundant));
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCLU, &lu));
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCCHOLESKY, &cholesky));
+  }
+  *repeats = (PetscBool)(redundant || ((lu || cholesky) && s->size == 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

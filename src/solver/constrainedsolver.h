@@ -22,3 +22,4 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverExtend(ConstrainedSolver, Petsc
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCorrect(ConstrainedSolver, const PetscScalar[], const PetscScalar[], Vec);
 PETSC_INTERN PetscLogDouble     ConstrainedSolverGetFlops(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverVisit(ConstrainedSolver, Checkpoint);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverRepeats(ConstrainedSolver, PetscBool *);

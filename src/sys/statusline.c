@@ -36,9 +36,9 @@ static struct {
   PetscBool       ends;
   double          begin, steps_began, printed, due; /* s: of the run, of its first step, of the last message; when the next line is due */
   char            phase[128];                       /* what is done before the first step */
-  PetscInt        step, steps;
-  int             shown;  /* columns of the line that is drawn now */
-  PetscBool       inside; /* a message has begun whose line has not ended */
+  PetscInt        first, step, steps;               /* the first step told of is not 0 where a run is continued */
+  int             shown;                            /* columns of the line that is drawn now */
+  PetscBool       inside;                           /* a message has begun whose line has not ended */
   PetscErrorCode (*print)(FILE *, const char[], va_list);
 } status = {.running = PETSC_FALSE, .mutex = PTHREAD_MUTEX_INITIALIZER};
 
@@ -97,13 +97,14 @@ static void Describe(double now, PetscBool brief, size_t size, char text[])
   const double share = status.steps ? (double)status.step / (double)status.steps : 0;
   char         time[64];
 
-  if (status.step) {
-    PrintDuration((now - status.steps_began) * (1 - share) / share, sizeof(time), time);
+  if (status.step > status.first) {
+    PrintDuration((now - status.steps_began) * (double)(status.steps - status.step) / (double)(status.step - status.first), sizeof(time),
+                  time);
     if (brief) snprintf(text, size, "%3.0f %%  %s to go", 100 * share, time);
     else snprintf(text, size, "step %lld of %lld, %.0f %%, %s to go", (long long)status.step, (long long)status.steps, 100 * share, time);
   } else {
     PrintDuration(now - status.begin, sizeof(time), time);
-    if (status.steps) snprintf(text, size, "step 1 of %lld, %s so far", (long long)status.steps, time);
+    if (status.steps) snprintf(text, size, "step %lld of %lld, %s so far", (long long)status.first + 1, (long long)status.steps, time);
     else snprintf(text, size, "%s, %s so far", status.phase, time);
   }
 }
@@ -260,7 +261,10 @@ void StatusLineSetSteps(PetscInt step, PetscInt steps)
 {
   if (!status.running) return;
   pthread_mutex_lock(&status.mutex);
-  if (!step) status.steps_began = Now();
+  if (!status.steps) {
+    status.first       = step;
+    status.steps_began = Now();
+  }
   status.step  = step;
   status.steps = steps;
   pthread_mutex_unlock(&status.mutex);

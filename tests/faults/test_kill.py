@@ -109,6 +109,9 @@ def end_by(where, number, seconds, *more, ranks=1, case=CASE):
         process = begin(where, ranks, "-checkpoint_interval", 100000, *more, case=case)
         if ranks == 1:
             await_caught(process)
+        while not (where / "h.h5").exists():  # the first record is there: the run has begun
+            assert process.poll() is None
+            time.sleep(0.01)
         time.sleep(seconds)
         os.kill(process.pid, number)
         stderr = process.communicate(timeout=60)[1]
@@ -191,7 +194,7 @@ def test_mpiexec(run_in, folder, same_runs):
     """Open MPI's mpiexec hands the signal on, and ends with a code of its own."""
     whole, other = folder("whole"), folder("ended")
     run_in(CASE, whole, 2)
-    code, stderr = end_by(other, signal.SIGTERM, 2.5, ranks=2)
+    code, stderr = end_by(other, signal.SIGTERM, 0.3, ranks=2)
     assert code != 0 and "impakt: ended by SIGTERM after controller step" in stderr
     run_in(CASE, other, 2, "-restart", "c.h5")
     same_runs(whole, other)

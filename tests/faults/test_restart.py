@@ -10,8 +10,6 @@ from restarts import differences
 # Case, ranks, and the part of the run after which it is continued; in each there is contact before or after, or both
 SHORT = [
     ("-options_file options/impact-high-speed.opts", 1, 0.6),
-    ("-options_file options/impact-penalty.opts", 1, 0.6),
-    ("-options_file options/impact-lagrange.opts", 1, 0.6),
     ("-options_file options/stack-static.opts", 1, 0.6),  # static, springs of floating bodies
     ("-options_file options/beam-hit.opts -time_step 2e-4 -time_end 4e-3", 2, 0.55),  # steps that are cut in halves
     ("-options_file options/blocks.opts -left_damping_mass 1e3 -right_damping_stiffness 1e-8 -left_probe -0.02,0.02", 1, 0.55),
@@ -47,6 +45,8 @@ VARIANTS = {
     "damped": BLOCKS + "-left_ts_alpha_radius 0.8",
 }
 LONG = [
+    ("-options_file options/impact-penalty.opts", 1, 0.6),
+    ("-options_file options/impact-lagrange.opts", 1, 0.6),
     ("-options_file options/blocks.opts", 2, 0.55),
     ("-options_file options/discs.opts", 1, 0.55),
     ("-options_file options/discs.opts", 3, 0.7),
@@ -242,12 +242,14 @@ RANKS = [
 @pytest.mark.long
 @pytest.mark.parametrize(("case", "before", "after"), RANKS)
 def test_other_ranks(run_in, folder, case, before, after):
-    """On another number of ranks a run goes on to round-off: these are not chaotic. 10^-10 is what was asked for; seen: 2e-12."""
+    """On another number of ranks a run goes on to round-off: these are not chaotic. 10^-10 is what was asked for; seen: 2e-12. Where the outer iteration of
+    nonlinear bodies begins without the secants that it had, the first steps may take other sweeps, and agree to its tolerance: discs continued at step
+    1201 differ by 4e-10 of the force."""
     whole, other = folder("whole"), folder("continued")
-    run_in(case, whole, before, fields=False)
-    middle = records(whole) // 2 + 1
-    run_in(case, other, before, "-checkpoint", "c.h5", "-checkpoint_interval", middle, fields=False)
-    told = run_in(case, other, after, "-restart", "c.prev.h5", fields=False).stderr
+    run_in(case, whole, before, "-output_fields", "g.h5", fields=False)
+    middle = int(0.55 * records(whole))
+    run_in(case, other, before, "-output_fields", "g.h5", "-checkpoint", "c.h5", "-checkpoint_interval", middle, fields=False)
+    told = run_in(case, other, after, "-output_fields", "new.h5", "-restart", "c.prev.h5", fields=False).stderr
     assert f"the checkpoint is of {before} ranks: on another number of them the run goes on to round-off" in told
     assert differences(whole, other, 1e-10) == []
 
@@ -286,3 +288,17 @@ def test_state_of_another_mesh(run_in, folder):
     run_in(IMPACT, where, 1, "-checkpoint", "c.h5", fields=False)
     refused = run_in(IMPACT, where, 1, "-restart_state", "c.h5", "-left_dm_plex_box_faces", 21, code=None, fields=False)
     assert "-restart_state: the checkpoint has no node at" in refused.stderr
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("solver", "ranks"), [("-left_ksp_type cg -left_pc_type gamg", 1), ("-left_pc_type cholesky -left_pc_factor_mat_solver_type mumps", 2)])
+def test_solver_that_does_not_repeat(run_in, folder, solver, ranks):
+    """Two whole runs may differ by 6e-13 then. The run says so, and goes on to round-off; on one rank MUMPS repeats itself."""
+    case, whole, other = f"{BLOCKS} {solver}", folder("whole"), folder("continued")
+    run_in(case, whole, ranks, fields=False)
+    run_in(case, other, ranks, "-checkpoint", "c.h5", "-checkpoint_interval", 82, fields=False)
+    told = run_in(case, other, ranks, "-restart", "c.prev.h5", fields=False).stderr
+    assert "the solver of body 'left' need not repeat itself to the last bit" in told and "body 'right'" not in told
+    with h5py.File(whole / "h.h5") as first, h5py.File(other / "h.h5") as second:
+        for name in ("body/left/kinetic", "body/right/momentum", "contact/left:right/force"):
+            assert second[name][()] == pytest.approx(first[name][()], rel=1e-10, abs=1e-10 * abs(first[name][()]).max())

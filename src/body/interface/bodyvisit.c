@@ -173,3 +173,15 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   body->start.changed = body->iterate.known = body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* BodyRepeatsBits - whether the solvers of a body find the same to the last bit in another run; Not Collective */
+PetscErrorCode BodyRepeatsBits(Body body, PetscBool *repeats)
+{
+  const ConstrainedSolver solvers[] = {body->solver, body->mass.solver};
+
+  PetscFunctionBegin;
+  *repeats = PETSC_TRUE;
+  for (int k = 0; k < 2 && *repeats; k++)
+    if (solvers[k]) PetscCall(ConstrainedSolverRepeats(solvers[k], repeats));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
