@@ -187,6 +187,7 @@ PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
+PETSC_INTERN PetscErrorCode TransferFindTurn(Transfer, PetscReal[]);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
