@@ -35,7 +35,8 @@ typedef struct {
   PetscInt  *faces;                     /* per face: its nodes, face_nodes */
   PetscReal *reference;                 /* per node: reference position [m] */
   PetscReal *positions;                 /* per node: present position [m] */
-  PetscReal *normals;                   /* per node: outward unit normal, of the faces around it weighted by their areas */
+  PetscReal *normals;                   /* per node: outward unit normal, of the faces around it weighted by their areas, or
+                                           as SurfaceSetRound() says */
   PetscReal *areas;                     /* per node: integral of its shape function [m^2, m or 1] */
   PetscReal *sizes;                     /* per node: edge length of the smallest face around it [m or 1] */
   PetscReal *face_normals;              /* per face: outward unit normal */
@@ -46,6 +47,7 @@ PETSC_EXTERN PetscErrorCode SurfaceInitializePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscBool, PetscBool);
+PETSC_EXTERN PetscErrorCode SurfaceSetRound(Surface, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
 PETSC_EXTERN PetscErrorCode SurfaceView(Surface, PetscViewer);
 PETSC_EXTERN PetscErrorCode SurfaceViewFromOptions(Surface, PetscObject, const char[]);

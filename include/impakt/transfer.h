@@ -68,6 +68,9 @@ PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscRea
 PETSC_EXTERN PetscErrorCode TransferSave(Transfer);
 PETSC_EXTERN PetscErrorCode TransferRestore(Transfer);
 PETSC_EXTERN PetscErrorCode TransferSetBalance(Transfer, PetscReal);
+PETSC_EXTERN PetscErrorCode TransferGetTurns(Transfer, PetscInt *, const PetscReal *[], const PetscReal *[], const PetscReal *[],
+                                             PetscReal[]);
+PETSC_EXTERN PetscErrorCode TransferTurn(Transfer, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferBalance(Transfer, const PetscReal[], PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSetCurved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);

@@ -6,98 +6,128 @@
    a contact that the mesh resolves both are the same, since surfaces that touch are parallel. In one of two or three nodes they are not:
    the centre of pressure lies somewhere between the nodes, where it hangs on the mesh, and spins discs that should not spin.
 
-   With c_i the component of n_i + m_i across the row, both sums are the same if S = sum lambda_i c_i is zero. What is dual to this
-   condition is a turn theta of the gap: rows have the gap g_i + theta c_i, which shifts the place at which curved surfaces meet and does no
-   work while S is zero. Before contact theta is that which makes the smallest gap largest, so that the nodes on both sides of that place
-   touch at one time. In contact it follows S by a proportional and integral rule: the turn needs no knowledge of the bodies but about how
-   stiff they are.
+   With c_i the component of n_i + m_i across the row, both sums are the same if sum lambda_i c_i is zero. What is dual to this condition is
+   a turn theta of the gap: rows have the gap g_i + theta c_i, which shifts the place at which curved surfaces meet by theta. In contact the
+   turn is an unknown beside the forces, so that the condition holds at the end of each step and the turn does no work. Before contact it is
+   that which makes the smallest gap largest, so that nodes on both sides of the place where the surfaces meet touch at one time.
+
+   In three dimensions there are two conditions, one for each of two axes e across the mean normal of the contact,
+   c_i = e . (r_i x (n_i + m_i)) with the direction r_i of the row; in two dimensions the one axis is that across the plane.
 */
 #include "interfaceimpl.h"
 
-/* Part of what is out of balance that is turned back in a step, and part of it by which the rate of the turn changes. With the stiffness
-   that TransferSetBalance() is told the turn is stable up to twice the first part. */
-#define PROPORTIONAL 0.5
-#define INTEGRAL     0.08
-/* Where rows have joined or left the rate is learnt anew: by this part at once, and in later steps by half as much each */
-#define ANEW 0.5
-/* Turns before contact are found within this, by so many halvings: more is no turn of a curved surface between two nodes [edges] */
-#define LARGEST_TURN 1.0
-#define HALVINGS     50
-/* Least squares of c_i that count: surfaces that are parallel within 1e-3 rad are balanced */
-#define PARALLEL 1e-6
+/* Chord of the angle between the normals of two nodes of a face, 18 degrees, from which on the face is beside an edge */
+#define EDGE 0.31
+/* Rows count up to an angle of 37 degrees between the normals of both sides, unless an edge is near */
+#define FACING 0.8
+/* Components of rows that push follow the surfaces without delay down to this part of what they are without strain */
+#define EVEN 0.2
+/* and at least by this part of the way in a step */
+#define SLOWEST 0.02
 
-/* The component c_i of a row; 0 where nothing is turned, which is where the surface has an edge */
-static PetscReal Unevenness(const Transfer transfer, PetscInt row)
+/* How far the normals turn from each node of a surface to its neighbours, edges left out. Nodes of faces on other ranks are neighbours of
+   ghosts there, and count with what this rank sees. */
+static void FindBends(const SurfaceData *data, PetscReal bends[])
 {
-  const RowSet    *set    = &transfer->rows;
-  const PetscReal *normal = set->normals + 2 * row, *node = transfer->dirichlet->data.normals + 3 * row;
-  PetscReal        partner[2] = {0, 0};
+  for (PetscInt f = 0; f < data->n_faces; f++)
+    for (PetscInt k = 0; k < data->face_nodes; k++) {
+      const PetscInt   a = data->faces[data->face_nodes * f + k], b = data->faces[data->face_nodes * f + (k + 1) % data->face_nodes];
+      const PetscReal *n = data->normals + 3 * a, *m = data->normals + 3 * b;
+      const PetscReal  bend = PetscSqrtReal(PetscSqr(n[0] - m[0]) + PetscSqr(n[1] - m[1]) + PetscSqr(n[2] - m[2]));
 
-  if (!set->opposite[row] || set->beyond[row]) return 0;
-  for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
-    for (PetscInt d = 0; d < 2; d++) partner[d] += set->shares[j].value * transfer->column_normals[3 * set->columns[j] + d];
-  if (RowBendCounts(-(partner[0] * node[0] + partner[1] * node[1])) == 0) return 0;
-  return normal[0] * (node[1] + partner[1]) - normal[1] * (node[0] + partner[0]);
+      if (bend > EDGE) continue;
+      if (a < data->n_owned) bends[3 * a] = PetscMax(bends[3 * a], bend);
+      if (b < data->n_owned) bends[3 * b] = PetscMax(bends[3 * b], bend);
+    }
 }
 
-/* The turn that makes the smallest gap of all rows largest: where it is, the gaps of rows with c_i of both signs are the same */
-static PetscErrorCode FindTurn(Transfer transfer, PetscReal *turn)
+/* What the components c_i of a row are taken from; 0 where nothing is turned, which is where the surface has an edge */
+static void FindAcross(const Transfer transfer, PetscInt row, PetscReal across[])
+{
+  const RowSet    *set       = &transfer->rows;
+  const PetscReal *node      = transfer->dirichlet->data.normals + 3 * row;
+  PetscReal        normal[3] = {0}, partner[3] = {0}, sum[3];
+
+  for (PetscInt d = 0; d < 3; d++) across[d] = 0;
+  if (!set->opposite[row] || set->beyond[row]) return;
+  for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
+    for (PetscInt d = 0; d < 3; d++) partner[d] += set->shares[j].value * transfer->column_normals[3 * set->columns[j] + d];
+  if (-Dot(partner, node) < FACING) return;
+  for (PetscInt d = 0; d < 3; d++) {
+    normal[d] = d < transfer->dim ? set->normals[transfer->dim * row + d] : 0;
+    sum[d]    = node[d] + partner[d];
+  }
+  Cross(normal, sum, across);
+}
+
+/* By what part of the way the components of rows that push follow the surfaces in a step. Forces press faces flat, which makes the
+   components small, and small ones change by much of themselves with the forces that they lead to: once they are a fifth of what they are
+   without strain, forces would swing from one step to the next, ever farther. */
+static PetscErrorCode FindPace(Transfer transfer, const PetscReal force[], PetscReal *pace)
 {
   const Balance *balance = &transfer->balance;
-  PetscReal      low = -LARGEST_TURN, high = LARGEST_TURN;
+  PetscReal      sums[3] = {0, 0, 0}; /* forces, and times squares of components and of what they are without strain */
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < HALVINGS; i++) {
-    struct {
-      double gap;
-      int    rank;
-    } least          = {PETSC_MAX_REAL, 0};
-    int         sign = 0;
-    PetscMPIInt rank;
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    PetscReal across[3];
 
-    PetscCallMPI(MPI_Comm_rank(transfer->comm, &rank));
-    least.rank = rank;
-    *turn      = 0.5 * (low + high);
-    for (PetscInt row = 0; row < transfer->n; row++) {
-      const PetscReal gap = balance->gap[row] - balance->turned[row] + *turn * balance->uneven[row];
-
-      if (balance->uneven[row] == 0 || gap >= least.gap) continue;
-      least.gap = gap;
-      sign      = balance->uneven[row] > 0 ? 1 : -1;
-    }
-    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, transfer->comm));
-    PetscCallMPI(MPI_Bcast(&sign, 1, MPI_INT, least.rank, transfer->comm));
-    if (sign > 0) low = *turn;
-    else high = *turn;
+    if (!(force[row] > 0)) continue;
+    FindAcross(transfer, row, across);
+    sums[0] += force[row];
+    sums[1] += force[row] * Dot(across, across);
+    sums[2] += force[row] * PetscSqr(balance->bend[row]);
   }
-  if (PetscAbsReal(*turn) > 0.9 * LARGEST_TURN) *turn = 0; /* all c_i have one sign: the surfaces meet beyond the rows */
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, transfer->comm));
+  *pace = sums[2] > 0 ? PetscMin(1, PetscMax(SLOWEST, sums[1] / (PetscSqr(EVEN) * balance->n * sums[2]))) : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By how much to turn in contact. No open row may be turned into the partner. */
-static PetscErrorCode FollowForces(Transfer transfer, const PetscReal force[], const PetscReal sums[], PetscReal *change)
+/* The components c_i of all rows, and by what a turn changes their gaps: in the step they change by the mean of the components of the step
+   before, with which the forces at its start are balanced, and of those now, so that the work of the turn is of third order in the step */
+static void FindUnevenness(Transfer transfer, const PetscReal force[], PetscReal pace)
 {
-  Balance        *balance   = &transfer->balance;
-  const PetscReal uneven    = sums[0] / (balance->stiffness * PetscMax(sums[1], PARALLEL));
-  PetscReal       limits[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL}; /* how far to turn up, and down, with their signs changed */
+  Balance *balance = &transfer->balance;
+
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    PetscReal *across = balance->across + 3 * row, last[3] = {across[0], across[1], across[2]};
+
+    FindAcross(transfer, row, across);
+    for (PetscInt d = 0; d < 3 && force[row] > 0; d++) across[d] = last[d] + pace * (across[d] - last[d]);
+    for (PetscInt k = 0; k < balance->n; k++) {
+      const PetscReal now = Dot(balance->axes[k], across);
+
+      balance->uneven[balance->n * row + k] = now;
+      balance->lever[balance->n * row + k]  = force[row] > 0 ? 0.5 * (now + Dot(balance->axes[k], last)) : now;
+    }
+  }
+}
+
+/* The axes across the mean normal of the rows with a force or, without any, of those with a gap below the reach */
+static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], PetscReal reach)
+{
+  Balance  *balance = &transfer->balance;
+  PetscReal sums[8] = {0};
+  PetscInt  least   = 0;
 
   PetscFunctionBegin;
-  if (balance->n_active != (PetscInt)sums[2]) balance->gain = ANEW;
-  balance->n_active = (PetscInt)sums[2];
-  balance->rate += PetscMax(INTEGRAL, balance->gain) * uneven;
-  balance->gain *= 0.5;
-  *change = PROPORTIONAL * uneven + balance->rate;
+  if (transfer->dim == 2) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt row = 0; row < transfer->n; row++) {
-    const PetscReal c = balance->uneven[row];
-
-    if (c == 0 || force[row] > 0) continue;
-    limits[c > 0] = PetscMax(limits[c > 0], -PetscMax(balance->gap[row], 0) / PetscAbsReal(c));
+    if (!transfer->rows.opposite[row]) continue;
+    for (PetscInt d = 0; d < 3; d++) {
+      if (force[row] > 0) sums[d] += force[row] * transfer->rows.normals[3 * row + d];
+      if (balance->gap[row] < reach) sums[4 + d] += transfer->rows.normals[3 * row + d];
+    }
+    if (force[row] > 0) sums[3] = 1;
   }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, limits, 2, MPIU_REAL, MPIU_MAX, transfer->comm));
-  if (*change > -limits[0] || *change < limits[1]) {
-    *change       = PetscMax(limits[1], PetscMin(-limits[0], *change));
-    balance->rate = 0;
-  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 8, MPIU_REAL, MPIU_SUM, transfer->comm));
+  if (!(sums[3] > 0)) PetscCall(PetscArraycpy(sums, sums + 4, 3));
+  if (!(Normalize(sums) > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt d = 1; d < 3; d++)
+    if (PetscAbsReal(sums[d]) < PetscAbsReal(sums[least])) least = d;
+  for (PetscInt d = 0; d < 3; d++) balance->axes[0][d] = (d == least) - sums[d] * sums[least];
+  (void)Normalize(balance->axes[0]);
+  Cross(sums, balance->axes[0], balance->axes[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,27 +137,108 @@ static PetscErrorCode FollowForces(Transfer transfer, const PetscReal force[], c
   Logically Collective
 
   Input Parameters:
-+ transfer  - the `Transfer`, between two surfaces in two dimensions
-- stiffness - of both sides one after the other, against a force on a row [N/m]
++ transfer - the `Transfer`, between two surfaces in two or three dimensions
+- largest  - turn, by which the place where surfaces meet may be shifted before contact [m]
 
   Level: developer
 
-.seealso: `Transfer`, `TransferBalance()`, `TransferSetCurved()`
+.seealso: `Transfer`, `TransferBalance()`, `TransferTurn()`, `TransferSetCurved()`
 @*/
-PetscErrorCode TransferSetBalance(Transfer transfer, PetscReal stiffness)
+PetscErrorCode TransferSetBalance(Transfer transfer, PetscReal largest)
 {
+  Balance *balance = &transfer->balance;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(transfer, stiffness, 2);
-  PetscCheck(stiffness > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The stiffness %g N/m must be positive", (double)stiffness);
-  PetscCheck(transfer->neumann && transfer->dim == 2, transfer->comm, PETSC_ERR_SUP,
-             "Forces are balanced between two surfaces in two dimensions alone");
-  transfer->balance.stiffness = stiffness;
+  PetscValidLogicalCollectiveReal(transfer, largest, 2);
+  PetscCheck(largest > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The largest turn %g m must be positive", (double)largest);
+  PetscCheck(transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_SUP,
+             "Forces are balanced between two surfaces in two or three dimensions alone");
+  PetscCall(PetscFree5(balance->uneven, balance->lever, balance->across, balance->gap, balance->turned));
+  balance->n       = transfer->dim - 1;
+  balance->largest = largest;
+  PetscCall(PetscCalloc5(balance->n * transfer->n, &balance->uneven, balance->n * transfer->n, &balance->lever, 3 * transfer->n,
+                         &balance->across, transfer->n, &balance->gap, transfer->n, &balance->turned));
+  PetscCall(PetscFree3(balance->bends[0], balance->bends[1], balance->bend));
+  PetscCall(PetscCalloc3(3 * transfer->n, &balance->bends[0], 3 * transfer->neumann->data.n_owned, &balance->bends[1], transfer->n,
+                         &balance->bend));
+  FindBends(&transfer->dirichlet->data, balance->bends[0]);
+  FindBends(&transfer->neumann->data, balance->bends[1]);
+  if (transfer->dim == 2) balance->axes[0][2] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  TransferBalance - turns the gaps of all rows such that forces have the same sum along the normals of both sides
+  TransferGetTurns - tells how gaps can be turned such that forces have the same sum along the normals of both sides
+
+  Not Collective
+
+  Input Parameter:
+. transfer - the `Transfer`, after `TransferSetBalance()`
+
+  Output Parameters:
++ n      - number of turns: one in two dimensions, two in three
+. uneven - for each row of this rank n numbers c: sums of forces times c vanish where forces are balanced; owned by the transfer
+. lever  - for each row n numbers: a turn t changes its gap by the sum of them times t; owned by the transfer
+. bend   - for each row what c is half way between two nodes of surfaces without strain; owned by the transfer
+- turn   - all turns so far together [m]
+
+  Note:
+  Each of them may be `NULL`.
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferBalance()`, `TransferTurn()`
+@*/
+PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal *uneven[], const PetscReal *lever[],
+                                const PetscReal *bend[], PetscReal turn[])
+{
+  const Balance *balance = &transfer->balance;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  if (n) *n = balance->n;
+  if (uneven) *uneven = balance->uneven;
+  if (lever) *lever = balance->lever;
+  if (bend) *bend = balance->bend;
+  for (PetscInt k = 0; turn && k < balance->n; k++) turn[k] = Dot(balance->turn, balance->axes[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferTurn - turns the gaps of all rows
+
+  Logically Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, after `TransferBalance()`
+- change   - by how much to turn about each of its axes [m]
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferGetTurns()`, `TransferBalance()`
+@*/
+PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
+{
+  Balance *balance = &transfer->balance;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscAssertPointer(change, 2);
+  for (PetscInt k = 0; k < balance->n; k++)
+    for (PetscInt d = 0; d < 3; d++) balance->turn[d] += change[k] * balance->axes[k][d];
+  for (PetscInt row = 0; row < transfer->n; row++)
+    for (PetscInt k = 0; k < balance->n; k++) {
+      const PetscReal more = change[k] * balance->lever[balance->n * row + k];
+
+      transfer->rows.gap[row] += more;
+      balance->turned[row] += more;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferBalance - finds how gaps can be turned, and turns those of rows without a force as they are to be
 
   Collective
 
@@ -142,15 +253,15 @@ PetscErrorCode TransferSetBalance(Transfer transfer, PetscReal stiffness)
   Level: developer
 
   Note:
-  Rows with a force count as having followed the surfaces.
+  Without any force the turn becomes that with which the smallest gap is largest. No row is turned into the partner.
 
-.seealso: `Transfer`, `TransferFollow()`, `TransferSetBalance()`
+.seealso: `Transfer`, `TransferFollow()`, `TransferSetBalance()`, `TransferGetTurns()`
 @*/
 PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], PetscReal reach, PetscBool *any)
 {
   Balance  *balance = &transfer->balance;
-  PetscReal sums[3] = {0, 0, 0}, nearest[1] = {-PETSC_MAX_REAL},
-            change = 0; /* S, sum of c_i^2 and rows with a force; minus the least gap without turns */
+  PetscReal most[2] = {-PETSC_MAX_REAL, 0}; /* minus the least gap without turns; whether there is any force */
+  PetscReal turn[2] = {0, 0}, pace = 1;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
@@ -159,35 +270,37 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
   PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
   PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
   for (PetscInt row = 0; row < transfer->n; row++) {
-    balance->uneven[row] = Unevenness(transfer, row);
     if (!transfer->rows.opposite[row]) continue;
     balance->gap[row] = TransferPresentGap(transfer, row);
-    nearest[0]        = PetscMax(nearest[0], balance->turned[row] - balance->gap[row]);
-    if (!(force[row] > 0)) continue;
-    sums[0] += force[row] * balance->uneven[row];
-    sums[1] += PetscSqr(balance->uneven[row]);
-    sums[2]++;
+    most[0]           = PetscMax(most[0], balance->turned[row] - balance->gap[row]);
+    if (force[row] > 0) most[1] = 1;
   }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, transfer->comm));
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, nearest, 1, MPIU_REAL, MPIU_MAX, transfer->comm));
-  if (sums[2] > 0) PetscCall(FollowForces(transfer, force, sums, &change));
-  else {
-    balance->rate     = 0;
-    balance->n_active = 0;
-    if (-nearest[0] > reach) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(FindTurn(transfer, &change));
-    change -= balance->turn;
-  }
-  balance->turn += change;
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, transfer->comm));
+  PetscCall(FindAxes(transfer, force, reach));
+  PetscCall(TransferGetColumns(transfer, balance->bends[1], transfer->column_moved)); /* what these have moved is not needed any more */
   for (PetscInt row = 0; row < transfer->n; row++) {
-    const PetscBool pushes = (PetscBool)(force[row] > 0);
-    PetscReal       more   = pushes ? change * balance->uneven[row] : balance->turn * balance->uneven[row] - balance->turned[row];
+    balance->bend[row] = 0.5 * balance->bends[0][3 * row];
+    for (PetscInt j = transfer->rows.offsets[row]; j < transfer->rows.offsets[row + 1]; j++)
+      balance->bend[row] += 0.5 * transfer->rows.shares[j].value * transfer->column_moved[3 * transfer->rows.columns[j]];
+  }
+  PetscCall(FindPace(transfer, force, &pace));
+  FindUnevenness(transfer, force, pace);
+  if (!(most[1] > 0)) {
+    PetscCall(PetscArrayzero(balance->turn, 3));
+    if (-most[0] > reach) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(TransferFindTurn(transfer, turn));
+    for (PetscInt k = 0; k < balance->n; k++)
+      for (PetscInt d = 0; d < 3; d++) balance->turn[d] += turn[k] * balance->axes[k][d];
+  } else
+    for (PetscInt k = 0; k < balance->n; k++) turn[k] = Dot(balance->turn, balance->axes[k]);
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    PetscReal more = -balance->turned[row];
 
-    if (balance->uneven[row] == 0) continue;
-    if (!pushes && balance->gap[row] + more < 0) more = -PetscMax(balance->gap[row], 0);
+    if (force[row] > 0 || !transfer->rows.opposite[row]) continue;
+    for (PetscInt k = 0; k < balance->n; k++) more += turn[k] * balance->uneven[balance->n * row + k];
+    if (balance->gap[row] + more < 0) more = -PetscMax(balance->gap[row], 0);
     transfer->rows.gap[row] += more;
     balance->turned[row] += more;
-    if (pushes) transfer->followed[row] = PETSC_TRUE;
   }
   *any = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -16,6 +16,7 @@ struct _p_Surface {
   PetscReal   *signs;       /* per face, in one dimension: direction of its outward normal, 1 or -1 */
   PetscInt    *owner_index; /* per node: its number on the rank that owns it */
   PetscMPIInt *owner_rank;
+  PetscBool    round;   /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
   PetscSF      sf;      /* from owned nodes to ghosts, one number for each node */
   PetscSF      vectors; /* the same, three numbers for each node */
 };
@@ -84,14 +85,18 @@ typedef struct {
 
 /* How the gaps of the rows are turned, see src/interface/balance.c */
 typedef struct {
-  PetscReal  stiffness; /* of both sides against a force on a row [N/m]; 0: gaps are not turned */
-  PetscReal  turn;      /* [m] */
-  PetscReal  rate;      /* by which it changes in a step [m] */
-  PetscReal  gain;      /* by which the rate is learnt anew */
-  PetscInt   n_active;  /* rows with a force in the last step */
-  PetscReal *uneven;    /* per row: c_i */
-  PetscReal *gap;       /* per row: present gap [m] */
-  PetscReal *turned;    /* per row: what has been added to its gap [m] */
+  PetscInt   n;          /* number of turns: 0, gaps are not turned; 1 in two dimensions, 2 in three */
+  PetscReal  largest;    /* turn before contact [m] */
+  PetscReal  axes[2][3]; /* of the turns, unit vectors */
+  PetscReal  turn[3];    /* the sum of turns times axes [m] */
+  PetscReal *uneven;     /* per row: c_i, n each */
+  PetscReal *lever;      /* per row: the mean of these and of those of the step before, n each */
+  PetscReal *across;     /* per row: r_i x (n_i + m_i), 3 each */
+  PetscReal *bends[2];   /* per owned node of both sides: how far the normals of its faces turn in the mesh [rad], 3 numbers of which the
+                            first counts */
+  PetscReal *bend;       /* per row: half of that of both sides together */
+  PetscReal *gap;        /* per row: present gap [m] */
+  PetscReal *turned;     /* per row: what has been added to its gap [m] */
 } Balance;
 
 /* What TransferSave() puts aside */
@@ -103,7 +108,7 @@ typedef struct {
   PetscReal *x[2], *follow_slip, step; /* of Follow */
   PetscBool *known, has_last;
   Balance    balance;
-  PetscReal *turned; /* of Balance */
+  PetscReal *turned, *across; /* of Balance */
 } TransferSaved;
 
 struct _p_Transfer {
@@ -182,6 +187,7 @@ PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
+PETSC_INTERN PetscErrorCode TransferFindTurn(Transfer, PetscReal[]);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);

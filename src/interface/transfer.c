@@ -58,7 +58,6 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   PetscCall(PetscCalloc5(3 * t->n, &t->built_x[0], neumann ? 3 * neumann->data.n_owned : 0, &t->built_x[1], 3 * t->n, &t->built_slip, t->n,
                          &t->slip, t->n, &t->keep));
   PetscCall(PetscCalloc2(t->n, &t->followed, t->n, &t->goes_on));
-  PetscCall(PetscCalloc3(t->n, &t->balance.uneven, t->n, &t->balance.gap, t->n, &t->balance.turned));
   if (neumann)
     PetscCall(PetscCalloc6(3 * t->n, &t->follow.x[0], 3 * neumann->data.n_owned, &t->follow.x[1], 3 * t->n, &t->follow.moved,
                            3 * neumann->data.n_owned, &t->follow.partner_moved, 3 * t->n, &t->follow.slip, t->n, &t->follow.known));
@@ -90,7 +89,9 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   PetscCall(TransferDestroySaved(*transfer));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
-  PetscCall(PetscFree3((*transfer)->balance.uneven, (*transfer)->balance.gap, (*transfer)->balance.turned));
+  PetscCall(PetscFree3((*transfer)->balance.bends[0], (*transfer)->balance.bends[1], (*transfer)->balance.bend));
+  PetscCall(PetscFree5((*transfer)->balance.uneven, (*transfer)->balance.lever, (*transfer)->balance.across, (*transfer)->balance.gap,
+                       (*transfer)->balance.turned));
   PetscCall(PetscFree6((*transfer)->follow.x[0], (*transfer)->follow.x[1], (*transfer)->follow.moved, (*transfer)->follow.partner_moved,
                        (*transfer)->follow.slip, (*transfer)->follow.known));
   PetscCall(PetscFree4((*transfer)->column_x, (*transfer)->column_normals, (*transfer)->column_moved, (*transfer)->column_reference));

@@ -5,7 +5,7 @@
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
-#define N_ROW     38 /* numbers of a node of the first side: key, 35 more */
+#define N_ROW     40 /* numbers of a node of the first side: key, 37 more */
 #define N_SHARE   8  /* key of its row, position of the partner's node, weight and goal */
 #define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
 
@@ -43,9 +43,11 @@ static void CopyRow(Transfer transfer, PetscInt i, PetscBool back, PetscReal *pa
   CopyBool(back, &transfer->keep[i], &packed);
   CopyBool(back, &transfer->followed[i], &packed);
   CopyBool(back, &transfer->goes_on[i], &packed);
-  Copy(back, 1, &transfer->balance.uneven[i], &packed);
-  Copy(back, 1, &transfer->balance.gap[i], &packed);
-  Copy(back, 1, &transfer->balance.turned[i], &packed);
+  if (transfer->balance.n) { /* what turns do to gaps is found anew in each step */
+    Copy(back, 3, transfer->balance.across + 3 * i, &packed);
+    Copy(back, 1, &transfer->balance.gap[i], &packed);
+    Copy(back, 1, &transfer->balance.turned[i], &packed);
+  } else packed += 5;
   if (!transfer->neumann) return;
   Copy(back, 3, transfer->follow.x[0] + 3 * i, &packed);
   Copy(back, 3, transfer->follow.moved + 3 * i, &packed);

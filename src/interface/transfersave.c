@@ -70,7 +70,7 @@ static PetscErrorCode Allocate(Transfer transfer)
   if (saved->ready) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc4(3 * n, &saved->built_x[0], 3 * partners, &saved->built_x[1], 3 * n, &saved->built_slip, n, &saved->slip));
   PetscCall(PetscMalloc4(3 * n, &saved->x[0], 3 * partners, &saved->x[1], 3 * n, &saved->follow_slip, n, &saved->known));
-  if (transfer->balance.stiffness > 0) PetscCall(PetscMalloc1(n, &saved->turned));
+  if (transfer->balance.n) PetscCall(PetscMalloc2(n, &saved->turned, 3 * n, &saved->across));
   saved->ready = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,9 +103,10 @@ static PetscErrorCode CopyNotes(Transfer transfer, PetscBool back)
   PetscCall(CopyReals(back, 1, &follow->step, &saved->step));
   PetscCall(PetscArraycpy(back ? follow->known : saved->known, back ? saved->known : follow->known, n));
   *(back ? &follow->has_last : &saved->has_last) = back ? saved->has_last : follow->has_last;
-  if (!(transfer->balance.stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!transfer->balance.n) PetscFunctionReturn(PETSC_SUCCESS);
   *(back ? &transfer->balance : &saved->balance) = back ? saved->balance : transfer->balance; /* its arrays stay where they are */
   PetscCall(CopyReals(back, n, transfer->balance.turned, saved->turned));
+  PetscCall(CopyReals(back, 3 * n, transfer->balance.across, saved->across));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,6 +180,6 @@ PetscErrorCode TransferDestroySaved(Transfer transfer)
   PetscCall(RowSetDestroy(&saved->rows));
   PetscCall(PetscFree4(saved->built_x[0], saved->built_x[1], saved->built_slip, saved->slip));
   PetscCall(PetscFree4(saved->x[0], saved->x[1], saved->follow_slip, saved->known));
-  PetscCall(PetscFree(saved->turned));
+  PetscCall(PetscFree2(saved->turned, saved->across));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -263,7 +263,7 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
   else PetscCall(TransferBuildObstacleRows(transfer, reach));
   for (PetscInt row = 0; row < transfer->n; row++) /* a gap that is that of the surfaces again has no turn in it */
-    if (transfer->rows.changed[row] && !transfer->goes_on[row]) transfer->balance.turned[row] = 0;
+    if (transfer->balance.n && transfer->rows.changed[row] && !transfer->goes_on[row]) transfer->balance.turned[row] = 0;
   PetscCall(Remember(transfer, reach));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -53,7 +53,10 @@ static PetscErrorCode VisitBalance(Transfer transfer, Checkpoint checkpoint)
   Balance       *balance = &transfer->balance;
 
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitReals(checkpoint, "uneven", n, balance->uneven));
+  if (!balance->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitReals(checkpoint, "uneven", balance->n * n, balance->uneven));
+  PetscCall(CheckpointVisitReals(checkpoint, "lever", balance->n * n, balance->lever));
+  PetscCall(CheckpointVisitReals(checkpoint, "across", 3 * n, balance->across));
   PetscCall(CheckpointVisitReals(checkpoint, "present gap", n, balance->gap));
   PetscCall(CheckpointVisitReals(checkpoint, "turned", n, balance->turned));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -72,10 +75,9 @@ PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
   PetscCall(CheckpointVisitBools(checkpoint, "has_last", 1, &follow->has_last));
   PetscCall(CheckpointVisitReals(checkpoint, "step", 1, &follow->step));
   PetscCall(CheckpointVisitReals(checkpoint, "scale", 1, &follow->scale));
-  PetscCall(CheckpointVisitReals(checkpoint, "turn", 1, &balance->turn));
-  PetscCall(CheckpointVisitReals(checkpoint, "rate", 1, &balance->rate));
-  PetscCall(CheckpointVisitReals(checkpoint, "gain", 1, &balance->gain));
-  PetscCall(CheckpointVisitInts(checkpoint, "n_active", 1, &balance->n_active));
+  PetscCall(CheckpointCheckInts(checkpoint, "turns of gaps", 1, &balance->n));
+  PetscCall(CheckpointVisitReals(checkpoint, "turn", 3, balance->turn));
+  PetscCall(CheckpointVisitReals(checkpoint, "axes", 6, balance->axes[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

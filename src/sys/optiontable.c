@@ -126,8 +126,7 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_allow_unstable", "true|false",
      "whether choices that are known to gain energy run all the same, default false"},
     {"contact", OPTION_OF_RUN, "contact_balance", "true|false",
-     "in 2-D: forces have the same sum along the normals of both sides, so that discs do not spin; costs 1e-4 to 1e-3 of energy; default "
-     "false"},
+     "forces have the same sum along the normals of both sides, so that discs and balls without friction do not spin; default false"},
     {"contact", OPTION_OF_RUN, "contact_shared_times", "true|false",
      "whether contact holds at all times that all bodies have in common, default true, or at the ends of controller steps alone"},
     {"contact", OPTION_OF_RUN, "contact_balanced_start", "true|false",

@@ -129,6 +129,15 @@ typedef struct {
   PetscInt64 patterns[2]; /* that count for `interfaces` and `spares`, when they were filled; -1: they are made anew */
 } ContactRows;
 
+/* Turns of gaps with which forces have the same sum along the normals of both sides, see src/contact/rows/balance.c */
+typedef struct {
+  PetscInt   n;         /* of all pairs */
+  PetscInt  *begin;     /* per pair: its first one; n_pairs + 1 */
+  PetscReal *change;    /* by how much gaps are turned in the controller step [m] */
+  PetscReal *stiffness; /* per pair: of both sides against a force on a row [N/m] */
+  PetscReal *turned;    /* per row: what that adds to its gap at the end of the step [m] */
+} ContactTurns;
+
 /* Which rows tie surfaces that lay on each other at the start, see src/contact/rows/ties.c */
 typedef struct {
   PetscBool *holds;    /* per row: its node was within the tie distance, whether the user holds it or not */
@@ -313,6 +322,7 @@ struct _p_Contact {
   Mat              *spares;     /* the same of other steps, to be filled next */
   ContactNodes      nodes;
   ContactRows       rows;
+  ContactTurns      turns;
   ContactTies       ties;
   ContactHeldRows   held;
   SharedNodes       shared;
@@ -384,6 +394,10 @@ PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
 PETSC_INTERN PetscErrorCode ContactLetTouch(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpBalance(Contact, ContactPair *);
+PETSC_INTERN PetscErrorCode ContactSetUpTurns(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyTurns(Contact);
+PETSC_INTERN PetscErrorCode ContactTurn(Contact, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactAcceptTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);

@@ -68,7 +68,10 @@ PetscErrorCode ContactComputeGaps(Contact contact)
       PetscCall(TraceGetSizes(traces->displacement, NULL, &levels));
       PetscCall(TraceGetLevel(traces->displacement, levels, &end[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i] - end[0][i];
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i] - end[0][i];
+      if (contact->turns.n) contact->end.gap[i] += contact->turns.turned[i];
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -109,6 +112,7 @@ PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(contact->end.active, contact->rows.n));
   PetscCall(PetscArrayzero(contact->end.force, contact->rows.n));
+  PetscCall(ContactTurn(contact, NULL));
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES)); /* of rows that are let go, as none is active */
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ContactLoadReleased(contact, b));

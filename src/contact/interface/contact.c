@@ -176,6 +176,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscCall(ContactUpdateRows(contact));
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
+  PetscCall(ContactTurn(contact, NULL));
   if (contact->rows.n_all) {
     PetscCall(ContactMakeStep(contact));
     if (!ContactFailed(contact)) PetscCall(ContactLimitEnergy(contact));
@@ -213,6 +214,7 @@ PetscErrorCode ContactAccept(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactBookWork(contact));
   PetscCall(ContactAddImpulses(contact));
+  PetscCall(ContactAcceptTurns(contact));
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.gap, contact->end.gap, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));

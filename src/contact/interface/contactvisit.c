@@ -181,6 +181,7 @@ PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
     PetscCall(CheckpointVisitBools(checkpoint, "bonded", 1, &pair->bonded));
     PetscCall(TransferVisitShared(pair->transfer, checkpoint));
   }
+  PetscCall(CheckpointVisitReals(checkpoint, "turns", contact->turns.n, contact->turns.change));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitShared(contact->bodies[b], checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,6 +214,7 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(VisitRowStates(contact, checkpoint));
   PetscCall(ContactVisitImpulses(contact, checkpoint));
   PetscCall(VisitObstacleTraces(contact, checkpoint));
+  if (contact->turns.n) PetscCall(CheckpointVisitReals(checkpoint, "turned", contact->rows.n, contact->turns.turned));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -152,6 +152,7 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair, PetscRe
     PetscCall(MaterialIsLinear(material, &is_linear));
     linear = (PetscBool)(linear && is_linear);
     PetscCall(SurfaceCreate(dm, pair->surface[side], &pair->surfaces[side]));
+    PetscCall(SurfaceSetRound(pair->surfaces[side], (PetscBool)(contact->dim == 3 && contact->options.balance)));
     PetscCall(DMGetBoundingBox(dm, lower, upper));
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }
@@ -165,9 +166,9 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair, PetscRe
   PetscCall(CheckFacing(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
-  /* in three dimensions coarse balls lose six times the energy if bends count, since normals of their nodes differ by too much */
-  PetscCall(
-      TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && !linear && contact->dim == 2)));
+  /* in three dimensions coarse balls lose six times the energy if bends count with normals that are means by areas */
+  PetscCall(TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && !linear &&
+                                                          (contact->dim == 2 || contact->options.balance))));
   PetscCall(ContactSetUpBalance(contact, pair));
   PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
   PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));

@@ -221,6 +221,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   }
   PetscCall(CountRows(contact));
   PetscCall(AllocateRows(contact));
+  PetscCall(ContactSetUpTurns(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscBool changed;
 
@@ -288,6 +289,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(PetscFree2(contact->ties.holds, contact->ties.distance));
   PetscCall(ContactDestroySavedRows(contact));
+  PetscCall(ContactDestroyTurns(contact));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

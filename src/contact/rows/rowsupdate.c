@@ -264,7 +264,7 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   }
   PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
                            contact->step, contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
-  if (contact->options.balance) PetscCall(TransferBalance(pair->transfer, contact->start.force + pair->begin, near, any));
+  if (contact->turns.n) PetscCall(TransferBalance(pair->transfer, contact->start.force + pair->begin, near, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -302,6 +302,7 @@ static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
   PetscCall(VecGetArray(Y, &y));
   if (schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN && !(jacobian->dense && jacobian->chain))
     PetscCall(ApplyRobin(contact, f, y));
+  else if (contact->turns.n) PetscCall(SchwarzApplyTurned(contact, f, y));
   else if (jacobian->dense) PetscCall(ApplyDense(contact, f, y));
   else PetscCall(ApplyByLevels(contact, f, y));
   PetscCall(VecRestoreArray(Y, &y));
@@ -322,11 +323,13 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
   schwarz = (Schwarz *)contact->data;
   if (!schwarz->secants.dx || (schwarz->exact && schwarz->jacobian.dense)) {
     PetscCall(ApplyCompliance(contact, F, Y));
+    PetscCall(SchwarzLimitTurns(contact, Y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SchwarzApplySecants(contact, F, &rest, &n, which, c));
   PetscCall(ApplyCompliance(contact, rest, Y));
   for (PetscInt i = 0; i < n; i++) PetscCall(VecAXPY(Y, c[i], schwarz->secants.dx[which[i]]));
+  PetscCall(SchwarzLimitTurns(contact, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -83,6 +83,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
     schwarz->offset[i] = *unknowns;
     *unknowns += schwarz->room[contact->rows.pair[i]];
   }
+  PetscCall(SchwarzSetUpTurns(contact, unknowns));
   PetscCallMPI(MPI_Scan(unknowns, &begin, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
   begin -= *unknowns;
   PetscCall(PetscMalloc1(contact->rows.n, &mine));
@@ -144,6 +145,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(SchwarzSetUpJacobian(contact));
   if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
   PetscCall(SchwarzSetUpTied(contact));
+  PetscCall(SchwarzCheckTurns(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,6 +199,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
   PetscCall(PetscFree2(schwarz->kept_force, schwarz->previous));
   PetscCall(RoundsDestroy(&schwarz->rounds));
+  PetscCall(SchwarzDestroyTurns(contact));
   PetscCall(PetscFree2(schwarz->interpolated, schwarz->row_work));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);

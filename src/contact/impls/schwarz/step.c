@@ -24,6 +24,7 @@ static PetscErrorCode PrepareSweeps(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(CompareActive(contact));
+  PetscCall(SchwarzHoldTurns(contact));
   if (schwarz->newton || schwarz->mode == SCHWARZ_CONDENSED) PetscCall(SchwarzUpdateJacobian(contact));
   schwarz->step = schwarz->mode == SCHWARZ_CONDENSED && schwarz->jacobian.dense ? STEP_CONDENSED : STEP_WHOLE;
   if (schwarz->step == STEP_CONDENSED) PetscCall(SchwarzPrepareCondensed(contact));
@@ -32,18 +33,31 @@ static PetscErrorCode PrepareSweeps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The outer iteration with the active set as it is, then forces and gaps */
-static PetscErrorCode SolveActive(Contact contact)
+/* The outer iteration with the active set as it is; once more for pairs whose gaps would have to be turned too far */
+static PetscErrorCode Iterate(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Schwarz  *schwarz = (Schwarz *)contact->data;
+  PetscBool again   = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(PrepareSweeps(contact));
-  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  schwarz->swept = PETSC_FALSE;
-  if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
-  PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
-  PetscCall(SchwarzCheckConverged(contact));
+  while (again) {
+    PetscCall(PrepareSweeps(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    schwarz->swept = PETSC_FALSE;
+    if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
+    PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
+    PetscCall(SchwarzCheckConverged(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(SchwarzJoinTurned(contact, &again));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That iteration, then forces and gaps */
+static PetscErrorCode SolveActive(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(Iterate(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair     = &contact->pairs[p];
@@ -90,6 +104,7 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   if (!condensed)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
   PetscCall(PetscArraycpy(schwarz->kept_force, contact->end.force, contact->rows.n));
+  PetscCall(PetscArraycpy(schwarz->turns.kept, contact->turns.change, contact->turns.n));
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzBreakCycle(contact, &flips));
@@ -98,6 +113,7 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   *taken_back = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
   PetscCall(PetscArraycpy(contact->end.force, schwarz->kept_force, contact->rows.n));
+  PetscCall(ContactTurn(contact, schwarz->turns.kept));
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,6 +149,8 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(RoundsBegin(&schwarz->rounds));
+  PetscCall(PetscArrayzero(schwarz->turns.fixed, contact->n_pairs));
+  PetscCall(PetscArrayzero(schwarz->turns.joined, contact->n_pairs));
   PetscCall(ContactBeginRelease(contact));
   schwarz->have_base = PETSC_FALSE;
   if (schwarz->swap && schwarz->started && !contact->energy.again && !contact->attempt.again) PetscCall(SchwarzSwapSides(contact));

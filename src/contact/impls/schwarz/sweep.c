@@ -279,6 +279,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
   PetscCall(PetscTime(&begin));
   PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(SchwarzTakeTurns(contact, x));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     PetscCall(LoadBody(contact, contact->order[k], x));
     if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
@@ -289,6 +290,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   else {
     PetscCall(VecGetArrayWrite(F, &f));
     for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
+    PetscCall(SchwarzCompareTurns(contact, f));
     PetscCall(SchwarzMeasureChange(contact, f));
     PetscCall(VecRestoreArrayWrite(F, &f));
   }
