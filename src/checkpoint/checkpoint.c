@@ -215,11 +215,32 @@ static PetscErrorCode CreateMat(Mat like, PetscInt n, const PetscInt offsets[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether rows that have been loaded are those of a matrix */
+static PetscErrorCode CheckRows(Checkpoint c, const char name[], PetscInt n, const PetscInt offsets[])
+{
+  PetscBool fine = (PetscBool)(offsets[0] == 0);
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++) fine = (PetscBool)(fine && offsets[i] <= offsets[i + 1]);
+  PetscCheck(fine, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has rows of '%s' of %s that cannot be", name, c->section);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckColumns(Checkpoint c, const char name[], PetscInt size, PetscInt n, const PetscInt columns[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(columns[i] >= 0 && columns[i] < size, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+               "The checkpoint has an entry of '%s' of %s in column %" PetscInt_FMT " of %" PetscInt_FMT, name, c->section, columns[i],
+               size);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* CheckpointVisitMat - a matrix of type AIJ with its explicit zeros; loaded, it is made anew, as large as the one that is there. Collective
  */
 PetscErrorCode CheckpointVisitMat(Checkpoint c, const char name[], Mat *mat)
 {
-  PetscInt     begin, end, n, count = 0, *offsets, *columns;
+  PetscInt     begin, end, n, width, count = 0, *offsets, *columns;
   PetscScalar *values;
 
   PetscFunctionBegin;
@@ -234,6 +255,7 @@ PetscErrorCode CheckpointVisitMat(Checkpoint c, const char name[], Mat *mat)
     PetscCall(MatRestoreRow(*mat, begin + i, &entries, NULL, NULL));
   }
   PetscCall(CheckpointVisitInts(c, name, n + 1, offsets));
+  PetscCall(CheckRows(c, name, n, offsets));
   count = offsets[n];
   PetscCall(PetscMalloc2(count, &columns, count, &values));
   for (PetscInt i = 0; i < n && !c->loads; i++) {
@@ -247,6 +269,8 @@ PetscErrorCode CheckpointVisitMat(Checkpoint c, const char name[], Mat *mat)
     PetscCall(MatRestoreRow(*mat, begin + i, &entries, &row_columns, &row_values));
   }
   PetscCall(CheckpointVisitInts(c, "columns", count, columns));
+  PetscCall(MatGetSize(*mat, NULL, &width));
+  PetscCall(CheckColumns(c, name, width, count, columns));
   PetscCall(CheckpointVisitReals(c, "entries", count, values));
   if (c->loads) {
     Mat loaded;

@@ -8,7 +8,7 @@ typedef struct {
   PetscBool from_rest; /* all bodies start at rest without strain: then the largest is what changes are relative to */
 } EnergyScale;
 
-PETSC_INTERN const EnergyScale *ControllerGetEnergyScale(Controller);
-PETSC_INTERN PetscErrorCode     EnergyScaleAdd(EnergyScale *, Controller, const ControllerFrame *);
-PETSC_INTERN PetscReal          EnergyScaleGet(const EnergyScale *);
-PETSC_INTERN PetscReal          EnergyScaleChange(const EnergyScale *, const ControllerFrame *);
+PETSC_INTERN EnergyScale   *ControllerGetEnergyScale(Controller);
+PETSC_INTERN PetscErrorCode EnergyScaleAdd(EnergyScale *, Controller, const ControllerFrame *);
+PETSC_INTERN PetscReal      EnergyScaleGet(const EnergyScale *);
+PETSC_INTERN PetscReal      EnergyScaleChange(const EnergyScale *, const ControllerFrame *);

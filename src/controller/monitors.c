@@ -30,7 +30,7 @@ PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *
 }
 
 /* What the energies of the frame that observers are shown are compared with */
-const EnergyScale *ControllerGetEnergyScale(Controller controller)
+EnergyScale *ControllerGetEnergyScale(Controller controller)
 {
   return &controller->scale;
 }

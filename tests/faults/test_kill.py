@@ -14,6 +14,8 @@ from restarts import command
 
 # Contact from the start on, fields of two dimensions, 600 steps in about a second
 CASE = "-options_file options/blocks.opts"
+# of a second or more on any machine, for what is to come amid the run
+SLOW = CASE + " -left_dm_plex_box_faces 100,20 -right_dm_plex_box_faces 90,18"
 
 
 def children(pid):
@@ -121,24 +123,24 @@ def end_by(where, number, seconds, *more, ranks=1, case=CASE):
 @pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.long)])
 def test_end_in_good_order(run_in, folder, same_runs, number):
     whole, other = folder("whole"), folder("ended")
-    run_in(CASE, whole)
-    code, stderr = end_by(other, number, 0.1)
+    run_in(SLOW, whole)
+    code, stderr = end_by(other, number, 0.1, case=SLOW)
     assert code == 75, stderr
     found = re.search(rf"^impakt: ended by {number.name} after controller step (\d+) of 600; to continue, give the same command with -restart c.h5$", stderr, re.MULTILINE)
     assert found
     with h5py.File(other / "h.h5") as history:
         assert len(history["time"]) == int(found[1]) + 1
     assert (other / "s.json").exists()
-    run_in(CASE, other, 1, "-restart", "c.h5", "-checkpoint", "c.h5")
+    run_in(SLOW, other, 1, "-restart", "c.h5", "-checkpoint", "c.h5")
     same_runs(whole, other)
 
 
 @pytest.mark.long
 def test_checkpoint_by_signal(run_in, folder, same_runs):
     whole, other = folder("whole"), folder("asked")
-    run_in(CASE, whole)
+    run_in(SLOW, whole)
     with cores(1):
-        process = begin(other, 1, "-checkpoint_interval", 100000)
+        process = begin(other, 1, "-checkpoint_interval", 100000, case=SLOW)
         await_caught(process)
         time.sleep(0.1)
         os.kill(process.pid, signal.SIGUSR1)
@@ -147,7 +149,7 @@ def test_checkpoint_by_signal(run_in, folder, same_runs):
     same_runs(whole, other)
     with h5py.File(other / "c.prev.h5") as asked:
         assert 0 < asked.attrs["step"] < 600
-    run_in(CASE, other, 1, "-restart", "c.prev.h5")
+    run_in(SLOW, other, 1, "-restart", "c.prev.h5")
     same_runs(whole, other)
 
 
@@ -166,11 +168,11 @@ def test_second_interrupt(folder):
 
 def test_wall_time(run_in, folder, same_runs):
     whole, other = folder("whole"), folder("limited")
-    run_in(CASE, whole)
+    run_in(SLOW, whole)
     options = ("-checkpoint", "c.h5", "-restart", "c.h5", "-max_wall_time", "0:00:00.5")
-    done = run_in(CASE, other, 1, *options, code=75)
+    done = run_in(SLOW, other, 1, *options, code=75)
     assert "impakt: ended by -max_wall_time after controller step" in done.stderr
-    run_in(CASE, other, 1, "-restart", "c.h5")
+    run_in(SLOW, other, 1, "-restart", "c.h5")
     same_runs(whole, other)
 
 
@@ -179,7 +181,7 @@ def test_without_checkpoint(folder):
     """The files are whole all the same, and it is said that the run cannot be continued."""
     where = folder("run")
     with cores(1):
-        process = subprocess.Popen(command(CASE, 1), cwd=where, env=os.environ | ALONE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command(SLOW, 1), cwd=where, env=os.environ | ALONE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         await_caught(process)
         process.send_signal(signal.SIGTERM)
         stderr = process.communicate(timeout=30)[1]
@@ -193,8 +195,8 @@ def test_without_checkpoint(folder):
 def test_mpiexec(run_in, folder, same_runs):
     """Open MPI's mpiexec hands the signal on, and ends with a code of its own."""
     whole, other = folder("whole"), folder("ended")
-    run_in(CASE, whole, 2)
+    run_in(SLOW, whole, 2)
     code, stderr = end_by(other, signal.SIGTERM, 0.3, ranks=2)
     assert code != 0 and "impakt: ended by SIGTERM after controller step" in stderr
-    run_in(CASE, other, 2, "-restart", "c.h5")
+    run_in(SLOW, other, 2, "-restart", "c.h5")
     same_runs(whole, other)

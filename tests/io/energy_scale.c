@@ -1,5 +1,6 @@
 /* What energy errors are relative to: the initial energy, or, where all bodies start at rest without strain, the largest. */
 #include "simulation.h"
+#include <controller/energyscale.h>
 #include <io/statistics.h>
 
 /* Tells the statistics of a state in which each body has so much kinetic energy and work of loads */
@@ -19,6 +20,7 @@ static void report_state(Simulation *simulation, Statistics statistics, PetscInt
   }
   frame.bodies             = bodies;
   frame.contact_velocities = velocities; /* bodies that never touch: no time of contact depends on them */
+  ok(EnergyScaleAdd(ControllerGetEnergyScale(simulation->controller), simulation->controller, &frame)); /* as ControllerNotify() does */
   ok(StatisticsMonitor(simulation->controller, &frame, statistics));
   ok(PetscFree2(bodies, velocities));
 }
