@@ -70,7 +70,6 @@ static PetscErrorCode Start(CommandLine *line)
   if (line->error[0]) n = 1;
   PetscCall(ImpaktInitialize(&n, &words));
   PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
-  (void)signal(SIGXFSZ, SIG_IGN); /* a file that may not become larger is an error of whoever writes it */
   (void)signal(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
   (void)signal(SIGXFSZ, SIG_IGN); /* a file that becomes larger than the shell allows is an error with a message, not the end */
   PetscCall(CommandLineInsert(line));

@@ -1,6 +1,8 @@
 /* Start and end of the library: the packages of its classes. */
+#define _POSIX_C_SOURCE 200809L /* setenv() */
 #include <impakt.h>
 #include <hdf5.h>
+#include <stdlib.h>
 #include "errors.h"
 #include "petsccompat.h"
 
@@ -86,6 +88,9 @@ PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
   if (!running) {
     PetscCall(PetscPushErrorHandler(ImpaktReportError, NULL)); /* first, for what is wrong with the options file */
     (void)H5dont_atexit(); /* at exit HDF5 would try to finish a file that a full disk has left unfinished, and crash */
+    /* with threads SCOTCH divides a mesh otherwise where cores are busy, and a run could not be continued bit for bit; ranks are what cores
+     * are for */
+    (void)setenv("SCOTCH_PTHREAD_NUMBER", "1", 0);
     PetscCall(PetscInitialize(argc, argv, NULL, help));
     began = PETSC_TRUE;
   }

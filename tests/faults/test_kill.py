@@ -193,10 +193,12 @@ def test_without_checkpoint(folder):
 
 @pytest.mark.long
 def test_mpiexec(run_in, folder, same_runs):
-    """Open MPI's mpiexec hands the signal on, and ends with a code of its own."""
+    """Open MPI's mpiexec hands the signal on, and ends with a code of its own. What ranks say then it may hand on or not; their checkpoint is there."""
     whole, other = folder("whole"), folder("ended")
     run_in(SLOW, whole, 2)
-    code, stderr = end_by(other, signal.SIGTERM, 0.3, ranks=2)
-    assert code != 0 and "impakt: ended by SIGTERM after controller step" in stderr
+    code, _ = end_by(other, signal.SIGTERM, 0.3, ranks=2, case=SLOW)
+    assert code != 0
+    with h5py.File(other / "c.h5") as asked:
+        assert 0 < asked.attrs["step"] < 600
     run_in(SLOW, other, 2, "-restart", "c.h5")
     same_runs(whole, other)
