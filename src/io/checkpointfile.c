@@ -187,7 +187,7 @@ static int WriteBytes(const char path[], size_t size, const char bytes[], const 
     }
   if (!error && fsync(file) && errno != EINVAL) error = errno;
   if (close(file) && !error) error = errno;
-  if (error) remove(path);
+  if (error) (void)remove(path);
   return error;
 }
 
@@ -199,7 +199,7 @@ static int Rotate(const char part[], const char path[], const char previous[])
 
   if (snprintf(spare, sizeof(spare), "%s.part", previous) >= (int)sizeof(spare)) return ENAMETOOLONG;
   if (!access(path, F_OK)) {
-    remove(spare);
+    (void)remove(spare);
     if (link(path, spare)) {
       if (rename(path, previous)) return errno;
     } else if (rename(spare, previous)) return errno;

@@ -55,7 +55,7 @@ static ssize_t ReadBytes(int file, size_t size, char bytes[])
 /* Whether the file is a checkpoint, all of it there and as it was written; says why not */
 static PetscErrorCode CheckWhole(const char path[], const char **why)
 {
-  CheckpointTrailer trailer;
+  CheckpointTrailer trailer = {.size = 0};
   struct stat       status;
   uint64_t          sum  = CHECKPOINT_SUM_BEGIN, size;
   int               file = open(path, O_RDONLY | O_CLOEXEC);
@@ -67,7 +67,7 @@ static PetscErrorCode CheckWhole(const char path[], const char **why)
   else if (!S_ISREG(status.st_mode)) *why = "it is no file";
   else if (status.st_size < (off_t)sizeof(trailer) || lseek(file, -(off_t)sizeof(trailer), SEEK_END) < 0 ||
            ReadBytes(file, sizeof(trailer), (char *)&trailer) != (ssize_t)sizeof(trailer) ||
-           memcmp(trailer.magic, CHECKPOINT_MAGIC, sizeof(trailer.magic)))
+           memcmp(trailer.magic, CHECKPOINT_MAGIC, sizeof(trailer.magic)) != 0)
     *why = "it is no checkpoint of Impakt, or its end is missing";
   else if (trailer.size + sizeof(trailer) != (uint64_t)status.st_size || lseek(file, 0, SEEK_SET) < 0)
     *why = "it is not as long as it was written";

@@ -310,7 +310,7 @@ static PetscErrorCode TakePlace(Fields fields)
 
   PetscFunctionBegin;
   if (fields->first_rank) {
-    remove(fields->xdmf);
+    (void)remove(fields->xdmf);
     PetscCall(OutputFilePlace(fields->part, fields->path, &fields->held, &placed));
   }
   PetscCheck(placed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s has vanished while it was written", fields->part);
@@ -371,7 +371,7 @@ PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame
   HDF5SilenceBegin(&silence);
   error          = WriteFrame(fields, frame->time);
   fields->failed = (PetscBool)(error != PETSC_SUCCESS);
-  if (error && !fields->written && fields->first_rank) remove(fields->part);
+  if (error && !fields->written && fields->first_rank) (void)remove(fields->part);
   PetscCall(error);
   HDF5SilenceEnd(&silence);
   PetscFunctionReturn(PETSC_SUCCESS);

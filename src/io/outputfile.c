@@ -250,7 +250,7 @@ PetscErrorCode OutputFileWrite(const char path[], OutputWriteFn *write, void *ct
     PetscCall(OutputFileGetPart(path, sizeof(part), part));
     PetscCall(OutputFileMakeParents(part));
     error = (*write)(part, ctx);
-    if (error) remove(part);
+    if (error) (void)remove(part);
     PetscCall(error);
     PetscCall(OutputFilePlace(part, path, held, &placed));
   }

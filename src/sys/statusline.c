@@ -145,7 +145,7 @@ static void PrintLine(double now)
   PrintDuration(now - status.begin, sizeof(time), time);
   if (status.step) fprintf(stderr, "impakt: after %s: %s\n", time, text);
   else fprintf(stderr, "impakt: %s\n", text);
-  fflush(stderr);
+  (void)fflush(stderr);
 }
 
 /* How long nothing is drawn after a message: its line may not be complete, and `mpiexec` takes its time [s] */

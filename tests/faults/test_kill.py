@@ -23,6 +23,11 @@ def children(pid):
         return [int(word) for word in file.read().split()]
 
 
+def heed_interrupts():
+    """Who starts the tests in the background has them ignore SIGINT, and what they start would too."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def begin(where, ranks, *more, case=CASE):
     return subprocess.Popen(
         command(case, ranks, "-checkpoint", "c.h5", "-restart", "c.h5", *more),
@@ -32,6 +37,7 @@ def begin(where, ranks, *more, case=CASE):
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        preexec_fn=heed_interrupts,  # noqa: PLW1509
     )
 
 
@@ -181,7 +187,15 @@ def test_without_checkpoint(folder):
     """The files are whole all the same, and it is said that the run cannot be continued."""
     where = folder("run")
     with cores(1):
-        process = subprocess.Popen(command(SLOW, 1), cwd=where, env=os.environ | ALONE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            command(SLOW, 1),
+            cwd=where,
+            env=os.environ | ALONE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=heed_interrupts,  # noqa: PLW1509
+        )
         await_caught(process)
         process.send_signal(signal.SIGTERM)
         stderr = process.communicate(timeout=30)[1]

@@ -28,6 +28,7 @@ def folder(tmp_path):
         path = tmp_path / name
         path.mkdir()
         (path / "options").symlink_to(ROOT / "options")
+        (path / "tests").symlink_to(ROOT / "tests")  # with the meshes of cases
         return path
 
     return make

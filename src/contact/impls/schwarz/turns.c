@@ -102,8 +102,8 @@ static void HoldDirection(PetscReal mean, PetscReal scale, const PetscReal v[], 
 /* Sums over active rows: their number, bends, and products of their c */
 static PetscErrorCode SumActive(Contact contact, PetscInt p, PetscInt n, PetscReal sums[])
 {
-  const ContactPair *pair   = &contact->pairs[p];
-  const PetscReal   *uneven = NULL, *bend = NULL;
+  const ContactPair *pair = &contact->pairs[p];
+  const PetscReal   *uneven, *bend;
 
   PetscFunctionBegin;
   PetscCall(TransferGetTurns(pair->transfer, NULL, &uneven, NULL, &bend, NULL));
