@@ -1,0 +1,45 @@
+/* What the sources of the constrained solver share. Private to src/solver. */
+#pragma once
+#include "constrainedsolver.h"
+#include "densefactor.h"
+
+struct _n_ConstrainedSolver {
+  KSP                ksp;
+  PC                 direct; /* the preconditioner where it is the whole solver, else NULL */
+  Mat                B;
+  PetscInt           local, global, begin; /* rows of B */
+  PetscMPIInt        size, *counts, *offsets;
+  Compliance         compliance; /* W at its first level */
+  PetscBool          shares;     /* that is another's, who destroys it; then A is constant */
+  KSPConvergedReason failed;     /* why a solution with a matrix that is not constant did not converge; 0: none failed */
+  PetscReal         *mine,
+      *constrained;   /* flexibility of a row, 0 where it is prescribed, less than 0 where it is free: this rank's rows, all rows */
+  PetscInt   n;       /* how many rows are constrained */
+  PetscInt  *rows;    /* which */
+  Vec       *columns; /* per row: A^{-1} B^T e, or NULL until needed */
+  PetscBool *fresh;   /* per row: its column is there, and that of W, both with A and B as they are */
+  /* a dense matrix for the constraint forces */
+  PetscBool    dense; /* its factors are there */
+  PetscInt     dense_limit;
+  DenseFactor  factor;
+  PetscInt     room;             /* of the following */
+  PetscScalar *gathered, *force; /* of constrained rows, on every rank */
+  Vec         *used;             /* columns */
+  Vec          row, rhs;
+  /* conjugate gradients */
+  KSP            iterative;
+  Vec            force_vec, gap_vec, product;
+  PetscLogDouble solve_flops, spent; /* of one solution with A; of all iterations so far */
+  /* corrections by stored columns, on interfaces of few rows: their changes, all rows on every rank */
+  PetscScalar *changes, *coefficients;
+  PetscScalar *column; /* work space: of this rank's rows */
+};
+
+/* Interfaces of so few rows in all keep the column of each row that is asked for: a correction adds them up in place of a solution */
+#define FEW_ROWS 16
+
+PETSC_INTERN PetscErrorCode ConstrainedSolverChoose(KSP, Mat, PetscInt);
+PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
+PETSC_INTERN PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver, KSP, Vec);
+PETSC_INTERN PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver, PetscInt);
+PETSC_INTERN PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver, Checkpoint);

@@ -1,0 +1,287 @@
+/* The constraint forces s: by factors of W_mm, or by conjugate gradients, which need W only as a product. */
+#include "constrainedsolverimpl.h"
+#include <sys/petsccompat.h>
+
+/* Columns for the dense matrix of constraint forces up to so many numbers in all, 800 MB */
+#define MAX_COLUMN_NUMBERS 1e8
+/* Up to so many constraints the dense matrix is made at once: factoring it costs less than a few solutions of a body with such a surface */
+#define FEW_CONSTRAINTS 256
+/* of the constraint forces by conjugate gradients: contact gaps are closed to about 1e-12 of the displacements */
+#define FORCE_TOLERANCE 1e-13
+
+/* y = W_mm x + flexibility x; rows that are not constrained are left out */
+static PetscErrorCode MultiplyConstrained(Mat shell, Vec x, Vec y)
+{
+  ConstrainedSolver  s;
+  const PetscScalar *in;
+  PetscScalar       *out;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(shell, &s));
+  PetscCall(ConstrainedSolverApplyCompliance(s, x, y));
+  PetscCall(VecGetArrayRead(x, &in));
+  PetscCall(VecGetArray(y, &out));
+  for (PetscInt i = 0; i < s->local; i++) out[i] = s->mine[i] < 0 ? 0 : out[i] + s->mine[i] * in[i];
+  PetscCall(VecRestoreArray(y, &out));
+  PetscCall(VecRestoreArrayRead(x, &in));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Conjugate gradients begin from zero, so that a step that is made again ends with the same bits, whatever has been solved in between */
+static PetscErrorCode CreateIterative(ConstrainedSolver s)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
+  Mat      shell;
+  PC       pc;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateShell(comm, s->local, s->local, s->global, s->global, s, &shell));
+  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))MultiplyConstrained));
+  PetscCall(KSPCreate(comm, &s->iterative));
+  PetscCall(KSPSetOperators(s->iterative, shell, shell));
+  PetscCall(KSPSetType(s->iterative, KSPCG));
+  PetscCall(KSPGetPC(s->iterative, &pc));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(KSPSetTolerances(s->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 500));
+  PetscCall(KSPSetErrorIfNotConverged(s->iterative, s->shares));
+  PetscCall(VecDuplicate(s->row, &s->force_vec));
+  PetscCall(VecDuplicate(s->row, &s->gap_vec));
+  PetscCall(MatDestroy(&shell));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the constraint forces are worth a dense matrix: few of them, or iterations have cost as much as it would */
+static PetscErrorCode ChooseDense(ConstrainedSolver s, PetscBool *dense)
+{
+  PetscInt size, missing = 0;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetSize(s->rhs, &size));
+  for (PetscInt k = 0; k < s->n; k++) missing += !s->fresh[s->rows[k]];
+  *dense = (PetscBool)(s->n <= s->dense_limit && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS);
+  if (s->n > FEW_CONSTRAINTS && s->spent < missing * s->solve_flops + DenseFactorFlops(s->n)) *dense = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for as many constraint forces as the dense matrix has */
+static PetscErrorCode MakeRoom(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  if (s->factor.room <= s->room) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3(s->gathered, s->force, s->used));
+  s->room = s->factor.room;
+  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The constraint forces' matrix, for the rows that are constrained now */
+static PetscErrorCode FactorConstraints(ConstrainedSolver s)
+{
+  const PetscScalar *W;
+  const PetscInt    *place;
+  PetscInt           leading;
+  PetscBool          singular;
+
+  PetscFunctionBegin;
+  s->n = 0;
+  for (PetscInt j = 0; j < s->global; j++)
+    if (s->constrained[j] >= 0) s->rows[s->n++] = j;
+  s->dense = PETSC_TRUE;
+  if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ChooseDense(s, &s->dense));
+  if (!s->dense) {
+    if (!s->iterative) PetscCall(CreateIterative(s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(DenseFactorResize(&s->factor, s->n, s->global));
+  PetscCall(MakeRoom(s));
+  for (PetscInt k = 0; k < s->n; k++) PetscCall(ConstrainedSolverMakeColumn(s, s->rows[k]));
+  ComplianceGetRows(s->compliance, NULL, NULL, &place);
+  ComplianceGetMatrix(s->compliance, 0, &leading, &W);
+  for (PetscInt k = 0; k < s->n; k++)
+    for (PetscInt l = 0; l < s->n; l++)
+      s->factor.values[k * s->n + l] = W[place[s->rows[k]] * leading + place[s->rows[l]]] + (k == l ? s->constrained[s->rows[k]] : 0);
+  PetscCall(DenseFactorCompute(&s->factor, &singular));
+  if (s->failed) { /* columns are not numbers: the step has failed, and is not constrained any more */
+    s->n = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCheck(!singular, PetscObjectComm((PetscObject)s->ksp), PETSC_ERR_MAT_LU_ZRPVT,
+             "The prescribed contact rows of a body are not independent: their compliance is singular; is a node in two contact pairs?");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which of this rank's rows are prescribed from now on, or on springs with those flexibilities (NULL: all prescribed). Collective. */
+PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[], const PetscReal flexibility[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
+  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL,
+                              PetscObjectComm((PetscObject)s->ksp)));
+  PetscCall(FactorConstraints(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A has new values, as that of a nonlinear body has in every Newton iteration */
+PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  PetscCheck(!s->shares, PetscObjectComm((PetscObject)s->ksp), PETSC_ERR_PLIB, "A compliance that others read belongs to one matrix");
+  PetscCall(KSPSetUp(s->ksp));
+  PetscCall(PetscArrayzero(s->fresh, s->global));
+  PetscCall(FactorConstraints(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x -= A^{-1} B_m^T s with the constraint forces s by conjugate gradients */
+static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScalar target[], Vec x)
+{
+  PetscScalar *gap;
+  PetscInt     iterations;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(s->B, x, s->gap_vec));
+  PetscCall(VecGetArray(s->gap_vec, &gap));
+  for (PetscInt i = 0; i < s->local; i++) {
+    if (target) gap[i] -= target[i];
+    if (s->mine[i] < 0) gap[i] = 0;
+  }
+  PetscCall(VecRestoreArray(s->gap_vec, &gap));
+  PetscCall(KSPSolve(s->iterative, s->gap_vec, s->force_vec));
+  PetscCall(ConstrainedSolverCheckSolution(s, s->iterative, s->force_vec));
+  PetscCall(KSPGetIterationNumber(s->iterative, &iterations));
+  s->spent += (iterations + 1) * s->solve_flops; /* one more for x */
+  PetscCall(MatMultTranspose(s->B, s->force_vec, s->rhs));
+  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->product));
+  PetscCall(VecAXPY(x, -1, s->product));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* gathered = B x - target on the constrained rows, on every rank */
+static PetscErrorCode GatherGaps(ConstrainedSolver s, Vec x, const PetscScalar target[])
+{
+  const PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(s->B, x, s->row));
+  PetscCall(VecGetArrayRead(s->row, &row));
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscInt local = s->rows[k] - s->begin;
+
+    s->gathered[k] = local >= 0 && local < s->local ? row[local] - (target ? target[local] : 0) : 0;
+  }
+  PetscCall(VecRestoreArrayRead(s->row, &row));
+  if (s->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->gathered, (PetscMPIInt)s->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x, a solution without constraints, becomes that with B_m x = target (this rank's rows; NULL: 0) */
+static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[], Vec x)
+{
+  PetscFunctionBegin;
+  if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->dense) {
+    PetscCall(ConstrainIteratively(s, target, x));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(GatherGaps(s, x, target));
+  for (PetscInt k = 0; k < s->n; k++) {
+    s->force[k] = -s->gathered[k];
+    s->used[k]  = s->columns[s->rows[k]];
+  }
+  PetscCall(DenseFactorSolve(&s->factor, s->force));
+  PetscCall(VecMAXPY(x, s->n, s->force, s->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverSolveFree(s, b, x));
+  PetscCall(Constrain(s, NULL, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = sum of C_j (f_j - s_j), with columns that are all there */
+static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
+{
+  const PetscScalar *f = s->changes, *t = s->changes + s->global, *W;
+  PetscScalar       *c = s->coefficients;
+  const PetscInt    *place;
+  PetscInt           leading, used = 0;
+
+  PetscFunctionBegin;
+  ComplianceGetRows(s->compliance, NULL, NULL, &place);
+  ComplianceGetMatrix(s->compliance, 0, &leading, &W);
+  PetscCall(PetscArraycpy(c, f, s->global));
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscInt i = s->rows[k];
+
+    s->force[k] = -t[i];
+    for (PetscInt j = 0; j < s->global; j++)
+      if (f[j] != 0) s->force[k] += W[place[j] * leading + place[i]] * f[j];
+  }
+  PetscCall(DenseFactorSolve(&s->factor, s->force));
+  for (PetscInt k = 0; k < s->n; k++) c[s->rows[k]] -= s->force[k];
+  for (PetscInt j = 0; j < s->global; j++) {
+    if (c[j] == 0) continue;
+    c[used]         = c[j];
+    s->used[used++] = s->columns[j];
+  }
+  PetscCall(VecZeroEntries(x));
+  PetscCall(VecMAXPY(x, used, c, s->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x with A x = B^T (force - s) and B_m x = target, for forces and targets of this rank's rows: what a change of both changes. By the
+   columns where the interface has few rows, else by a solution. */
+PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], Vec x)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  if (s->global <= FEW_ROWS && s->dense) {
+    MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
+
+    if (s->size > 1) {
+      PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR, comm));
+      PetscCallMPI(
+          MPI_Allgatherv(target, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes + s->global, s->counts, s->offsets, MPIU_SCALAR, comm));
+    } else {
+      PetscCall(PetscArraycpy(s->changes, force, s->local));
+      PetscCall(PetscArraycpy(s->changes + s->global, target, s->local));
+    }
+    for (PetscInt j = 0; j < s->global; j++)
+      if (s->changes[j] != 0) PetscCall(ConstrainedSolverMakeColumn(s, j));
+    PetscCall(AddColumns(s, x));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayWrite(s->row, &row));
+  PetscCall(PetscArraycpy(row, force, s->local));
+  PetscCall(VecRestoreArrayWrite(s->row, &row));
+  PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
+  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, x));
+  PetscCall(Constrain(s, target, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The constraints and their forces, for a checkpoint. The columns are loaded before. */
+PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver s, Checkpoint checkpoint)
+{
+  PetscInt numbers[2] = {s->n, s->dense};
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitReals(checkpoint, "flexibility", s->local, s->mine));
+  PetscCall(CheckpointVisitReals(checkpoint, "flexibility of all", s->global, s->constrained));
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 2, numbers));
+  s->n     = numbers[0];
+  s->dense = (PetscBool)numbers[1];
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained rows", s->n, s->rows));
+  PetscCall(CheckpointVisitReals(checkpoint, "spent", 1, &s->spent));
+  PetscCall(DenseFactorVisit(&s->factor, s->global, checkpoint));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MakeRoom(s));
+  if (!s->dense && !s->iterative) PetscCall(CreateIterative(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

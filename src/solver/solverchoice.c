@@ -1,0 +1,100 @@
+/* How A is solved: by which factors or iterations, what a solution costs, and whether another run has the same bits. */
+#include "constrainedsolverimpl.h"
+#include <sys/petsccompat.h>
+
+/* Bodies up to this size are factored whole on every rank; larger ones by MUMPS */
+#define MAX_REDUNDANT_SIZE 5000
+/* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension. In
+   more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
+static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
+/* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
+#define MAX_DIRECT_SIZE_3D 150000
+/* of multigrid: what is left of the residual must not show in energies and momenta */
+#define ITERATIVE_TOLERANCE 1e-12
+/* and iterations of it, of which bodies of 10^4 to 3e5 unknowns take 18 to 20 */
+#define ITERATIVE_MAX_IT 1000
+/* Operations of one solution, in parts of the entries of the factors: a multiplication and an addition each, in both triangles */
+#define FLOPS_OF_ENTRY 4
+/* The same where PETSc does not tell how many entries there are, as with multigrid: in parts of the unknowns, of the order of what 20
+   iterations of conjugate gradients with a matrix of 81 entries in a row take */
+#define FLOPS_OF_UNKNOWN 4000
+
+/* How A is factored, unless options say otherwise */
+PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
+{
+  PetscMPIInt size;
+  PetscInt    n;
+  PC          pc;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
+  PetscCall(MatGetSize(A, &n, NULL));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetTolerances(ksp, ITERATIVE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, ITERATIVE_MAX_IT));
+  if (dim == 3 && n > MAX_DIRECT_SIZE_3D) {
+    PetscCall(KSPSetType(ksp, KSPCG));
+    PetscCall(PCSetType(pc, PCGAMG));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  if (size > 1 && n <= MAX_REDUNDANT_SIZE) {
+    KSP inner;
+
+    PetscCall(PCSetType(pc, PCREDUNDANT));
+    PetscCall(PCRedundantGetKSP(pc, &inner));
+    PetscCall(KSPSetType(inner, KSPPREONLY));
+    PetscCall(KSPGetPC(inner, &pc));
+    PetscCall(PCSetType(pc, PCLU));
+    PetscCall(PCFactorSetZeroPivot(pc, 0));
+    PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (size > 1 || n > max_sequential_size[dim]) {
+    PetscCall(PCSetType(pc, PCCHOLESKY)); /* all matrices here are symmetric */
+    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetZeroPivot(pc, 0)); /* PETSc's default is 2e-14, whatever the unit of the matrix */
+  PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What one solution costs, to compare iterations with columns; counted, so that a run repeats */
+PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver s, Mat A)
+{
+  MatInfo  info;
+  PetscInt n;
+  Mat      factors = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetSize(A, &n, NULL));
+  s->solve_flops = (PetscLogDouble)FLOPS_OF_UNKNOWN * n;
+  if (s->direct) {
+    PetscBool lu, cholesky;
+
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCLU, &lu));
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCCHOLESKY, &cholesky));
+    if (lu || cholesky) PetscCall(PCFactorGetMatrix(s->direct, &factors));
+  }
+  if (!factors) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetInfo(factors, MAT_GLOBAL_SUM, &info));
+  if (info.nz_used > 0) s->solve_flops = FLOPS_OF_ENTRY * info.nz_used;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether solutions are the same to the last bit in another run: factors of PETSc's own, or of one rank, are. Iterations and factors that
+   several ranks have together are not always. */
+PetscErrorCode ConstrainedSolverRepeats(ConstrainedSolver s, PetscBool *repeats)
+{
+  PetscBool redundant = PETSC_FALSE, lu = PETSC_FALSE, cholesky = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (s->direct) {
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCREDUNDANT, &redundant));
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCLU, &lu));
+    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCCHOLESKY, &cholesky));
+  }
+  *repeats = (PetscBool)(redundant || ((lu || cholesky) && s->size == 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
