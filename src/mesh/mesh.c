@@ -3,7 +3,7 @@
 #include <petsc/private/petscimpl.h>
 #include <sys/names.h>
 #include <sys/stat.h>
-#if PetscDefined(HAVE_PTSCOTCH)
+#if defined(PETSC_HAVE_PTSCOTCH)
 #  include <ptscotch.h>
 #endif
 
@@ -148,7 +148,7 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm));
   else PetscCall(MeshCreateBox(comm, prefix, name, dm));
   PetscCall(DMSetOptionsPrefix(*dm, prefix));
-#if PetscDefined(HAVE_PTSCOTCH)
+#if defined(PETSC_HAVE_PTSCOTCH)
   SCOTCH_randomReset(); /* what it draws goes on from one mesh to the next: a body's parts would hang on what was divided before it */
 #endif
   PetscCall(DMSetFromOptions(*dm)); /* distributes it */
