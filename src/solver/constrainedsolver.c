@@ -213,20 +213,6 @@ PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver s, PetscInt j)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes a row known to the compliance, at its first level */
-PetscErrorCode ConstrainedSolverExtend(ConstrainedSolver s, PetscInt j)
-{
-  PetscFunctionBegin;
-  if (s->global <= FEW_ROWS) {
-    s->fresh[j] = (PetscBool)(s->fresh[j] && ComplianceKnows(s->compliance, j)); /* its owner may have forgotten it */
-    PetscCall(ConstrainedSolverMakeColumn(s, j));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(ConstrainedSolverApplyUnit(s, j, s->product, s->column));
-  PetscCall(ComplianceSetColumn(s->compliance, j, 1, s->column));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The columns of W are loaded; those of A^{-1} B^T follow from A and B as they are */
 static PetscErrorCode RemakeColumns(ConstrainedSolver s)
 {

@@ -111,7 +111,7 @@ PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
 PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyCountUnknown(Body, PetscInt, const PetscInt[], PetscInt *);
-PETSC_EXTERN PetscErrorCode BodyGetComplianceFlops(Body, PetscLogDouble *);
+PETSC_EXTERN PetscErrorCode BodyGetComplianceFlops(Body, PetscInt, const PetscInt[], PetscLogDouble *, PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
 PETSC_EXTERN PetscErrorCode BodySetBase(Body);
 PETSC_EXTERN PetscErrorCode BodySetFreeBase(Body);

@@ -15,7 +15,7 @@ PetscErrorCode BodyDestroyCompliance(Body body)
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree6(c->roles, c->mine, c->base_displacement, c->base_force, c->all_roles, c->all_flexibility));
-  PetscCall(PetscFree(c->solved));
+  PetscCall(PetscFree2(c->solved, c->unknown));
   PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
   PetscCall(DenseFactorDestroy(&c->factor));
   PetscCall(ComplianceDestroy(&c->matrices));
@@ -37,7 +37,7 @@ PetscErrorCode BodyCreateCompliance(Body body)
       ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
   PetscCall(PetscCalloc6(rows->local, &c->roles, levels, &c->mine, levels, &c->base_displacement, levels, &c->base_force, rows->global,
                          &c->all_roles, rows->global, &c->all_flexibility));
-  PetscCall(PetscMalloc1(rows->global, &c->solved));
+  PetscCall(PetscMalloc2(rows->global, &c->solved, rows->global, &c->unknown));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,20 +51,24 @@ Compliance BodyGetSharedCompliance(Body body)
 /* Columns of the rows that are not known yet. With one substep the body's solver has them, where its compliance is this one. */
 static PetscErrorCode ProbeCompliance(Body body, PetscInt n, const PetscInt rows[])
 {
-  const PetscBool shares = (PetscBool)(body->time.substeps == 1 && body->solver && BodyGetSharedCompliance(body));
+  const PetscBool         shares = (PetscBool)(body->time.substeps == 1 && body->solver && BodyGetSharedCompliance(body));
+  struct _BodyCompliance *c      = body->compliance;
+  PetscInt                count  = 0;
 
   PetscFunctionBegin;
   if (body->integrator->ops.compliancecolumns) {
-    PetscCall((*body->integrator->ops.compliancecolumns)(body, n, rows, body->compliance->matrices));
+    PetscCall((*body->integrator->ops.compliancecolumns)(body, n, rows, c->matrices));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt i = 0; i < n; i++) {
-    if (ComplianceKnows(body->compliance->matrices, rows[i])) continue;
-    if (shares) PetscCall(ConstrainedSolverExtend(body->solver, rows[i]));
-    else {
-      PetscCall((*body->integrator->ops.compliancecolumn)(body, rows[i], body->compliance->mine));
-      PetscCall(ComplianceSetColumn(body->compliance->matrices, rows[i], body->time.substeps, body->compliance->mine));
-    }
+  for (PetscInt i = 0; i < n; i++)
+    if (!ComplianceKnows(c->matrices, rows[i])) c->unknown[count++] = rows[i];
+  if (shares) {
+    PetscCall(ConstrainedSolverExtend(body->solver, count, c->unknown));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i < count; i++) {
+    PetscCall((*body->integrator->ops.compliancecolumn)(body, c->unknown[i], c->mine));
+    PetscCall(ComplianceSetColumn(c->matrices, c->unknown[i], body->time.substeps, c->mine));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -243,25 +247,36 @@ PetscErrorCode BodyCountUnknown(Body body, PetscInt n, const PetscInt rows[], Pe
 }
 
 /*@
-  BodyGetComplianceFlops - operations of one `BodyApplyCompliance()`
+  BodyGetComplianceFlops - operations of one `BodyApplyCompliance()`, and of making rows known
 
   Not Collective
 
-  Input Parameter:
-. body - the `Body`, set up
+  Input Parameters:
++ body - the `Body`, set up
+. n    - number of rows
+- rows - rows of any rank
 
-  Output Parameter:
-. flops - floating-point operations of a solution with the factors, counted from their entries, not measured: the same in every run
+  Output Parameters:
++ apply  - floating-point operations of a solution with the factors, counted from their entries, not measured: the same in every run
+- extend - those of `BodyExtendCompliance()` for these rows; where many rows become known together, as many as would take that time one
+           after the other
 
   Level: developer
 
-.seealso: `Body`, `BodyApplyCompliance()`, `BodyCountUnknown()`
+.seealso: `Body`, `BodyApplyCompliance()`, `BodyExtendCompliance()`
 @*/
-PetscErrorCode BodyGetComplianceFlops(Body body, PetscLogDouble *flops)
+PetscErrorCode BodyGetComplianceFlops(Body body, PetscInt n, const PetscInt rows[], PetscLogDouble *apply, PetscLogDouble *extend)
 {
+  PetscInt unknown;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(flops, 2);
-  *flops = body->solver ? ConstrainedSolverGetFlops(body->solver) : 0;
+  PetscAssertPointer(apply, 4);
+  PetscAssertPointer(extend, 5);
+  *apply = *extend = 0;
+  if (!body->solver) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyCountUnknown(body, n, rows, &unknown));
+  *apply = ConstrainedSolverGetFlops(body->solver);
+  PetscCall(ConstrainedSolverGetExtendFlops(body->solver, unknown, extend));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,6 +18,7 @@ struct _BodyCompliance {
   PetscMPIInt   *all_roles;         /* of all ranks' */
   PetscReal     *all_flexibility;   /* of Robin rows [m/N] */
   PetscInt       n_solved, *solved; /* prescribed and Robin rows, whose force follows from the others */
+  PetscInt      *unknown;           /* work space: rows that become known */
   PetscInt64     factored_state;
   DenseFactor    factor; /* of the first level on them */
   /* known rows, for each substep: base, inputs, forces, displacements */

@@ -1,0 +1,164 @@
+/* Rows that become known many at a time: their compliance B A^{-1} B^T in closed form, for factors that solve for blocks and those that do
+ * not. */
+#include "support.h"
+#include <solver/constrainedsolver.h>
+
+#define SIZE 400 /* unknowns */
+#define ROWS 300 /* more than are solved for together */
+
+/* Of the tridiagonal matrix -1, 2, -1 */
+static PetscReal inverse(PetscInt i, PetscInt j)
+{
+  return (PetscReal)(PetscMin(i, j) + 1) * (SIZE - PetscMax(i, j)) / (SIZE + 1);
+}
+
+/* Each row takes a part of another unknown, which may be on another rank */
+static PetscInt first(PetscInt row)
+{
+  return row;
+}
+
+static PetscInt second(PetscInt row)
+{
+  return (row + SIZE / 2) % SIZE;
+}
+
+static PetscReal exact(PetscInt k, PetscInt l)
+{
+  return inverse(first(k), first(l)) - 0.5 * (inverse(first(k), second(l)) + inverse(second(k), first(l))) +
+         0.25 * inverse(second(k), second(l));
+}
+
+typedef struct {
+  ConstrainedSolver solver;
+  Compliance        compliance;
+  PetscOptions      options;
+} System;
+
+static void create(System *s, const char options[])
+{
+  PetscInt begin, end, local, row;
+  Mat      A, B;
+
+  s->options = options_begin("%s", options);
+  ok(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, SIZE, SIZE, 3, NULL, 2, NULL, &A));
+  ok(MatGetOwnershipRange(A, &begin, &end));
+  for (PetscInt i = begin; i < end; i++)
+    for (PetscInt j = PetscMax(0, i - 1); j <= PetscMin(SIZE - 1, i + 1); j++) ok(MatSetValue(A, i, j, i == j ? 2 : -1, INSERT_VALUES));
+  ok(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  ok(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  ok(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, end - begin, ROWS, SIZE, 2, NULL, 2, NULL, &B));
+  ok(MatGetOwnershipRange(B, &row, &end));
+  ok(MatGetLocalSize(B, &local, NULL));
+  ok(ComplianceCreate(PETSC_COMM_WORLD, local, row, ROWS, 1, &s->compliance));
+  for (PetscInt r = row; r < end; r++) {
+    ok(MatSetValue(B, r, first(r), 1, INSERT_VALUES));
+    ok(MatSetValue(B, r, second(r), -0.5, INSERT_VALUES));
+  }
+  ok(MatAssemblyBegin(B, MAT_FINAL_ASSEMBLY));
+  ok(MatAssemblyEnd(B, MAT_FINAL_ASSEMBLY));
+  ok(ConstrainedSolverCreate(A, B, 1, "columns_", s->compliance, &s->solver));
+  ok(MatDestroy(&A));
+  ok(MatDestroy(&B));
+}
+
+static void destroy(System *s)
+{
+  ok(ConstrainedSolverDestroy(&s->solver));
+  ok(ComplianceDestroy(&s->compliance));
+  options_drop(s->options);
+}
+
+/* All rows that are known, and how many they are */
+static void check(System *s, PetscInt known)
+{
+  const PetscScalar *W;
+  const PetscInt    *rows;
+  PetscInt           n, leading;
+
+  ComplianceGetRows(s->compliance, &n, &rows, NULL);
+  assert_int_equal(n, known);
+  ComplianceGetMatrix(s->compliance, 0, &leading, &W);
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) /* numbers up to 100, and the matrix loses five digits */
+      near(W[j * leading + i], exact(rows[i], rows[j]), 1e-9);
+}
+
+/* Odd rows first, the last one first; then the even ones, one of them by itself */
+static void know_all(System *s)
+{
+  PetscInt rows[ROWS], n = 0;
+
+  for (PetscInt r = ROWS - 1; r > 0; r -= 2) rows[n++] = r;
+  ok(ConstrainedSolverExtend(s->solver, n, rows));
+  check(s, ROWS / 2);
+  rows[0] = 0;
+  ok(ConstrainedSolverExtend(s->solver, 1, rows));
+  check(s, ROWS / 2 + 1);
+  n = 0;
+  for (PetscInt r = 2; r < ROWS; r += 2) rows[n++] = r;
+  ok(ConstrainedSolverExtend(s->solver, n, rows));
+  check(s, ROWS);
+}
+
+static void blocks_and_single_columns_are_exact(void **state)
+{
+  static const char *const factors[] = {
+      "-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps",
+      "-columns_pc_type redundant -columns_redundant_pc_type lu",
+      "-columns_ksp_type cg -columns_pc_type jacobi -columns_ksp_rtol 1e-13",
+  };
+
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(factors); k++) {
+    System s;
+
+    create(&s, factors[k]);
+    know_all(&s);
+    destroy(&s);
+  }
+}
+
+/* More rows at once than one block has */
+static void more_rows_than_a_block_are_exact(void **state)
+{
+  System   s;
+  PetscInt rows[ROWS];
+
+  (void)state;
+  create(&s, "-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps");
+  for (PetscInt r = 0; r < ROWS; r++) rows[r] = r;
+  ok(ConstrainedSolverExtend(s.solver, ROWS, rows));
+  check(&s, ROWS);
+  destroy(&s);
+}
+
+/* What decides whether dense matrices are worth their columns */
+static void columns_of_a_block_count_less(void **state)
+{
+  PetscLogDouble one, many;
+  System         s;
+
+  (void)state;
+  create(&s, "-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps");
+  ok(ConstrainedSolverGetExtendFlops(s.solver, 1, &one));
+  ok(ConstrainedSolverGetExtendFlops(s.solver, ROWS, &many));
+  near(one, ConstrainedSolverGetFlops(s.solver), 0);
+  assert_true(many < ROWS * one / 4);
+  destroy(&s);
+  create(&s, "-columns_pc_type redundant -columns_redundant_pc_type lu");
+  ok(ConstrainedSolverGetExtendFlops(s.solver, ROWS, &many));
+  near(many, ROWS * ConstrainedSolverGetFlops(s.solver), 0);
+  destroy(&s);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(blocks_and_single_columns_are_exact),
+      cmocka_unit_test(more_rows_than_a_block_are_exact),
+      cmocka_unit_test(columns_of_a_block_count_less),
+  };
+
+  return impakt_main(argc, argv, tests);
+}
