@@ -10,6 +10,12 @@
 #include "lagrangeimpl.h"
 #include <checkpoint/checkpoint.h>
 
+/* Whether impulses correct the velocities, beside the forces of the step */
+static PetscBool HasImpulses(const ImplicitLagrange *lagrange)
+{
+  return (PetscBool)(lagrange->close_rate || lagrange->stabilized);
+}
+
 /* The solution. The semismooth iteration may leave forces that pull, within the tolerance: these are taken out. */
 static PetscErrorCode TakeForces(Contact contact)
 {
@@ -95,7 +101,7 @@ static PetscErrorCode ContactDestroy_ImplicitLagrange(Contact contact)
   PetscFunctionBegin;
   PetscCall(OuterSolverDestroy(&lagrange->outer));
   PetscCall(ForcesDestroy(&lagrange->forces));
-  if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementarityDestroy(&lagrange->impulses));
+  if (HasImpulses(lagrange)) PetscCall(ComplementarityDestroy(&lagrange->impulses));
   PetscCall(InterfaceOperatorDestroy(&lagrange->S));
   PetscCall(PetscFree2(lagrange->compliance, lagrange->marks));
   PetscCall(PetscFree(contact->data));
@@ -167,8 +173,7 @@ static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ComputeCompliance(contact));
-  if (lagrange->close_rate || lagrange->stabilized)
-    PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
+  if (HasImpulses(lagrange)) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,14 +196,13 @@ static PetscErrorCode ContactVisit_ImplicitLagrange(Contact contact, Checkpoint 
   if (CheckpointLoads(checkpoint)) {
     lagrange->step          = contact->step;
     lagrange->have_jacobian = PETSC_FALSE;
-    if (lagrange->close_rate || lagrange->stabilized)
-      PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
+    if (HasImpulses(lagrange)) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
   }
   PetscCall(CheckpointVisitReals(checkpoint, "compliance", contact->rows.n_all * contact->rows.n_all, lagrange->compliance));
   PetscCall(InterfaceOperatorVisit(lagrange->S, checkpoint));
   PetscCall(ForcesVisit(contact, &lagrange->forces, checkpoint));
   PetscCall(CheckpointVisitVec(checkpoint, "outer", lagrange->outer.x));
-  if (lagrange->close_rate || lagrange->stabilized) PetscCall(ComplementarityVisit(contact, &lagrange->impulses, checkpoint));
+  if (HasImpulses(lagrange)) PetscCall(ComplementarityVisit(contact, &lagrange->impulses, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,7 +248,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
     lagrange->close_rate = PETSC_TRUE;
   } else if (lagrange->stabilized)
     PetscCall(LagrangeSetUpImpulses(contact, "-contact_stabilization contact_stabilized", &lagrange->impulses));
-  if (lagrange->close_rate || lagrange->stabilized) contact->ops->accept = ContactAccept_ImplicitLagrange;
+  if (HasImpulses(lagrange)) contact->ops->accept = ContactAccept_ImplicitLagrange;
   PetscCall(ComputeCompliance(contact));
   PetscCall(LagrangeSetUpOuter(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
