@@ -7,7 +7,6 @@
 #include "xdmf.h"
 #include <petsctime.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 /* Most frames in a run whose options do not say how often */
@@ -284,19 +283,17 @@ static PetscErrorCode TakeUp(Fields fields, PetscInt written)
 */
 PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, PetscBool same_ranks, Checkpoint checkpoint)
 {
-  char     path[PETSC_MAX_PATH_LEN] = "", own[PETSC_MAX_PATH_LEN] = "";
-  PetscInt numbers[3] = {fields ? fields->written : 0, fields ? fields->n_frames : 0, fields ? fields->interval : 0};
-  int      same;
+  PetscInt  numbers[3] = {fields ? fields->written : 0, fields ? fields->n_frames : 0, fields ? fields->interval : 0};
+  PetscBool same;
+  int       all_same; /* as the first rank, which writes, sees the file system */
 
   PetscFunctionBegin;
-  if (fields) PetscCall(OutputPathResolve(fields->path, sizeof(own), own));
-  PetscCall(PetscStrncpy(path, own, sizeof(path)));
-  PetscCall(CheckpointVisitBytes(checkpoint, "fields", sizeof(path), path));
+  PetscCall(OutputPathVisit(fields ? fields->path : NULL, "fields", checkpoint, &same));
   PetscCall(CheckpointVisitInts(checkpoint, "fields frames", 3, numbers));
   if (!CheckpointLoads(checkpoint) || !fields || !numbers[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  same = !strcmp(own, path);
-  PetscCallMPI(MPI_Bcast(&same, 1, MPI_INT, 0, comm));
-  if (!same) PetscFunctionReturn(PETSC_SUCCESS);
+  all_same = same;
+  PetscCallMPI(MPI_Bcast(&all_same, 1, MPI_INT, 0, comm));
+  if (!all_same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(
       same_ranks, comm, PETSC_ERR_USER_INPUT,
       "-output_fields %s: the file is ordered by the ranks of the run that is continued, and these are more or fewer; give another path, "
