@@ -285,7 +285,7 @@ static PetscErrorCode WriteShared(hid_t file, const CheckpointContents *contents
 PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const CheckpointInfo *info, const CheckpointContents *contents)
 {
   PetscErrorCode error = PETSC_SUCCESS;
-  PetscMPIInt    rank, code;
+  PetscMPIInt    rank;
   hid_t          file = -1;
 
   PetscFunctionBegin;
@@ -298,9 +298,6 @@ PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const Check
     error = Store(file, path);
     H5Fclose(file);
   }
-  code = (PetscMPIInt)error;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
-  if (!rank) PetscCall(error);
-  PetscCheck(!code, comm, (PetscErrorCode)code, "-checkpoint %s: the first rank cannot write", path);
+  PetscCall(OutputFileShareError(comm, error, "-checkpoint", path, "write"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

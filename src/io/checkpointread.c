@@ -1,6 +1,7 @@
 /* Reading the file of a checkpoint: see checkpointfile.c. */
 #define _POSIX_C_SOURCE 200809L
 #include "checkpointfileimpl.h"
+#include "outputfile.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <impakt.h>
@@ -160,7 +161,7 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
 PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFile *checkpoint)
 {
   PetscErrorCode error = PETSC_SUCCESS;
-  PetscMPIInt    rank, code;
+  PetscMPIInt    rank;
   size_t         length = 0;
   HDF5Silence    silence;
 
@@ -171,10 +172,7 @@ PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFi
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   HDF5SilenceBegin(&silence);
   if (!rank) error = Open(path, checkpoint);
-  code = (PetscMPIInt)error;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
-  if (!rank) PetscCall(error);
-  PetscCheck(!code, comm, (PetscErrorCode)code, "-restart %s: the first rank cannot read it", path);
+  PetscCall(OutputFileShareError(comm, error, "-restart", path, "read"));
   HDF5SilenceEnd(&silence);
   if (!rank) length = strlen(checkpoint->info.options) + 1;
   PetscCallMPI(MPI_Bcast(&checkpoint->info.step, 1, MPIU_INT, 0, comm));

@@ -126,15 +126,10 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes an error of the first rank, which has printed it, an error of all ranks */
 PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
 {
-  PetscMPIInt code = (PetscMPIInt)error;
-
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, fields->comm));
-  if (fields->first_rank) PetscCall(error);
-  PetscCheck(!code, fields->comm, (PetscErrorCode)code, "-output_fields %s: the first rank cannot write", fields->path);
+  PetscCall(OutputFileShareError(fields->comm, error, "-output_fields", fields->path, "write"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
