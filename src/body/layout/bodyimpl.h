@@ -233,6 +233,8 @@ PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
 PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyGetLocalRead(Body, Vec, Vec *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyRestoreLocalRead(Body, Vec, Vec *, const PetscScalar *[]);
+PETSC_INTERN PetscErrorCode BodyGetLocalSum(Body, Vec, Vec *, PetscScalar *[]);
+PETSC_INTERN PetscErrorCode BodyRestoreLocalSum(Body, Vec, Vec *, PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyCreateVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodyStateCreate(Body, PetscBool, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateCopy(const BodyState *, BodyState *);

@@ -184,28 +184,20 @@ PetscErrorCode BodyDestroyDamping(Body body)
 /* force = K v; as in the undeformed body where u is NULL */
 static PetscErrorCode ComputeViscousForce(Body body, Vec u, Vec v, Vec force)
 {
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
   Element            element = body->damping->element;
   const PetscScalar *at      = NULL, *rate;
   PetscScalar       *f;
-  Vec                at_local, rate_local, f_local = force;
+  Vec                at_local, rate_local, f_local;
 
   PetscFunctionBegin;
   if (u) PetscCall(BodyGetLocalRead(body, u, &at_local, &at));
   PetscCall(BodyGetLocalRead(body, v, &rate_local, &rate));
-  if (ghosted) PetscCall(VecGhostGetLocalForm(force, &f_local));
-  PetscCall(VecGetArrayWrite(f_local, &f));
-  PetscCall(PetscArrayzero(f, body->mesh.local_nodes * body->mesh.dim));
+  PetscCall(BodyGetLocalSum(body, force, &f_local, &f));
   if (u) PetscCall((*element->ops->viscousforce)(element, at, rate, f));
   else PetscCall((*element->ops->internalforce)(element, rate, f));
-  PetscCall(VecRestoreArrayWrite(f_local, &f));
+  PetscCall(BodyRestoreLocalSum(body, force, &f_local, &f));
   PetscCall(BodyRestoreLocalRead(body, v, &rate_local, &rate));
   if (u) PetscCall(BodyRestoreLocalRead(body, u, &at_local, &at));
-  if (ghosted) {
-    PetscCall(VecGhostRestoreLocalForm(force, &f_local));
-    PetscCall(VecGhostUpdateBegin(force, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateEnd(force, ADD_VALUES, SCATTER_REVERSE));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

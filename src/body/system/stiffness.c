@@ -6,25 +6,17 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
 {
   const PetscScalar *u_array;
   PetscScalar       *f_array;
-  Vec                u_local, f_local = f;
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  Vec                u_local, f_local;
   Element            element;
 
   PetscFunctionBegin;
   PetscCall(BodyGetElement(body, &element));
   PetscCall(PetscLogEventBegin(BODY_InternalForce, body, 0, 0, 0));
   PetscCall(BodyGetLocalRead(body, u, &u_local, &u_array));
-  if (ghosted) PetscCall(VecGhostGetLocalForm(f, &f_local));
-  PetscCall(VecGetArrayWrite(f_local, &f_array));
-  PetscCall(PetscArrayzero(f_array, body->mesh.local_nodes * body->mesh.dim));
+  PetscCall(BodyGetLocalSum(body, f, &f_local, &f_array));
   PetscCall((*element->ops->internalforce)(element, u_array, f_array));
-  PetscCall(VecRestoreArrayWrite(f_local, &f_array));
+  PetscCall(BodyRestoreLocalSum(body, f, &f_local, &f_array));
   PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
-  if (ghosted) {
-    PetscCall(VecGhostRestoreLocalForm(f, &f_local));
-    PetscCall(VecGhostUpdateBegin(f, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateEnd(f, ADD_VALUES, SCATTER_REVERSE));
-  }
   PetscCall(PetscLogEventEnd(BODY_InternalForce, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
