@@ -33,11 +33,7 @@ static PetscErrorCode AssembleMatrix(Body body, Vec u)
   implicit->deformed[body->time.level] = (PetscBool)(u != NULL);
   if (u && u != point) PetscCall(VecCopy(u, point));
   PetscCall(BodyAssembleTangent(body, u, implicit->matrix));
-  if (implicit->shift > 0 && body->mass.diagonal) {
-    PetscCall(VecCopy(body->mass.diagonal, body->work.nodes[0]));
-    PetscCall(VecScale(body->work.nodes[0], implicit->shift));
-    PetscCall(MatDiagonalSet(implicit->matrix, body->work.nodes[0], ADD_VALUES));
-  } else if (implicit->shift > 0) PetscCall(MatAXPY(implicit->matrix, implicit->shift, body->mass.matrix, SAME_NONZERO_PATTERN));
+  if (implicit->shift > 0) PetscCall(BodyAddMassMatrix(body, implicit->shift, implicit->matrix));
   PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, implicit->matrix));
   PetscCall(BodyAddSpringStiffness(body, implicit->matrix));
   PetscCall(BodyEliminateHeld(body, implicit->matrix));

@@ -298,6 +298,7 @@ PETSC_INTERN PetscErrorCode BodySolveLayer(Body, Vec, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMultiplyLayerTangent(Body, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerSolverDestroy(LayerSolver *);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyAddMassMatrix(Body, PetscReal, Mat);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[], Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);

@@ -18,7 +18,7 @@ struct _BodyDamping {
   PetscInt *connectivity; /* of the former on this rank */
   Element   element;      /* these; linear */
   Material  material;     /* of a nonlinear body: theirs */
-  Vec       work;         /* M v, M a */
+  Vec       work;         /* M v */
 };
 
 /*@
@@ -238,11 +238,7 @@ PetscErrorCode BodyAddDampingMatrix(Body body, Vec u, PetscReal scale, Mat A)
 
   PetscFunctionBegin;
   if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (damping->mass > 0 && body->mass.diagonal) {
-    PetscCall(VecCopy(body->mass.diagonal, damping->work));
-    PetscCall(VecScale(damping->work, scale * damping->mass));
-    PetscCall(MatDiagonalSet(A, damping->work, ADD_VALUES));
-  } else if (damping->mass > 0) PetscCall(MatAXPY(A, scale * damping->mass, body->mass.matrix, SAME_NONZERO_PATTERN));
+  if (damping->mass > 0) PetscCall(BodyAddMassMatrix(body, scale * damping->mass, A));
   if (!(damping->stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->model.linear) u = NULL;
   if (u) PetscCall(BodyGetLocalRead(body, u, &local, &at));
