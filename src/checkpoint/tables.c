@@ -147,7 +147,8 @@ PetscErrorCode TablesLookFor(Tables tables, const char name[], const PetscReal k
     if (table->n > 1) PetscCall(PetscTimSort(table->n, table->order, sizeof(PetscInt), CompareRows, table));
     for (PetscInt i = 1; i < table->n; i++)
       PetscCheck(CompareRows(table->order + i - 1, table->order + i, table), tables->comm, PETSC_ERR_SUP,
-                 "Two nodes of '%s' lie at one place, and cannot be told from each other: continue the run on as many ranks as before",
+                 "Two nodes of '%s' lie at one place, and cannot be told from each other: the run can be continued on as many ranks as "
+                 "before alone",
                  name);
   }
   while (high - low > 1) {

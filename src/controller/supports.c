@@ -60,20 +60,21 @@ PetscErrorCode ControllerGetSupports(Controller controller, PetscInt *n, const C
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces of an obstacle: the opposite of what the pairs, whose states are given, exert on it */
-static PetscErrorCode AddPairs(Controller controller, PetscInt obstacle, ControllerSupport *support)
+/* The forces of the obstacles, `support` for each: the opposite of what the pairs, whose states are given, exert on them */
+static PetscErrorCode AddPairs(Controller controller, ControllerSupport support[])
 {
-  PetscInt n_pairs, other;
+  PetscInt n_pairs, n_obstacles, o;
 
   PetscFunctionBegin;
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
-  for (PetscInt d = 0; d < 3; d++) support->force[d] = support->moment[d] = 0;
+  PetscCall(ContactGetNumObstacles(controller->contact, &n_obstacles));
+  for (o = 0; o < n_obstacles; o++)
+    for (PetscInt d = 0; d < 3; d++) support[o].force[d] = support[o].moment[d] = 0;
   for (PetscInt p = 0; p < n_pairs; p++) {
-    PetscCall(ContactGetPairObstacle(controller->contact, p, &other));
-    if (other != obstacle) continue;
-    for (PetscInt d = 0; d < 3; d++) {
-      support->force[d] -= controller->pair_states[p].force_vector[d];
-      support->moment[d] -= controller->pair_states[p].moment[d];
+    PetscCall(ContactGetPairObstacle(controller->contact, p, &o));
+    for (PetscInt d = 0; d < 3 && o >= 0; d++) {
+      support[o].force[d] -= controller->pair_states[p].force_vector[d];
+      support[o].moment[d] -= controller->pair_states[p].moment[d];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -96,6 +97,6 @@ PetscErrorCode ControllerFindReactions(Controller controller)
       PetscCall(PetscArraycpy(controller->supports[next].moment, moment + 3 * i, 3));
     }
   }
-  for (PetscInt o = 0; next < controller->n_supports; o++, next++) PetscCall(AddPairs(controller, o, &controller->supports[next]));
+  PetscCall(AddPairs(controller, controller->supports + next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

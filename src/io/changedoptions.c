@@ -1,7 +1,7 @@
 /* Which options of a run differ from those of the run that it continues. */
 #include "outputimpl.h"
-#include <ctype.h>
 #include <string.h>
+#include <sys/optionstext.h>
 
 /* Options that change what is written, shown or read, how long the run is, and nothing else: by how they begin, without the dash */
 static const char *const free_options[] = {
@@ -21,24 +21,15 @@ static PetscBool IsFree(const char name[])
   return (PetscBool)(length > 5 && !strcmp(name + length - 5, "_view"));
 }
 
-/* Cuts "-name value -name -name value " into names and values; `text` is changed, and has to stay */
+/* Names and values of all options in a text, see OptionsTextNext() */
 static PetscErrorCode Split(char text[], PetscInt *n, Setting *settings[])
 {
   PetscInt room = 1;
-  char    *next;
 
   PetscFunctionBegin;
   for (const char *c = text; *c; c++) room += *c == ' ';
   PetscCall(PetscMalloc1(room, settings));
-  *n = 0;
-  for (char *name = text, *end; (end = strchr(name, ' ')); name = next) {
-    char *value = end + 1;
-
-    for (next = value; *next && !(next[-1] == ' ' && next[0] == '-' && isalpha((unsigned char)next[1])); next++);
-    *end = '\0';
-    if (next > value && next[-1] == ' ') next[-1] = '\0';
-    (*settings)[(*n)++] = (Setting){name, next == value ? "" : value};
-  }
+  for (*n = 0; OptionsTextNext(&text, &(*settings)[*n].name, &(*settings)[*n].value); (*n)++);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

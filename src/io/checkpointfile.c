@@ -63,6 +63,27 @@ static PetscErrorCode WriteNumber(hid_t file, const char name[], hid_t type, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A stream to another rank, in blocks */
+PetscErrorCode CheckpointSendBytes(MPI_Comm comm, PetscMPIInt to, size_t size, const void *bytes)
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Send(&size, sizeof(size), MPI_BYTE, to, 0, comm));
+  for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
+    PetscCallMPI(MPI_Send((const char *)bytes + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, to, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same at the other end; bytes to be freed */
+PetscErrorCode CheckpointReceiveBytes(MPI_Comm comm, PetscMPIInt from, size_t *size, char **bytes)
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Recv(size, sizeof(*size), MPI_BYTE, from, 0, comm, MPI_STATUS_IGNORE));
+  PetscCall(PetscMalloc1(*size, bytes));
+  for (size_t at = 0; at < *size; at += CHECKPOINT_BLOCK)
+    PetscCallMPI(MPI_Recv(*bytes + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, *size - at), MPI_BYTE, from, 0, comm, MPI_STATUS_IGNORE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The streams of all ranks, one dataset each: the first rank gets them one after the other */
 static PetscErrorCode WriteStreams(MPI_Comm comm, hid_t file, Checkpoint checkpoint, const char path[])
 {
@@ -75,21 +96,14 @@ static PetscErrorCode WriteStreams(MPI_Comm comm, hid_t file, Checkpoint checkpo
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
   PetscCall(CheckpointGetBytes(checkpoint, &size, &mine));
   if (rank) {
-    PetscCallMPI(MPI_Send(&size, sizeof(size), MPI_BYTE, 0, 0, comm));
-    for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
-      PetscCallMPI(MPI_Send((const char *)mine + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, 0, 0, comm));
+    PetscCall(CheckpointSendBytes(comm, 0, size, mine));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscMPIInt r = 0; r < ranks; r++) {
     hsize_t length[1];
     char    name[32], *bytes = NULL;
 
-    if (r) {
-      PetscCallMPI(MPI_Recv(&size, sizeof(size), MPI_BYTE, r, 0, comm, MPI_STATUS_IGNORE));
-      PetscCall(PetscMalloc1(size, &bytes));
-      for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
-        PetscCallMPI(MPI_Recv(bytes + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, r, 0, comm, MPI_STATUS_IGNORE));
-    }
+    if (r) PetscCall(CheckpointReceiveBytes(comm, r, &size, &bytes));
     length[0] = size;
     PetscCall(PetscSNPrintf(name, sizeof(name), "state/%d", (int)r));
     PetscCall(WriteDataset(file, name, H5T_NATIVE_UCHAR, 1, length, r ? bytes : mine, path));
@@ -285,7 +299,7 @@ static PetscErrorCode WriteShared(hid_t file, const CheckpointContents *contents
 PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const CheckpointInfo *info, const CheckpointContents *contents)
 {
   PetscErrorCode error = PETSC_SUCCESS;
-  PetscMPIInt    rank, code;
+  PetscMPIInt    rank;
   hid_t          file = -1;
 
   PetscFunctionBegin;
@@ -298,9 +312,6 @@ PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const Check
     error = Store(file, path);
     H5Fclose(file);
   }
-  code = (PetscMPIInt)error;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
-  if (!rank) PetscCall(error);
-  PetscCheck(!code, comm, (PetscErrorCode)code, "-checkpoint %s: the first rank cannot write", path);
+  PetscCall(OutputFileShareError(comm, error, "-checkpoint", path, "write"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

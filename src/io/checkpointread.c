@@ -1,6 +1,7 @@
 /* Reading the file of a checkpoint: see checkpointfile.c. */
 #define _POSIX_C_SOURCE 200809L
 #include "checkpointfileimpl.h"
+#include "outputfile.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <impakt.h>
@@ -160,7 +161,7 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
 PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFile *checkpoint)
 {
   PetscErrorCode error = PETSC_SUCCESS;
-  PetscMPIInt    rank, code;
+  PetscMPIInt    rank;
   size_t         length = 0;
   HDF5Silence    silence;
 
@@ -171,10 +172,7 @@ PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFi
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   HDF5SilenceBegin(&silence);
   if (!rank) error = Open(path, checkpoint);
-  code = (PetscMPIInt)error;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
-  if (!rank) PetscCall(error);
-  PetscCheck(!code, comm, (PetscErrorCode)code, "-restart %s: the first rank cannot read it", path);
+  PetscCall(OutputFileShareError(comm, error, "-restart", path, "read"));
   HDF5SilenceEnd(&silence);
   if (!rank) length = strlen(checkpoint->info.options) + 1;
   PetscCallMPI(MPI_Bcast(&checkpoint->info.step, 1, MPIU_INT, 0, comm));
@@ -235,17 +233,10 @@ PetscErrorCode CheckpointFileRead(MPI_Comm comm, const CheckpointFile *file, Che
       own_size = size;
       continue;
     }
-    PetscCallMPI(MPI_Send(&size, sizeof(size), MPI_BYTE, r, 0, comm));
-    for (size_t at = 0; at < size; at += CHECKPOINT_BLOCK)
-      PetscCallMPI(MPI_Send(bytes + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, size - at), MPI_BYTE, r, 0, comm));
+    PetscCall(CheckpointSendBytes(comm, r, size, bytes));
     PetscCall(PetscFree(bytes));
   }
-  if (rank) {
-    PetscCallMPI(MPI_Recv(&own_size, sizeof(own_size), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE));
-    PetscCall(PetscMalloc1(own_size, &own));
-    for (size_t at = 0; at < own_size; at += CHECKPOINT_BLOCK)
-      PetscCallMPI(MPI_Recv(own + at, (PetscMPIInt)PetscMin(CHECKPOINT_BLOCK, own_size - at), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE));
-  }
+  if (rank) PetscCall(CheckpointReceiveBytes(comm, 0, &own_size, &own));
   PetscCall(CheckpointCreateFromBytes(comm, own_size, own, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -268,29 +259,56 @@ PetscErrorCode CheckpointFileReadShared(MPI_Comm comm, const CheckpointFile *fil
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A table, on the first rank */
-static PetscErrorCode ReadTable(const CheckpointFile *file, PetscInt i, char name[512], PetscInt size[2], PetscReal **values)
+/* A dataset of rows by columns, on the first rank */
+PetscErrorCode CheckpointReadArray(const CheckpointFile *file, const char name[], PetscInt size[2], PetscReal **values)
 {
-  char    place[32], *text;
   hsize_t length[2] = {0, 0};
   hid_t   dataset, space;
 
   PetscFunctionBegin;
+  dataset = H5Dopen2(file->file, name, H5P_DEFAULT);
+  PetscCall(HDF5Check(dataset, "open a dataset", file->path));
+  space = H5Dget_space(dataset);
+  PetscCall(HDF5Check(H5Sget_simple_extent_dims(space, length, NULL), "read a dataset", file->path));
+  PetscCall(PetscMalloc1((size_t)(length[0] * length[1]), values));
+  if (length[0])
+    PetscCall(HDF5Check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values), "read a dataset", file->path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", file->path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "read a dataset", file->path));
+  size[0] = (PetscInt)length[0];
+  size[1] = (PetscInt)length[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An array of the first rank to every rank, in blocks of rows; collective */
+PetscErrorCode CheckpointShareArray(MPI_Comm comm, PetscInt size[2], PetscReal **values)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Bcast(size, 2, MPIU_INT, 0, comm));
+  if (rank && size[0]) PetscCall(PetscMalloc1(size[0] * size[1], values));
+  for (PetscInt row = 0; row < size[0]; row += 1 << 20)
+    PetscCallMPI(MPI_Bcast(*values + row * size[1], (PetscMPIInt)(PetscMin(1 << 20, size[0] - row) * size[1]), MPIU_REAL, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A table, on the first rank */
+static PetscErrorCode ReadTable(const CheckpointFile *file, PetscInt i, char name[512], PetscInt size[2], PetscReal **values)
+{
+  char  place[32], *text;
+  hid_t dataset;
+
+  PetscFunctionBegin;
   PetscCall(PetscSNPrintf(place, sizeof(place), "tables/%" PetscInt_FMT, i));
+  PetscCall(CheckpointReadArray(file, place, size, values));
   dataset = H5Dopen2(file->file, place, H5P_DEFAULT);
   PetscCall(HDF5Check(dataset, "open a table", file->path));
   PetscCall(ReadText(dataset, "name", &text, file->path));
   PetscCall(PetscStrncpy(name, text, 512));
   PetscCall(PetscFree(text));
-  space = H5Dget_space(dataset);
-  PetscCall(HDF5Check(H5Sget_simple_extent_dims(space, length, NULL), "read a table", file->path));
-  PetscCall(PetscMalloc1((size_t)(length[0] * length[1]), values));
-  if (length[0])
-    PetscCall(HDF5Check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values), "read a table", file->path));
-  PetscCall(HDF5Check(H5Sclose(space), "close a data space", file->path));
   PetscCall(HDF5Check(H5Dclose(dataset), "read a table", file->path));
-  size[0] = (PetscInt)length[0];
-  size[1] = (PetscInt)length[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -317,11 +335,8 @@ PetscErrorCode CheckpointFileReadTables(MPI_Comm comm, const CheckpointFile *fil
     PetscReal *values = NULL;
 
     if (!rank) PetscCall(ReadTable(file, i, name, size, &values));
-    PetscCallMPI(MPI_Bcast(size, 2, MPIU_INT, 0, comm));
     PetscCallMPI(MPI_Bcast(name, sizeof(name), MPI_CHAR, 0, comm));
-    if (rank) PetscCall(PetscMalloc1(size[0] * size[1], &values));
-    for (PetscInt row = 0; row < size[0]; row += 1 << 20)
-      PetscCallMPI(MPI_Bcast(values + row * size[1], (PetscMPIInt)(PetscMin(1 << 20, size[0] - row) * size[1]), MPIU_REAL, 0, comm));
+    PetscCall(CheckpointShareArray(comm, size, &values));
     PetscCall(TablesShare(*tables, name, size[0], size[1], values));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -30,13 +30,12 @@ PetscErrorCode OutputStartClock(Output output)
 /* Writes a checkpoint, unless the last one is of this step. Collective. */
 static PetscErrorCode Write(Output output, PetscInt step)
 {
-  Checkpoints   *c    = &output->checkpoints;
-  MPI_Comm       comm = PetscObjectComm((PetscObject)output);
-  CheckpointInfo info = {.step = step};
-  PetscInt       steps;
-  PetscReal      start, dt;
-  Contact        contact;
-
+  Checkpoints       *c    = &output->checkpoints;
+  MPI_Comm           comm = PetscObjectComm((PetscObject)output);
+  CheckpointInfo     info = {.step = step};
+  PetscInt           steps;
+  PetscReal          start, dt;
+  Contact            contact;
   CheckpointContents contents;
 
   PetscFunctionBegin;

@@ -1,14 +1,12 @@
 /* Writes displacement, velocity, stress and contact of all bodies, every so many controller steps. */
 #define _POSIX_C_SOURCE 200809L
 #include "freespace.h"
-#include "fields.h"
-#include "hdf5file.h"
+#include "fieldsimpl.h"
 #include "outputfile.h"
 #include "outputpaths.h"
 #include "xdmf.h"
 #include <petsctime.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 /* Most frames in a run whose options do not say how often */
@@ -17,27 +15,6 @@
 /* With each frame the whole XDMF file is written again, unless it is less than this many times as long ago that it was written as the
    writing took: so writing takes at most 2 % of the run */
 #define XDMF_SHARE 50.0
-
-struct _n_Fields {
-  MPI_Comm        comm;
-  PetscBool       first_rank;
-  char            path[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], xdmf[PETSC_MAX_PATH_LEN];
-  OutputPrecision precision;
-  PetscInt        interval, n_frames; /* controller steps from frame to frame; frames of the whole run */
-  FieldsMesh      mesh;
-  PetscInt        n_fields;                 /* fields of each frame */
-  ContactFields   contact;                  /* NULL if no bodies can touch */
-  PetscInt        written;                  /* frames in the file */
-  PetscReal      *times;                    /* their times [s] */
-  PetscReal      *stress;                   /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
-  PetscReal      *nodal;                    /* of each node of this rank, what ContactFieldsCompute() gives */
-  void           *buffer;                   /* one field of a frame, in the file's precision */
-  hid_t           file;                     /* -1 until it is begun */
-  PetscBool       failed;                   /* a frame could not be written */
-  int             held;                     /* the file with its final name, see OutputFilePlace(); on the first rank */
-  PetscInt        listed;                   /* frames in the XDMF file */
-  PetscLogDouble  list_ended, list_seconds; /* when the XDMF file was written last, and how long that took [s] */
-};
 
 static PetscInt CountFrames(PetscInt steps, PetscInt interval)
 {
@@ -149,157 +126,10 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes an error of the first rank, which has printed it, an error of all ranks */
-static PetscErrorCode Share(Fields fields, PetscErrorCode error)
+PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
 {
-  PetscMPIInt code = (PetscMPIInt)error;
-
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, fields->comm));
-  if (fields->first_rank) PetscCall(error);
-  PetscCheck(!code, fields->comm, (PetscErrorCode)code, "-output_fields %s: the first rank cannot write", fields->path);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes the file, with its mesh, under the name that it has until it has a frame */
-static PetscErrorCode WriteMesh(Fields fields)
-{
-  const FieldsMesh *mesh  = &fields->mesh;
-  PetscErrorCode    error = PETSC_SUCCESS;
-  PetscMPIInt       rank;
-  PetscReal        *positions;
-  char             *options;
-  int              *numbers;
-
-  PetscFunctionBegin;
-  if (fields->first_rank) {
-    PetscCall(PetscOptionsGetAll(NULL, &options));
-    error = OutputFileMakeParents(fields->part); /* which may be gone since they were checked */
-    if (!error) error = FieldsFileCreate(fields->part, mesh, fields->n_fields, fields->n_frames, fields->precision, options);
-    PetscCall(PetscFree(options));
-  }
-  PetscCall(Share(fields, error));
-  PetscCall(FieldsFileOpen(fields->comm, fields->part, &fields->file));
-  PetscCall(PetscMalloc1(3 * (size_t)mesh->nodes.local, &positions));
-  PetscCall(FieldsMeshGetNodes(mesh, positions));
-  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/positions", &mesh->nodes, 3, H5T_NATIVE_DOUBLE, positions));
-  PetscCall(PetscFree(positions));
-  PetscCall(PetscMalloc1(PetscMax((size_t)mesh->topology.local * (size_t)mesh->cell_nodes, (size_t)mesh->cells.local), &numbers));
-  PetscCall(FieldsMeshGetTopology(mesh, numbers));
-  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/cells", &mesh->topology, mesh->cell_nodes, H5T_NATIVE_INT, numbers));
-  PetscCallMPI(MPI_Comm_rank(fields->comm, &rank));
-  for (hsize_t i = 0; i < mesh->cells.local; i++) numbers[i] = rank;
-  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/rank", &mesh->cells, 1, H5T_NATIVE_INT, numbers));
-  for (PetscInt b = 0, next = 0; b < mesh->n_bodies; b++)
-    for (hsize_t i = 0; i < mesh->cells.count[b]; i++) numbers[next++] = (int)b;
-  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/mesh/body", &mesh->cells, 1, H5T_NATIVE_INT, numbers));
-  PetscCall(PetscFree(numbers));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Puts number i of a field into the buffer */
-static inline void Store(Fields fields, size_t i, PetscReal value)
-{
-  if (fields->precision == OUTPUT_DOUBLE) ((double *)fields->buffer)[i] = value;
-  else ((float *)fields->buffer)[i] = (float)value;
-}
-
-/* Writes the field that is in the buffer */
-static PetscErrorCode WriteField(Fields fields, FieldsKind kind)
-{
-  const FieldsField *field = &fields_of_a_frame[kind];
-  char               name[64];
-
-  PetscFunctionBegin;
-  PetscCall(FieldsFileGetDataset(kind, fields->written, sizeof(name), name));
-  PetscCall(FieldsFileWrite(fields->comm, fields->file, name, field->on_cells ? &fields->mesh.cells : &fields->mesh.nodes,
-                            field->components, fields->precision == OUTPUT_DOUBLE ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, fields->buffer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Writes displacement or velocity, with zeros beyond the dimension of space */
-static PetscErrorCode WriteNodes(Fields fields, FieldsKind kind)
-{
-  const FieldsMesh *mesh = &fields->mesh;
-  size_t            next = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
-    const PetscScalar *values;
-    PetscInt           dim;
-    Vec                u, v;
-
-    PetscCall(BodyGetDimension(mesh->bodies[b], &dim));
-    PetscCall(BodyGetSolution(mesh->bodies[b], &u, &v, NULL));
-    PetscCall(VecGetArrayRead(kind == FIELDS_VELOCITY ? v : u, &values));
-    for (PetscInt i = 0; i < (PetscInt)mesh->nodes.count[b]; i++)
-      for (PetscInt d = 0; d < 3; d++) Store(fields, next++, d < dim ? PetscRealPart(values[i * dim + d]) : 0);
-    PetscCall(VecRestoreArrayRead(kind == FIELDS_VELOCITY ? v : u, &values));
-  }
-  PetscCall(WriteField(fields, kind));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscReal VonMises(const PetscReal s[])
-{
-  const PetscReal a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-
-  return PetscSqrtReal((a * a + b * b + c * c) / 2 + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
-static PetscErrorCode WriteStress(Fields fields)
-{
-  static const int  tensor[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2}; /* place of each entry, row by row, among xx, yy, zz, xy, yz, xz */
-  const FieldsMesh *mesh      = &fields->mesh;
-  const size_t      n         = (size_t)mesh->cells.local;
-  size_t            first     = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
-    PetscCall(BodyComputeStress(mesh->bodies[b], fields->stress + 6 * first));
-    first += (size_t)mesh->cells.count[b];
-  }
-  for (size_t i = 0; i < n; i++)
-    for (size_t c = 0; c < 9; c++) Store(fields, 9 * i + c, fields->stress[6 * i + (size_t)tensor[c]]);
-  PetscCall(WriteField(fields, FIELDS_STRESS));
-  for (size_t i = 0; i < n; i++) Store(fields, i, VonMises(fields->stress + 6 * i));
-  PetscCall(WriteField(fields, FIELDS_VON_MISES));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode WriteContact(Fields fields)
-{
-  static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE]    = CONTACT_FIELDS_FORCE,
-                                                   [FIELDS_CONTACT_PRESSURE] = CONTACT_FIELDS_PRESSURE,
-                                                   [FIELDS_CONTACT_GAP]      = CONTACT_FIELDS_GAP,
-                                                   [FIELDS_CONTACT_ACTIVE]   = CONTACT_FIELDS_ACTIVE};
-  const FieldsMesh     *mesh                    = &fields->mesh;
-  size_t                first                   = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
-    PetscCall(ContactFieldsCompute(fields->contact, b, fields->nodal + CONTACT_FIELDS_SIZE * first));
-    first += (size_t)mesh->nodes.count[b];
-  }
-  for (FieldsKind kind = FIELDS_WITHOUT_CONTACT; kind < FIELDS_PER_FRAME; kind++) {
-    const size_t n = (size_t)fields_of_a_frame[kind].components;
-
-    for (size_t i = 0; i < first; i++)
-      for (size_t c = 0; c < n; c++) Store(fields, n * i + c, fields->nodal[CONTACT_FIELDS_SIZE * i + (size_t)begin[kind] + c]);
-    PetscCall(WriteField(fields, kind));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Writes the time of a frame, which tells readers that the frame is whole */
-static PetscErrorCode WriteTime(Fields fields, PetscReal time)
-{
-  hsize_t    begin = (hsize_t)fields->written, count = fields->first_rank ? 1 : 0;
-  FieldsRows rows = {1, (hsize_t)fields->n_frames, &begin, &count, count};
-
-  PetscFunctionBegin;
-  PetscCall(FieldsFileWrite(fields->comm, fields->file, "/time", &rows, 1, H5T_NATIVE_DOUBLE, &time));
-  fields->times[fields->written++] = time;
+  PetscCall(OutputFileShareError(fields->comm, error, "-output_fields", fields->path, "write"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -338,14 +168,10 @@ static PetscErrorCode WriteFrame(Fields fields, PetscReal time)
   const PetscBool begins = (PetscBool)(fields->file < 0);
 
   PetscFunctionBegin;
-  if (begins) PetscCall(WriteMesh(fields));
-  PetscCall(WriteNodes(fields, FIELDS_DISPLACEMENT));
-  PetscCall(WriteNodes(fields, FIELDS_VELOCITY));
-  PetscCall(WriteStress(fields));
-  if (fields->contact) PetscCall(WriteContact(fields));
-  PetscCall(WriteTime(fields, time));
-  if (begins) PetscCall(Share(fields, TakePlace(fields)));
-  PetscCall(Share(fields, List(fields, PETSC_FALSE)));
+  if (begins) PetscCall(FieldsWriteMesh(fields));
+  PetscCall(FieldsWriteFrame(fields, time));
+  if (begins) PetscCall(FieldsShareError(fields, TakePlace(fields)));
+  PetscCall(FieldsShareError(fields, List(fields, PETSC_FALSE)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -391,13 +217,13 @@ PetscErrorCode FieldsFinish(Fields fields)
 
   PetscFunctionBegin;
   if (fields->first_rank && access(fields->xdmf, F_OK)) fields->listed = -1; /* somebody has moved or deleted it */
-  PetscCall(Share(fields, List(fields, PETSC_TRUE)));
+  PetscCall(FieldsShareError(fields, List(fields, PETSC_TRUE)));
   if (fields->file < 0) PetscFunctionReturn(PETSC_SUCCESS);
   closed       = H5Fclose(fields->file) < 0 ? 0 : 1;
   fields->file = -1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed, 1, MPI_INT, MPI_MIN, fields->comm));
   PetscCheck(closed, fields->comm, PETSC_ERR_FILE_WRITE, "HDF5 cannot close %s; is the disk full?", fields->path);
-  PetscCall(Share(fields, OutputFileRestore(fields->held, fields->path)));
+  PetscCall(FieldsShareError(fields, OutputFileRestore(fields->held, fields->path)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -411,7 +237,7 @@ PetscErrorCode FieldsSync(Fields fields)
   flushed = H5Fflush(fields->file, H5F_SCOPE_GLOBAL) < 0 ? 0 : 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &flushed, 1, MPI_INT, MPI_MIN, fields->comm));
   PetscCheck(flushed, fields->comm, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", fields->path);
-  PetscCall(Share(fields, OutputFileSync(fields->held, fields->path)));
+  PetscCall(FieldsShareError(fields, OutputFileSync(fields->held, fields->path)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -424,15 +250,15 @@ static PetscErrorCode TakeUp(Fields fields, PetscInt written)
   PetscFunctionBegin;
   HDF5SilenceBegin(&silence);
   if (fields->first_rank) error = FieldsFileCut(fields->path, fields->n_frames, written, fields->times);
-  PetscCall(Share(fields, error));
+  PetscCall(FieldsShareError(fields, error));
   PetscCallMPI(MPI_Bcast(fields->times, (PetscMPIInt)fields->n_frames, MPIU_REAL, 0, fields->comm));
   PetscCall(FieldsFileOpen(fields->comm, fields->path, &fields->file));
   HDF5SilenceEnd(&silence);
   fields->written = written;
   if (fields->first_rank) error = OutputFileHold(fields->path, &fields->held);
-  PetscCall(Share(fields, error));
+  PetscCall(FieldsShareError(fields, error));
   fields->listed = -1;
-  PetscCall(Share(fields, List(fields, PETSC_TRUE)));
+  PetscCall(FieldsShareError(fields, List(fields, PETSC_TRUE)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -452,19 +278,17 @@ static PetscErrorCode TakeUp(Fields fields, PetscInt written)
 */
 PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, PetscBool same_ranks, Checkpoint checkpoint)
 {
-  char     path[PETSC_MAX_PATH_LEN] = "", own[PETSC_MAX_PATH_LEN] = "";
-  PetscInt numbers[3] = {fields ? fields->written : 0, fields ? fields->n_frames : 0, fields ? fields->interval : 0};
-  int      same;
+  PetscInt  numbers[3] = {fields ? fields->written : 0, fields ? fields->n_frames : 0, fields ? fields->interval : 0};
+  PetscBool same;
+  int       all_same; /* as the first rank, which writes, sees the file system */
 
   PetscFunctionBegin;
-  if (fields) PetscCall(OutputPathResolve(fields->path, sizeof(own), own));
-  PetscCall(PetscStrncpy(path, own, sizeof(path)));
-  PetscCall(CheckpointVisitBytes(checkpoint, "fields", sizeof(path), path));
+  PetscCall(OutputPathVisit(fields ? fields->path : NULL, "fields", checkpoint, &same));
   PetscCall(CheckpointVisitInts(checkpoint, "fields frames", 3, numbers));
   if (!CheckpointLoads(checkpoint) || !fields || !numbers[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  same = !strcmp(own, path);
-  PetscCallMPI(MPI_Bcast(&same, 1, MPI_INT, 0, comm));
-  if (!same) PetscFunctionReturn(PETSC_SUCCESS);
+  all_same = same;
+  PetscCallMPI(MPI_Bcast(&all_same, 1, MPI_INT, 0, comm));
+  if (!all_same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(
       same_ranks, comm, PETSC_ERR_USER_INPUT,
       "-output_fields %s: the file is ordered by the ranks of the run that is continued, and these are more or fewer; give another path, "

@@ -1,8 +1,7 @@
 /* What HDF5 files of a run have in common. Functions are not collective: one rank calls them. */
 #include "hdf5file.h"
 #include <impakt.h>
-#include <ctype.h>
-#include <string.h>
+#include <sys/optionstext.h>
 
 /*
   HDF5Check - ends with an error if HDF5 could not do something
@@ -52,11 +51,6 @@ PetscErrorCode HDF5WriteText(hid_t object, const char name[], const char value[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscBool BeginsOption(const char text[])
-{
-  return (PetscBool)(text[0] == '-' && isalpha((unsigned char)text[1]));
-}
-
 /*
   HDF5WriteRun - writes the options and the version of a run as attributes, so that a file tells how it was made
 
@@ -69,18 +63,13 @@ static PetscBool BeginsOption(const char text[])
 */
 PetscErrorCode HDF5WriteRun(hid_t file, const char options[], const char path[])
 {
-  char *copy, *name, *end, *value, *next;
+  const char *name, *value;
+  char       *copy, *rest;
 
   PetscFunctionBegin;
   PetscCall(HDF5WriteText(file, "version", IMPAKT_VERSION, path));
   PetscCall(PetscStrallocpy(options, &copy));
-  for (name = copy; (end = strchr(name, ' ')); name = next) {
-    value = end + 1;
-    for (next = value; *next && !(next[-1] == ' ' && BeginsOption(next)); next++);
-    *end     = '\0';
-    next[-1] = '\0'; /* the blank after the value; if there is no value, the one after the name again */
-    PetscCall(HDF5WriteText(file, name, next == value ? "" : value, path));
-  }
+  for (rest = copy; OptionsTextNext(&rest, &name, &value);) PetscCall(HDF5WriteText(file, name, value, path));
   PetscCall(PetscFree(copy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -345,22 +345,13 @@ static PetscErrorCode TakeUp(History history)
 */
 PetscErrorCode HistoryVisit(History history, Checkpoint checkpoint)
 {
-  char       path[PETSC_MAX_PATH_LEN] = "";
-  PetscInt64 written                  = history ? history->written : 0;
+  PetscInt64 written = history ? history->written : 0;
   PetscBool  same;
 
   PetscFunctionBegin;
-  if (history) PetscCall(OutputPathResolve(history->path, sizeof(path), path));
-  PetscCall(CheckpointVisitBytes(checkpoint, "history", sizeof(path), path));
+  PetscCall(OutputPathVisit(history ? history->path : NULL, "history", checkpoint, &same));
   PetscCall(CheckpointVisitInt64s(checkpoint, "history records", 1, &written));
-  if (!CheckpointLoads(checkpoint) || !history || !history->writes) PetscFunctionReturn(PETSC_SUCCESS);
-  {
-    char own[PETSC_MAX_PATH_LEN];
-
-    PetscCall(OutputPathResolve(history->path, sizeof(own), own));
-    PetscCall(PetscStrcmp(own, path, &same));
-  }
-  if (!same) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!CheckpointLoads(checkpoint) || !history || !history->writes || !same) PetscFunctionReturn(PETSC_SUCCESS);
   history->written = written;
   PetscCall(TakeUp(history));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -330,3 +330,27 @@ PetscErrorCode OutputFileSyncFolder(const char path[])
   close(file);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*
+  OutputFileShareError - makes an error of the first rank, which has printed it, an error of all ranks
+
+  Collective
+
+  Input Parameters:
++ comm   - communicator
+. error  - of the first rank, or `PETSC_SUCCESS`
+. option - the option that gave the path, for the message
+. path   - the file
+- what   - what the first rank was to do with it
+*/
+PetscErrorCode OutputFileShareError(MPI_Comm comm, PetscErrorCode error, const char option[], const char path[], const char what[])
+{
+  PetscMPIInt rank, code = (PetscMPIInt)error;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
+  if (!rank) PetscCall(error);
+  PetscCheck(!code, comm, (PetscErrorCode)code, "%s %s: the first rank cannot %s it", option, path, what);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -16,3 +16,4 @@ PETSC_INTERN PetscErrorCode OutputFileCopy(int, const char[]);
 PETSC_INTERN PetscErrorCode OutputFileRestore(int, const char[]);
 PETSC_INTERN PetscErrorCode OutputFileSync(int, const char[]);
 PETSC_INTERN PetscErrorCode OutputFileSyncFolder(const char[]);
+PETSC_INTERN PetscErrorCode OutputFileShareError(MPI_Comm, PetscErrorCode, const char[], const char[], const char[]);

@@ -168,3 +168,28 @@ PetscErrorCode OutputPathsCheck(MPI_Comm comm, PetscInt n, const char *const opt
   PetscCheck(!error[0], comm, PETSC_ERR_USER_INPUT, "%s", error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*
+  OutputPathVisit - which file a path stands for, to or from a checkpoint
+
+  Not Collective
+
+  Input Parameters:
++ path       - the path; `NULL`: there is no such output
+. name       - of the record
+- checkpoint - the `Checkpoint`
+
+  Output Parameter:
+. same - loading, whether the run that is continued has written this file
+*/
+PetscErrorCode OutputPathVisit(const char path[], const char name[], Checkpoint checkpoint, PetscBool *same)
+{
+  char own[PETSC_MAX_PATH_LEN] = "", there[PETSC_MAX_PATH_LEN] = "";
+
+  PetscFunctionBegin;
+  if (path) PetscCall(OutputPathResolve(path, sizeof(own), own));
+  PetscCall(PetscStrncpy(there, own, sizeof(there)));
+  PetscCall(CheckpointVisitBytes(checkpoint, name, sizeof(there), there));
+  *same = (PetscBool)(path && !strcmp(own, there));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,43 +1,11 @@
-/* Gathers the figures of the summary, step by step. Only contact forces are kept as series, from the first contact on. */
-#include "statistics.h"
-#include <controller/energyscale.h>
+/* Gathers the figures of the summary, step by step. */
+#include "statisticsimpl.h"
 #include <math.h>
 #include "linearlimits.h"
 
 /* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
    compared with it */
 #define NOTHING_AT_START 1e-9
-/* Mean, scatter and minimum of a force are those of the time from first contact to release without this part at either end, where the force
-   rises and falls. Steps at the ends of what remains belong to it, within round-off of the time. */
-#define FORCE_MARGIN   0.2
-#define TIME_ROUND_OFF 1e-9
-
-/* What is remembered of the last step, for each pair and for all pairs together */
-typedef struct {
-  PetscBool touches;
-  PetscReal force;   /* at its end [N] */
-  PetscReal impulse; /* until then [N s] */
-} ContactMemory;
-
-struct _n_Statistics {
-  StatisticsResults  results;
-  ContactMemory      any, *pair;
-  ContactTimes       times;
-  PetscReal          time; /* of the last frame [s] */
-  PetscInt           total_sweeps, contact_sweeps;
-  PetscReal         *initial_energy; /* of each body [J] */
-  PetscReal         *body_change;    /* least and largest change of the energy of each body since the start [J] */
-  PetscReal          system_change[2];
-  const EnergyScale *scale;                     /* of energies, the controller's */
-  PetscBool          loaded;                    /* forces from outside, or held displacements, act on some body */
-  PetscReal          momentum[3];               /* of the system at the start [kg m/s] */
-  PetscReal          momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
-  PetscReal          angular[3], angular_scale; /* the same of angular momenta about the origin [kg m^2/s] */
-  PetscReal          arm;                       /* distance of the farthest corner of a body's bounding box from the origin [m] */
-  PetscInt           n_series, capacity;
-  PetscReal         *series; /* from first contact on: time, and for each pair force and nodes in contact */
-};
-
 /* Distance of the farthest corner of a bounding box from the origin [m] */
 static PetscErrorCode GetArm(Body body, PetscReal *arm)
 {
@@ -52,16 +20,6 @@ static PetscErrorCode GetArm(Body body, PetscReal *arm)
   for (PetscInt d = 0; d < dim; d++) squares += PetscSqr(PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   *arm = PetscSqrtReal(squares);
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static void ContactStatisticsInitialize(ContactStatistics *contact)
-{
-  contact->first_contact_time = NAN;
-  contact->release_time       = NAN;
-  contact->force_mean         = NAN;
-  contact->force_std          = NAN;
-  contact->force_min          = NAN;
-  contact->gap_final          = NAN;
 }
 
 /*
@@ -103,8 +61,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
     PetscCall(GetArm(bodies[i], &arm));
     s->arm = PetscMax(s->arm, arm);
   }
-  ContactStatisticsInitialize(&s->results.contact);
-  for (PetscInt i = 0; i < s->results.n_pairs; i++) ContactStatisticsInitialize(&s->results.pairs[i]);
+  StatisticsInitializeContact(s);
   s->capacity = 1024;
   PetscCall(PetscMalloc1(s->capacity * (1 + 2 * s->results.n_pairs), &s->series));
   *statistics = s;
@@ -185,33 +142,6 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
-/* Adds a step of one pair, or of all pairs together */
-static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
-                       PetscReal time_step, PetscBool cut)
-{
-  const PetscBool touches = state->active > 0 ? PETSC_TRUE : PETSC_FALSE;
-  /* contact that begins and ends inside a step made in parts leaves its impulse alone */
-  const PetscBool inside = (PetscBool)(!touches && !memory->touches && state->normal_impulse > memory->impulse);
-
-  if (touches || inside) {
-    if (!contact->steps_in_contact++) contact->first_contact_time = time;
-    if (!memory->touches) contact->onsets++;
-    contact->release_time = time;
-  }
-  /* the forces at the ends of whole steps do not tell what those in a step that was cut have done */
-  contact->impulse += cut ? state->normal_impulse - memory->impulse : 0.5 * (memory->force + state->force) * time_step;
-  memory->impulse          = state->normal_impulse;
-  contact->force_peak      = PetscMax(contact->force_peak, state->force);
-  contact->tension_max     = PetscMax(contact->tension_max, state->tension);
-  contact->max_penetration = PetscMax(contact->max_penetration, -state->gap);
-  contact->area_max        = PetscMax(contact->area_max, state->area);
-  contact->active_max      = PetscMax(contact->active_max, state->active);
-  for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
-  contact->gap_final = state->gap;
-  memory->touches    = touches;
-  memory->force      = state->force;
-}
-
 static void AddSupports(Statistics s, const ControllerFrame *frame)
 {
   for (PetscInt i = 0; i < frame->n_supports; i++) {
@@ -223,26 +153,6 @@ static void AddSupports(Statistics s, const ControllerFrame *frame)
     }
     support->force_peak = PetscMax(support->force_peak, Norm(support->force));
   }
-}
-
-/* Appends time, forces and nodes in contact of a step to the series */
-static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
-{
-  const PetscInt width = 1 + 2 * frame->n_pairs;
-  PetscReal     *next;
-
-  PetscFunctionBegin;
-  if (s->n_series == s->capacity) {
-    s->capacity *= 2;
-    PetscCall(PetscRealloc((size_t)s->capacity * (size_t)width * sizeof(PetscReal), &s->series));
-  }
-  next    = s->series + (size_t)s->n_series++ * (size_t)width;
-  *next++ = frame->time;
-  for (PetscInt i = 0; i < frame->n_pairs; i++) {
-    *next++ = frame->pairs[i].force;
-    *next++ = (PetscReal)frame->pairs[i].active;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
@@ -257,9 +167,7 @@ static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
 */
 PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
-  Statistics         s   = (Statistics)context;
-  StatisticsResults *r   = &s->results;
-  ContactPairState   any = {.gap = PETSC_INFINITY};
+  Statistics s = (Statistics)context;
 
   PetscFunctionBegin;
   s->scale = ControllerGetEnergyScale(controller);
@@ -268,53 +176,9 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   AddSupports(s, frame);
   PetscCall(ContactTimesAdd(s->times, frame));
   PetscCall(LinearLimitsCheck(controller, frame, s->results.bodies));
-  if (frame->step > 0) {
-    const PetscBool cut = (PetscBool)(frame->step_cuts > 0);
-
-    for (PetscInt i = 0; i < frame->n_pairs; i++) {
-      AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time, cut);
-      any.normal_impulse += frame->pairs[i].normal_impulse;
-      any.force += frame->pairs[i].force;
-      any.gap = PetscMin(any.gap, frame->pairs[i].gap);
-      any.active += frame->pairs[i].active;
-      any.area += frame->pairs[i].area;
-      any.tension = PetscMax(any.tension, frame->pairs[i].tension);
-    }
-    AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time, cut);
-    r->steps++;
-    r->max_sweeps = PetscMax(r->max_sweeps, frame->sweeps);
-    s->total_sweeps += frame->sweeps;
-    if (any.active) s->contact_sweeps += frame->sweeps;
-    if (r->contact.steps_in_contact) PetscCall(AddToSeries(s, frame));
-  }
+  if (frame->step > 0) PetscCall(StatisticsAddContact(s, frame));
   s->time = frame->time;
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Mean, standard deviation and minimum of a pair's force over the middle three fifths of the time from first contact to release */
-static void ComputeForces(Statistics s, PetscInt pair)
-{
-  ContactStatistics *contact  = &s->results.pairs[pair];
-  const size_t       width    = 1 + 2 * (size_t)s->results.n_pairs;
-  const PetscReal    duration = contact->release_time - contact->first_contact_time;
-  const PetscReal    begin    = contact->first_contact_time + FORCE_MARGIN * duration - TIME_ROUND_OFF * duration;
-  const PetscReal    end      = contact->first_contact_time + (1 - FORCE_MARGIN) * duration + TIME_ROUND_OFF * duration;
-  PetscInt           n        = 0;
-  PetscReal          mean = 0, squares = 0, minimum = NAN;
-
-  for (PetscInt i = 0; i < s->n_series; i++) {
-    const PetscReal *record = s->series + (size_t)i * width, force = record[1 + 2 * pair], change = force - mean;
-
-    if (!(record[0] >= begin && record[0] <= end)) continue;
-    n++;
-    mean += change / (PetscReal)n; /* Welford's recurrence, which does not cancel if the scatter is small */
-    squares += change * (force - mean);
-    if (record[2 + 2 * pair] > 0 && !(force >= minimum)) minimum = force;
-  }
-  if (!n) return;
-  contact->force_mean = mean;
-  contact->force_std  = PetscSqrtReal(squares / (PetscReal)n);
-  contact->force_min  = minimum;
 }
 
 /*
@@ -355,7 +219,7 @@ PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResul
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < r->n_pairs; i++) {
-    ComputeForces(statistics, i);
+    StatisticsComputeForces(statistics, i);
     PetscCall(ContactTimesGetResults(statistics->times, i, &r->pairs[i].times));
   }
   PetscCall(ContactTimesGetResults(statistics->times, -1, &r->contact.times));

@@ -201,27 +201,23 @@ PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver s, Vec f, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* C_j = A^{-1} B^T e_j, and this rank's part of column j of W in the work space */
+static PetscErrorCode SolveForColumn(ConstrainedSolver s, PetscInt j)
+{
+  PetscFunctionBegin;
+  if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+  PetscCall(ConstrainedSolverApplyUnit(s, j, s->columns[j], s->column));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* C_j = A^{-1} B^T e_j and column j of W */
 PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
   if (s->fresh[j]) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
-  PetscCall(ConstrainedSolverApplyUnit(s, j, s->columns[j], s->column));
+  PetscCall(SolveForColumn(s, j));
   PetscCall(ComplianceSetColumn(s->compliance, j, 1, s->column));
   s->fresh[j] = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The columns of W are loaded; those of A^{-1} B^T follow from A and B as they are */
-static PetscErrorCode RemakeColumns(ConstrainedSolver s)
-{
-  PetscFunctionBegin;
-  for (PetscInt j = 0; j < s->global; j++) {
-    if (!s->fresh[j]) continue;
-    if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
-    PetscCall(ConstrainedSolverApplyUnit(s, j, s->columns[j], s->column));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -232,7 +228,8 @@ PetscErrorCode ConstrainedSolverVisit(ConstrainedSolver s, Checkpoint checkpoint
   PetscCall(CheckpointCheckInts(checkpoint, "rows", 1, &s->global));
   if (!s->shares) PetscCall(ComplianceVisit(s->compliance, checkpoint));
   PetscCall(CheckpointVisitBools(checkpoint, "columns", s->global, s->fresh));
-  if (CheckpointLoads(checkpoint)) PetscCall(RemakeColumns(s));
+  for (PetscInt j = 0; j < s->global && CheckpointLoads(checkpoint); j++)
+    if (s->fresh[j]) PetscCall(SolveForColumn(s, j)); /* columns of W are loaded; those of A^{-1} B^T follow from A and B as they are */
   PetscCall(ConstrainedSolverVisitConstraints(s, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -71,11 +71,10 @@ PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver s, Mat A)
   PetscCall(MatGetSize(A, &n, NULL));
   s->solve_flops = (PetscLogDouble)FLOPS_OF_UNKNOWN * n;
   if (s->direct) {
-    PetscBool lu, cholesky;
+    PetscBool factored;
 
-    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCLU, &lu));
-    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCCHOLESKY, &cholesky));
-    if (lu || cholesky) PetscCall(PCFactorGetMatrix(s->direct, &factors));
+    PetscCall(PetscObjectTypeCompareAny((PetscObject)s->direct, &factored, PCLU, PCCHOLESKY, ""));
+    if (factored) PetscCall(PCFactorGetMatrix(s->direct, &factors));
   }
   if (!factors) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatGetInfo(factors, MAT_GLOBAL_SUM, &info));
@@ -87,14 +86,10 @@ PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver s, Mat A)
    several ranks have together are not always. */
 PetscErrorCode ConstrainedSolverRepeats(ConstrainedSolver s, PetscBool *repeats)
 {
-  PetscBool redundant = PETSC_FALSE, lu = PETSC_FALSE, cholesky = PETSC_FALSE;
-
   PetscFunctionBegin;
-  if (s->direct) {
-    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCREDUNDANT, &redundant));
-    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCLU, &lu));
-    PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCCHOLESKY, &cholesky));
-  }
-  *repeats = (PetscBool)(redundant || ((lu || cholesky) && s->size == 1));
+  *repeats = PETSC_FALSE;
+  if (!s->direct) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->size > 1) PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCREDUNDANT, repeats));
+  else PetscCall(PetscObjectTypeCompareAny((PetscObject)s->direct, repeats, PCREDUNDANT, PCLU, PCCHOLESKY, ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -346,6 +346,9 @@ struct _p_Contact {
 #define ContactCheckNotSetUp(contact)                                                                                                      \
   PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
              PETSC_FUNCTION_NAME)
+#define ContactCheckPair(contact, pair)                                                                                                    \
+  PetscCheck((pair) >= 0 && (pair) < (contact)->n_pairs, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_OUTOFRANGE,                \
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, (contact)->n_pairs)
 
 PETSC_INTERN PetscFunctionList ContactList;
 

@@ -7,10 +7,9 @@
 #include "bodyvisit.h"
 #include <string.h>
 
-static PetscErrorCode VisitState(Body body, BodyState *state, Checkpoint checkpoint)
+static PetscErrorCode VisitState(BodyState *state, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
-  (void)body;
   PetscCall(CheckpointVisitVec(checkpoint, "displacement", state->u));
   PetscCall(CheckpointVisitVec(checkpoint, "velocity", state->v));
   PetscCall(CheckpointVisitVec(checkpoint, "acceleration", state->a));
@@ -158,9 +157,9 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
   PetscCall(CheckpointCheckInts(checkpoint, "nodes, dimensions, rows and substeps", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
-  PetscCall(VisitState(body, &body->saved, checkpoint));
+  PetscCall(VisitState(&body->saved, checkpoint));
   PetscCall(VisitLevels(body, checkpoint));
-  PetscCall(VisitState(body, &body->state, checkpoint));
+  PetscCall(VisitState(&body->state, checkpoint));
   PetscCall(VisitTraces(body, checkpoint));
   PetscCall(VisitConditions(body, checkpoint));
   PetscCall(VisitMassSolver(body, checkpoint));

@@ -205,6 +205,29 @@ PetscErrorCode BodyRestoreLocalRead(Body body, Vec vec, Vec *local, const PetscS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Values on all nodes of this rank, zero at first, for loops over elements that add to them. BodyRestoreLocalSum() hands what ghosts have
+   got to their owners. Collective. */
+PetscErrorCode BodyGetLocalSum(Body body, Vec vec, Vec *local, PetscScalar *array[])
+{
+  PetscFunctionBegin;
+  *local = vec;
+  if (body->rows.size > 1) PetscCall(VecGhostGetLocalForm(vec, local));
+  PetscCall(VecGetArrayWrite(*local, array));
+  PetscCall(PetscArrayzero(*array, body->mesh.local_nodes * body->mesh.dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyRestoreLocalSum(Body body, Vec vec, Vec *local, PetscScalar *array[])
+{
+  PetscFunctionBegin;
+  PetscCall(VecRestoreArrayWrite(*local, array));
+  if (body->rows.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGhostRestoreLocalForm(vec, local));
+  PetscCall(VecGhostUpdateBegin(vec, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecGhostUpdateEnd(vec, ADD_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyGetCells - the elements of the mesh, for output
 

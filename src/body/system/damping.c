@@ -15,10 +15,11 @@ struct _BodyDamping {
   PetscReal mass, stiffness; /* alpha [1/s], beta [s] */
   /* below: with a stiffness part */
   PetscInt  counts[2];    /* of all ranks: elements that touch no massless node, and all */
-  PetscInt *connectivity; /* of the former on this rank */
+  PetscInt *numbers;      /* in the body, of the former on this rank */
+  PetscInt *connectivity; /* theirs */
   Element   element;      /* these; linear */
   Material  material;     /* of a nonlinear body: theirs */
-  Vec       work;         /* M v, M a */
+  Vec       work;         /* M v */
 };
 
 /*@
@@ -117,13 +118,14 @@ PetscErrorCode BodyViewDamping(Body body, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Elements none of whose nodes is massless: their number and connectivity */
-static PetscErrorCode SelectElements(Body body, PetscInt *count, PetscInt **connectivity)
+/* Elements none of whose nodes is massless: how many, which, and their connectivity */
+static PetscErrorCode SelectElements(Body body, PetscInt *count, PetscInt **numbers, PetscInt **connectivity)
 {
   const PetscInt n = body->model.element->nodes;
 
   PetscFunctionBegin;
   *count = 0;
+  PetscCall(PetscMalloc1(body->model.element->count, numbers));
   PetscCall(PetscMalloc1(body->model.element->count * n, connectivity));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     const PetscInt *nodes    = body->mesh.connectivity + e * n;
@@ -133,7 +135,7 @@ static PetscErrorCode SelectElements(Body body, PetscInt *count, PetscInt **conn
       if (body->mass.redistribute && body->layer.contains[nodes[a]]) massless = PETSC_TRUE;
     if (massless) continue;
     PetscCall(PetscArraycpy(*connectivity + *count * n, nodes, n));
-    (*count)++;
+    (*numbers)[(*count)++] = e;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -154,7 +156,7 @@ PetscErrorCode BodySetUpDamping(Body body)
   PetscCheck(body->model.linear || body->model.element->ops->viscousforce, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
              "-%sdamping_stiffness: elements of shape '%s' do not support it with nonlinear materials", ((PetscObject)body)->prefix,
              DMPolytopeTypes[body->mesh.cell_shape]);
-  PetscCall(SelectElements(body, &count, &damping->connectivity));
+  PetscCall(SelectElements(body, &count, &damping->numbers, &damping->connectivity));
   damping->counts[0] = count;
   damping->counts[1] = body->model.element->count;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, damping->counts, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
@@ -175,6 +177,7 @@ PetscErrorCode BodyDestroyDamping(Body body)
   if (!body->damping) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElementDestroy(&body->damping->element));
   PetscCall(MaterialDestroy(&body->damping->material));
+  PetscCall(PetscFree(body->damping->numbers));
   PetscCall(PetscFree(body->damping->connectivity));
   PetscCall(VecDestroy(&body->damping->work));
   PetscCall(PetscFree(body->damping));
@@ -184,28 +187,20 @@ PetscErrorCode BodyDestroyDamping(Body body)
 /* force = K v; as in the undeformed body where u is NULL */
 static PetscErrorCode ComputeViscousForce(Body body, Vec u, Vec v, Vec force)
 {
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
   Element            element = body->damping->element;
   const PetscScalar *at      = NULL, *rate;
   PetscScalar       *f;
-  Vec                at_local, rate_local, f_local = force;
+  Vec                at_local, rate_local, f_local;
 
   PetscFunctionBegin;
   if (u) PetscCall(BodyGetLocalRead(body, u, &at_local, &at));
   PetscCall(BodyGetLocalRead(body, v, &rate_local, &rate));
-  if (ghosted) PetscCall(VecGhostGetLocalForm(force, &f_local));
-  PetscCall(VecGetArrayWrite(f_local, &f));
-  PetscCall(PetscArrayzero(f, body->mesh.local_nodes * body->mesh.dim));
+  PetscCall(BodyGetLocalSum(body, force, &f_local, &f));
   if (u) PetscCall((*element->ops->viscousforce)(element, at, rate, f));
   else PetscCall((*element->ops->internalforce)(element, rate, f));
-  PetscCall(VecRestoreArrayWrite(f_local, &f));
+  PetscCall(BodyRestoreLocalSum(body, force, &f_local, &f));
   PetscCall(BodyRestoreLocalRead(body, v, &rate_local, &rate));
   if (u) PetscCall(BodyRestoreLocalRead(body, u, &at_local, &at));
-  if (ghosted) {
-    PetscCall(VecGhostRestoreLocalForm(force, &f_local));
-    PetscCall(VecGhostUpdateBegin(force, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateEnd(force, ADD_VALUES, SCATTER_REVERSE));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,38 +233,28 @@ PetscErrorCode BodyNoteDamping(Body body)
 PetscErrorCode BodyAddDampingMatrix(Body body, Vec u, PetscReal scale, Mat A)
 {
   const struct _BodyDamping *damping = body->damping;
-  const PetscInt             nodes = body->model.element->nodes, dim = body->mesh.dim, n = nodes * dim;
-  const PetscScalar         *at   = NULL;
-  PetscScalar               *zero = NULL, part[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-  PetscInt                   dofs[ELEMENT_MAX_DOFS], next = 0;
+  const PetscInt             n       = body->model.element->nodes * body->mesh.dim;
+  const PetscScalar         *at      = NULL;
+  PetscScalar               *zero    = NULL, part[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscInt                   dofs[ELEMENT_MAX_DOFS];
   Vec                        local;
 
   PetscFunctionBegin;
   if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (damping->mass > 0 && body->mass.diagonal) {
-    PetscCall(VecCopy(body->mass.diagonal, damping->work));
-    PetscCall(VecScale(damping->work, scale * damping->mass));
-    PetscCall(MatDiagonalSet(A, damping->work, ADD_VALUES));
-  } else if (damping->mass > 0) PetscCall(MatAXPY(A, scale * damping->mass, body->mass.matrix, SAME_NONZERO_PATTERN));
+  if (damping->mass > 0) PetscCall(BodyAddMassMatrix(body, scale * damping->mass, A));
   if (!(damping->stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->model.linear) u = NULL;
   if (u) PetscCall(BodyGetLocalRead(body, u, &local, &at));
   else {
-    PetscCall(PetscCalloc1(body->mesh.local_nodes * dim, &zero));
+    PetscCall(PetscCalloc1(body->mesh.local_nodes * body->mesh.dim, &zero));
     at = zero;
   }
-  for (PetscInt e = 0; next < damping->element->count; e++) {
-    PetscBool same = PETSC_FALSE;
-
-    /* the elements of the damping are some of the body's, in its order */
-    PetscCall(PetscArraycmp(body->mesh.connectivity + e * nodes, damping->connectivity + next * nodes, nodes, &same));
-    if (!same) continue;
-    if (u) PetscCall((*damping->element->ops->viscosity)(damping->element, next, at, part));
-    else PetscCall((*damping->element->ops->stiffness)(damping->element, next, at, part));
+  for (PetscInt e = 0; e < damping->element->count; e++) {
+    if (u) PetscCall((*damping->element->ops->viscosity)(damping->element, e, at, part));
+    else PetscCall((*damping->element->ops->stiffness)(damping->element, e, at, part));
     for (PetscInt i = 0; i < n * n; i++) part[i] *= scale * damping->stiffness;
-    PetscCall(BodyGetElementDofs(body, e, dofs));
+    PetscCall(BodyGetElementDofs(body, damping->numbers[e], dofs));
     PetscCall(MatSetValues(A, n, dofs, n, dofs, part, ADD_VALUES));
-    next++;
   }
   if (u) PetscCall(BodyRestoreLocalRead(body, u, &local, &at));
   PetscCall(PetscFree(zero));
@@ -278,10 +263,11 @@ PetscErrorCode BodyAddDampingMatrix(Body body, Vec u, PetscReal scale, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the dashpots take from displacement and forces at the start of a substep to the present ones: by the trapezoidal rule, as the work
+/* What the dashpots take from displacement and forces at the start of the substep to the present ones: by the trapezoidal rule, as the work
    of loads. Central differences and the trapezoidal rule of a linear body take just that from their energies. */
-static PetscErrorCode ComputeWork(Body body, const BodyState *start, PetscReal *work)
+static PetscErrorCode ComputeWork(Body body, PetscReal *work)
 {
+  const BodyState   *start = &body->substep_start;
   const PetscScalar *u0, *u1, *d0, *d1;
 
   PetscFunctionBegin;
@@ -306,7 +292,7 @@ PetscErrorCode BodyAddDampingWork(Body body)
 
   PetscFunctionBegin;
   if (!BodyIsDamped(body) || body->unloaded) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComputeWork(body, &body->substep_start, &work));
+  PetscCall(ComputeWork(body, &work));
   body->state.damping_work += work;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -316,6 +302,6 @@ PetscErrorCode BodyGetPendingDampingWork(Body body, PetscReal *work)
 {
   PetscFunctionBegin;
   *work = 0;
-  if (BodyIsDamped(body)) PetscCall(ComputeWork(body, &body->substep_start, work));
+  if (BodyIsDamped(body)) PetscCall(ComputeWork(body, work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

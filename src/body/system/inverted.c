@@ -99,7 +99,7 @@ PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number,
   const Shape       *shape = FindShape(body);
   const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim;
   PetscInt           found = -1;
-  PetscMPIInt        rank, first;
+  PetscMPIInt        first;
   Vec                local;
   const PetscScalar *u;
 
@@ -123,14 +123,7 @@ PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number,
     *number += inside;
   }
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)body), &rank));
-  first = *number ? rank : body->rows.size;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, number, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  if (!*number) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, PetscObjectComm((PetscObject)body)));
-  for (PetscInt d = 0; d < 3; d++) centre[d] = 0;
-  for (PetscInt a = 0; a < n && rank == first; a++)
-    for (PetscInt d = 0; d < dim; d++) centre[d] += body->mesh.coordinates[body->mesh.connectivity[found * n + a] * dim + d] / (PetscReal)n;
-  PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, PetscObjectComm((PetscObject)body)));
+  if (*number) PetscCall(BodyFindFirstElement(body, found, &first, centre));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

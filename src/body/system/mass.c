@@ -224,6 +224,20 @@ PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A += scale M; held dofs and massless nodes too */
+PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
+{
+  Vec diagonal = body->work.nodes[0];
+
+  PetscFunctionBegin;
+  if (body->mass.diagonal) {
+    PetscCall(VecCopy(body->mass.diagonal, diagonal));
+    PetscCall(VecScale(diagonal, scale));
+    PetscCall(MatDiagonalSet(A, diagonal, ADD_VALUES));
+  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, SAME_NONZERO_PATTERN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* a = M^{-1} f, zero on massless nodes. Where the mass matrix is not diagonal, held dofs of f are to be their accelerations, see
    BodySubtractHeldInertia(). */
 PetscErrorCode BodySolveMass(Body body, Vec f, Vec a)

@@ -6,26 +6,39 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
 {
   const PetscScalar *u_array;
   PetscScalar       *f_array;
-  Vec                u_local, f_local = f;
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  Vec                u_local, f_local;
   Element            element;
 
   PetscFunctionBegin;
   PetscCall(BodyGetElement(body, &element));
   PetscCall(PetscLogEventBegin(BODY_InternalForce, body, 0, 0, 0));
   PetscCall(BodyGetLocalRead(body, u, &u_local, &u_array));
-  if (ghosted) PetscCall(VecGhostGetLocalForm(f, &f_local));
-  PetscCall(VecGetArrayWrite(f_local, &f_array));
-  PetscCall(PetscArrayzero(f_array, body->mesh.local_nodes * body->mesh.dim));
+  PetscCall(BodyGetLocalSum(body, f, &f_local, &f_array));
   PetscCall((*element->ops->internalforce)(element, u_array, f_array));
-  PetscCall(VecRestoreArrayWrite(f_local, &f_array));
+  PetscCall(BodyRestoreLocalSum(body, f, &f_local, &f_array));
   PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
-  if (ghosted) {
-    PetscCall(VecGhostRestoreLocalForm(f, &f_local));
-    PetscCall(VecGhostUpdateBegin(f, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateEnd(f, ADD_VALUES, SCATTER_REVERSE));
-  }
   PetscCall(PetscLogEventEnd(BODY_InternalForce, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first rank that has an element to tell of, and where that lies; `e`: of this rank, -1: none. `first` is the number of ranks where no
+   rank has one; else `centre` is that of the element in the undeformed mesh, three numbers [m]. Collective. */
+PetscErrorCode BodyFindFirstElement(Body body, PetscInt e, PetscMPIInt *first, PetscReal centre[3])
+{
+  MPI_Comm       comm = PetscObjectComm((PetscObject)body);
+  const PetscInt n    = body->model.element->nodes;
+  PetscMPIInt    rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  *first = e < 0 ? body->rows.size : rank;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, first, 1, MPI_INT, MPI_MIN, comm));
+  if (*first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt d = 0; d < 3; d++) centre[d] = 0;
+  for (PetscInt a = 0; a < n && rank == *first; a++)
+    for (PetscInt d = 0; d < body->mesh.dim; d++)
+      centre[d] += body->mesh.coordinates[body->mesh.connectivity[e * n + a] * body->mesh.dim + d] / (PetscReal)n;
+  PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, *first, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -33,28 +46,20 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
    where it is known to all ranks that something is wrong. */
 PetscErrorCode BodyNoteInverted(Body body)
 {
-  MPI_Comm       comm      = PetscObjectComm((PetscObject)body);
-  const PetscInt n         = body->model.element->nodes;
-  PetscReal      centre[3] = {0};
-  PetscInt       e, number, offset;
-  PetscMPIInt    rank, first;
-  Element        element;
+  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
+  PetscReal   centre[3];
+  PetscInt    e, number, offset;
+  PetscMPIInt first;
+  Element     element;
 
   PetscFunctionBegin;
   PetscCall(BodyGetElement(body, &element));
   e = element->inverted;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  first = e < 0 ? body->rows.size : rank;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm));
+  PetscCall(BodyFindFirstElement(body, e, &first, centre));
   if (first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Scan(&body->model.element->count, &offset, 1, MPIU_INT, MPI_SUM, comm));
   number = offset - body->model.element->count + e;
   PetscCallMPI(MPI_Bcast(&number, 1, MPIU_INT, first, comm));
-  if (rank == first)
-    for (PetscInt a = 0; a < n; a++)
-      for (PetscInt d = 0; d < body->mesh.dim; d++)
-        centre[d] += body->mesh.coordinates[body->mesh.connectivity[e * n + a] * body->mesh.dim + d] / n;
-  PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, first, comm));
   PetscCall(StepFailureSet(
       &body->failure, STEP_DIVERGED_INVERTED, PETSC_ERR_FP,
       "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or "

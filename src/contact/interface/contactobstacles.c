@@ -129,8 +129,7 @@ PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(i, 3);
-  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  ContactCheckPair(contact, pair);
   *i = contact->pairs[pair].obstacle ? contact->n_obstacles - 1 : -1;
   while (*i >= 0 && contact->obstacles[*i] != contact->pairs[pair].obstacle) (*i)--;
   PetscFunctionReturn(PETSC_SUCCESS);

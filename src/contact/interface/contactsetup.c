@@ -240,8 +240,7 @@ PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[]
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  ContactCheckPair(contact, pair);
   if (name) *name = contact->pairs[pair].name;
   if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[0]];
   if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1]];
@@ -269,8 +268,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(normal, 3);
-  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  ContactCheckPair(contact, pair);
   PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

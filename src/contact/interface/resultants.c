@@ -270,8 +270,7 @@ PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairSt
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(state, 3);
-  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  ContactCheckPair(contact, pair);
   PetscCall(ComputeStates(contact, pair, pair + 1, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

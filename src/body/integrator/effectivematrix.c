@@ -1,0 +1,173 @@
+/* The effective matrix K + shift M + shift_velocity C of a body on TSALPHA2, and the solver with its factors: one for each level of cut
+   controller steps. */
+#include "implicitimpl.h"
+
+/* What all integrators on TSALPHA2 have in common */
+PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
+{
+  BodyImplicit *implicit;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&implicit));
+  integrator->data               = implicit;
+  integrator->reads_start        = PETSC_TRUE;
+  integrator->feels_end_force    = PETSC_TRUE;
+  integrator->repeats_prescribed = PETSC_TRUE;
+  integrator->ops.setrows        = BodyImplicitSetRows;
+  integrator->ops.setlevel       = BodyImplicitSetLevel;
+  integrator->ops.renew          = BodyImplicitRenew;
+  integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
+  integrator->ops.visit          = BodyImplicitVisit;
+  integrator->ops.destroy        = BodyImplicitDestroy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The effective matrix K + shift M + shift_velocity C, with the artificial springs of a body that contact alone holds; its held dofs
+ * eliminated */
+static PetscErrorCode AssembleMatrix(Body body, Vec u)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  const Vec     point    = implicit->points[body->time.level];
+
+  PetscFunctionBegin;
+  implicit->deformed[body->time.level] = (PetscBool)(u != NULL);
+  if (u && u != point) PetscCall(VecCopy(u, point));
+  PetscCall(BodyAssembleTangent(body, u, implicit->matrix));
+  if (implicit->shift > 0) PetscCall(BodyAddMassMatrix(body, implicit->shift, implicit->matrix));
+  PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, implicit->matrix));
+  PetscCall(BodyAddSpringStiffness(body, implicit->matrix));
+  PetscCall(BodyEliminateHeld(body, implicit->matrix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The matrix and its factors anew, at a displacement of a nonlinear body */
+PetscErrorCode BodyImplicitRefactor(Body body, Vec u)
+{
+  PetscFunctionBegin;
+  PetscCall(AssembleMatrix(body, u));
+  PetscCall(ConstrainedSolverRefactor(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For CG with multigrid: what the body can do without strain */
+static PetscErrorCode SetNearNullSpace(Body body, Mat A)
+{
+  MatNullSpace rigid;
+  Vec          coordinates;
+
+  PetscFunctionBegin;
+  if (body->mesh.dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(body->mesh.positions, &coordinates));
+  PetscCall(VecCopy(body->mesh.positions, coordinates));
+  PetscCall(VecSetBlockSize(coordinates, body->mesh.dim));
+  PetscCall(MatSetBlockSize(A, body->mesh.dim));
+  PetscCall(MatNullSpaceCreateRigidBody(coordinates, &rigid));
+  PetscCall(MatSetNearNullSpace(A, rigid));
+  PetscCall(MatNullSpaceDestroy(&rigid));
+  PetscCall(VecDestroy(&coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much acceleration and velocity at the stage change with the displacement there */
+static void SetShifts(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  if (!body->integrator->has_inertia) return;
+  implicit->shift          = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
+  implicit->shift_velocity = implicit->gamma / (implicit->beta * body->time.step);
+}
+
+/* The effective matrix at a displacement, with its factors in body->solver, for controller steps of the present level. It is K + alpha_m /
+   (alpha_f beta dt^2) M + gamma / (beta dt) C, with the dashpots C, and K alone without inertia. */
+PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  SetShifts(body);
+  PetscCall(BodyCreateMatrix(body, &implicit->matrix));
+  implicit->matrices[body->time.level] = implicit->matrix;
+  if (!body->model.linear) PetscCall(BodyCreateVec(body, &implicit->points[body->time.level]));
+  if (!body->model.linear && implicit->unit_strain == 0) PetscCall(BodyImplicitComputeUnitStrainForce(body));
+  PetscCall(AssembleMatrix(body, u));
+  PetscCall(SetNearNullSpace(body, implicit->matrix));
+  PetscCall(ConstrainedSolverCreate(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,
+                                    BodyGetSharedCompliance(body), &body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Matrix and solver for controller steps that are cut in halves another number of times. That of a linear body without inertia is the same
+   for all steps. */
+PetscErrorCode BodyImplicitSetLevel(Body body)
+{
+  BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
+  const PetscInt level    = body->time.level;
+
+  PetscFunctionBegin;
+  if (!body->integrator->has_inertia && body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!implicit->matrices[level]) {
+    PetscCall(BodyImplicitCreateSolver(body, body->model.linear ? NULL : body->saved.u));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  implicit->matrix = implicit->matrices[level];
+  SetShifts(body);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Matrix and factors of a nonlinear body anew, at the saved displacement */
+PetscErrorCode BodyImplicitRenew(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitRefactor(body, body->saved.u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverSetRows(body->solver, body->rows.free_matrix, changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the displacement at the end of the one substep of a linear body: A du = B^T df with prescribed rows at B du = dx, A being the
+   effective matrix; and the internal force with it */
+PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar force[], const PetscScalar displacement[], Vec du)
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverCorrect(body->solver, force, displacement, du));
+  PetscCall(VecAXPY(body->state.u, 1, du));
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* State for a checkpoint: where the matrix of a nonlinear body was linearised last, at a level of cut steps. Its factors answer until the
+   next iteration of Newton's method. */
+PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoint)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  PetscBool     deformed = implicit->deformed[level];
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "linearised", 1, &deformed));
+  if (!deformed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitVec(checkpoint, "linearised at", implicit->points[level]));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyImplicitRefactor(body, implicit->points[level]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyImplicitDestroy(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  Vec          *vecs[]   = {&implicit->u, &implicit->v, &implicit->a, &implicit->next};
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
+    PetscCall(MatDestroy(&implicit->matrices[k]));
+    PetscCall(VecDestroy(&implicit->points[k]));
+  }
+  PetscCall(PetscFree(body->integrator->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

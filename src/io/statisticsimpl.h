@@ -1,0 +1,34 @@
+/* What the sources of the statistics share. Private to src/io. */
+#pragma once
+#include "statistics.h"
+#include <controller/energyscale.h>
+
+/* What is remembered of the last step, for each pair and for all pairs together */
+typedef struct {
+  PetscBool touches;
+  PetscReal force;   /* at its end [N] */
+  PetscReal impulse; /* until then [N s] */
+} ContactMemory;
+
+struct _n_Statistics {
+  StatisticsResults  results;
+  ContactMemory      any, *pair;
+  ContactTimes       times;
+  PetscReal          time; /* of the last frame [s] */
+  PetscInt           total_sweeps, contact_sweeps;
+  PetscReal         *initial_energy; /* of each body [J] */
+  PetscReal         *body_change;    /* least and largest change of the energy of each body since the start [J] */
+  PetscReal          system_change[2];
+  const EnergyScale *scale;                     /* of energies, the controller's */
+  PetscBool          loaded;                    /* forces from outside, or held displacements, act on some body */
+  PetscReal          momentum[3];               /* of the system at the start [kg m/s] */
+  PetscReal          momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
+  PetscReal          angular[3], angular_scale; /* the same of angular momenta about the origin [kg m^2/s] */
+  PetscReal          arm;                       /* distance of the farthest corner of a body's bounding box from the origin [m] */
+  PetscInt           n_series, capacity;
+  PetscReal         *series; /* from first contact on: time, and for each pair force and nodes in contact */
+};
+
+PETSC_INTERN void           StatisticsInitializeContact(Statistics);
+PETSC_INTERN PetscErrorCode StatisticsAddContact(Statistics, const ControllerFrame *);
+PETSC_INTERN void           StatisticsComputeForces(Statistics, PetscInt);
