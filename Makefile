@@ -52,7 +52,7 @@ export UBSAN_OPTIONS := print_stacktrace=1
 endif
 ifeq ($(COVERAGE),1)
 BUILD    := build/coverage
-OPTIMISE := -O1 -g --coverage -fprofile-update=atomic
+OPTIMISE := -O1 -g --coverage -fprofile-update=atomic -Wno-maybe-uninitialized # which between counters is a wrong guess
 endif
 ifeq ($(FUZZ),1) # by `make fuzz`: libFuzzer is clang's
 BUILD    := build/fuzz
