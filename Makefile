@@ -52,7 +52,7 @@ export UBSAN_OPTIONS := print_stacktrace=1
 endif
 ifeq ($(COVERAGE),1)
 BUILD    := build/coverage
-OPTIMISE := -O1 -g --coverage -fprofile-update=atomic
+OPTIMISE := -O1 -g --coverage -fprofile-update=atomic -Wno-maybe-uninitialized # which between counters is a wrong guess
 endif
 ifeq ($(FUZZ),1) # by `make fuzz`: libFuzzer is clang's
 BUILD    := build/fuzz
@@ -175,9 +175,9 @@ $(BUILD)/%.tidy: $(BUILD)/%.o .clang-tidy
 	$(call say,TIDY) $(analysis)clang-tidy --quiet $*.c -- $(CPPFLAGS) -I$(BUILD) $(patsubst -I%,-isystem %,$(filter -I%,$(mpi_flags))) $(CFLAGS) >$@.log 2>/dev/null || { cat $@.log; exit 1; }
 	@touch $@
 
-coverage: ## the whole test-suite with counted lines of src: a report in build/coverage/report, an error below 90 %
+coverage: ## the tests of `make test` with counted lines of src: a report in build/coverage/report, an error below 90 %
 	@find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	@$(MAKE) --no-print-directory COVERAGE=1 PETSC_ROOT="$(PETSC_ROOT)" PYTHON="$(PYTHON)" test-all
+	@$(MAKE) --no-print-directory COVERAGE=1 PETSC_ROOT="$(PETSC_ROOT)" PYTHON="$(PYTHON)" test
 	@mkdir -p build/coverage/report
 	$(analysis)gcovr --root . --filter src/ --exclude '.*/tutorials/' --exclude-throw-branches --html-details build/coverage/report/index.html \
 	  --txt build/coverage/report/lines.txt --print-summary --fail-under-line 90 build/coverage

@@ -1,5 +1,6 @@
 /* The program: everything from options, run, report. */
 #include <impakt.h>
+#include <io/stopsignals.h>
 #include <signal.h>
 #include <sys/commandline.h>
 #include <sys/example.h>
@@ -33,9 +34,9 @@ static PetscErrorCode Run(PetscBool *stopped)
   PetscCall(ControllerSetFromOptions(controller));
   PetscCall(ControllerSetUp(controller));
   PetscCall(OutputCreate(controller, &output));
+  PetscCall(OutputCatchSignals(output)); /* before there are files and their locks, which signals of the set-up would leave */
   PetscCall(OutputSetFromOptions(output));
   PetscCall(CheckOptions(controller));
-  PetscCall(OutputCatchSignals(output));
   PetscCall(OutputRestart(output));
   PetscCall(ControllerView(controller, PETSC_VIEWER_STDOUT_WORLD));
   error = ControllerSolve(controller);
@@ -61,8 +62,9 @@ static PetscErrorCode CheckAsked(int argc, PetscBool *asked)
 /* Starts PETSc with the words of the command line, or with none where these are wrong */
 static PetscErrorCode Start(CommandLine *line)
 {
-  int    required = MPI_THREAD_FUNNELED, provided, n = line->n;
-  char **words = line->words;
+  int         required = MPI_THREAD_FUNNELED, provided, n = line->n;
+  char      **words = line->words;
+  PetscMPIInt rank;
 
   /* PetscFunctionBegin would need PETSc */
   if (MPI_Init_thread(&n, &words, required, &provided)) return PETSC_ERR_MPI;
@@ -70,6 +72,8 @@ static PetscErrorCode Start(CommandLine *line)
   if (line->error[0]) n = 1;
   PetscCall(ImpaktInitialize(&n, &words));
   PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  StopSignalsBegin(rank);
   (void)signal(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
   (void)signal(SIGXFSZ, SIG_IGN); /* a file that becomes larger than the shell allows is an error with a message, not the end */
   PetscCall(CommandLineInsert(line));

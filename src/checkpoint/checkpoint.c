@@ -222,6 +222,8 @@ static PetscErrorCode CheckRows(Checkpoint c, const char name[], PetscInt n, con
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++) fine = (PetscBool)(fine && offsets[i] <= offsets[i + 1]);
+  /* entries that are not there are not given memory */
+  if (fine && c->loads) fine = (PetscBool)((size_t)offsets[n] <= (c->size - c->at) / (sizeof(PetscInt) + sizeof(PetscScalar)));
   PetscCheck(fine, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has rows of '%s' of %s that cannot be", name, c->section);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,10 +3,17 @@
    it, and that without a variable: which function handles a signal tells whether it has come. SIGINT and SIGTERM are handled by Note()
    until they come. After that SIGINT has its default, so that the second Ctrl-C ends the run at once, and SIGTERM is ignored, since whoever
    starts several ranks may send it more than once. SIGUSR1 is handled by Note() until it comes, then by Noted() until it has been taken.
+
+   Before that, while meshes are read and matrices made, there is no step to be finished and nothing to be saved: SIGINT and SIGTERM end the
+   process at once, with a line that says so. EndFirst() handles them on the first rank, EndOther() on the others.
 */
 #define _POSIX_C_SOURCE 200809L
 #include "stopsignals.h"
+#include <impakt.h>
 #include <signal.h>
+#include <string.h>
+#include <sys/statusline.h>
+#include <unistd.h>
 
 static void Handle(int number, void (*handler)(int))
 {
@@ -28,6 +35,27 @@ static void Note(int number)
   Handle(number, number == SIGINT ? SIG_DFL : number == SIGTERM ? SIG_IGN : Noted);
 }
 
+/* The one line, and the end. What is called here may be called where a signal is handled. */
+static void EndFirst(int number)
+{
+  const char *text =
+      number == SIGINT
+          ? "impakt: ended by SIGINT during the set-up, before the first step: there is nothing to continue, the same command begins anew\n"
+          : "impakt: ended by SIGTERM during the set-up, before the first step: there is nothing to continue, the same command begins "
+            "anew\n";
+
+  StatusLineBreak();
+  if (write(STDERR_FILENO, text, strlen(text)) < 0) _exit(IMPAKT_STOPPED); /* who would be told? */
+  _exit(IMPAKT_STOPPED);
+}
+
+/* Where another rank ends, mpiexec ends the first one by SIGTERM, which has the word then */
+static void EndOther(int number)
+{
+  (void)number;
+  _exit(IMPAKT_STOPPED);
+}
+
 static PetscBool Handles(int number, void (*handler)(int))
 {
   struct sigaction action;
@@ -35,12 +63,25 @@ static PetscBool Handles(int number, void (*handler)(int))
   return (PetscBool)(!sigaction(number, NULL, &action) && action.sa_handler == handler);
 }
 
-/* From now on. An interrupt that the process ignores, as one does that a shell has started in the background, stays ignored. */
+/* From now on signals end the process with a line that says that there is nothing to continue; but SIGUSR1 is taken note of, and asks for a
+   checkpoint after the first step. An interrupt that the process ignores, as one does that a shell has started in the background, stays
+   ignored. */
+void StopSignalsBegin(PetscMPIInt rank)
+{
+  void (*const end)(int) = rank ? EndOther : EndFirst;
+
+  if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, end);
+  Handle(SIGTERM, end);
+  Handle(SIGUSR1, Note);
+}
+
+/* From now on signals are taken note of; an interrupt that is ignored stays so, and one for a checkpoint that has come already is not lost
+ */
 void StopSignalsCatch(void)
 {
   if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, Note);
   Handle(SIGTERM, Note);
-  Handle(SIGUSR1, Note);
+  if (!Handles(SIGUSR1, Noted)) Handle(SIGUSR1, Note);
 }
 
 /* Signals do again what they do by default */

@@ -7,6 +7,7 @@ typedef struct {
   const char *name;             /* of the signal that ends the run */
 } StopSignals;
 
+PETSC_INTERN void StopSignalsBegin(PetscMPIInt);
 PETSC_INTERN void StopSignalsCatch(void);
 PETSC_INTERN void StopSignalsRelease(void);
 PETSC_INTERN void StopSignalsTake(StopSignals *);

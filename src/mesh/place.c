@@ -5,9 +5,11 @@
 #define SMALLEST_EXTENT 1e-9
 /* Sines of larger angles have lost digits [degrees] */
 #define LARGEST_ANGLE 1e6
-/* Cubes of lengths beyond these are no numbers any more [m] */
-#define SMALLEST_SIZE 1e-60
-#define LARGEST_SIZE  1e60
+/* No solid is smaller than an atom, 1e-10 m, or larger than a star, 1e12 m, of which those who compute in kilometres or in nanometres give
+   1e-13 and 1e21. What lies beyond is a mistake, with which the run would go through in figures without a sense: gaps are 1e30 where
+   nothing lies opposite, and products of volumes of elements leave the range of double precision from 1e-45 m on. */
+#define SMALLEST_SIZE 1e-15
+#define LARGEST_SIZE  1e22
 
 typedef struct {
   PetscReal scale, rotation[3][3];
@@ -70,8 +72,8 @@ static PetscErrorCode ReadMotion(MPI_Comm comm, const char prefix[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Blames the placement for what it does to a mesh, rather than the mesh later on */
-static PetscErrorCode CheckPlace(DM dm, const char prefix[], const char name[], Vec coordinates)
+/* Whether a mesh has a size and a place that can be; blames the placement for what that does to it, rather than the mesh later on */
+static PetscErrorCode CheckPlace(DM dm, const char prefix[], const char name[], const Motion *motion, Vec coordinates)
 {
   MPI_Comm           comm       = PetscObjectComm((PetscObject)dm);
   PetscReal          extreme[6] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
@@ -93,12 +95,15 @@ static PetscErrorCode CheckPlace(DM dm, const char prefix[], const char name[], 
     size     = PetscMax(size, extreme[d] + extreme[3 + d]);
     distance = PetscMax(distance, PetscMax(PetscAbsReal(extreme[d]), PetscAbsReal(extreme[3 + d])));
   }
+  PetscCheck((size >= SMALLEST_SIZE && size <= LARGEST_SIZE) || motion->scale == 1, comm, PETSC_ERR_USER_INPUT,
+             "Body '%s' is %g m large after -%sscale %g: choose a factor that leaves it between %g and %g m", name, (double)size, prefix,
+             (double)motion->scale, SMALLEST_SIZE, LARGEST_SIZE);
   PetscCheck(size >= SMALLEST_SIZE && size <= LARGEST_SIZE, comm, PETSC_ERR_USER_INPUT,
-             "Body '%s' is %g m large after -%sscale: choose a factor that leaves it between %g and %g m", name, (double)size, prefix,
-             SMALLEST_SIZE, LARGEST_SIZE);
+             "Body '%s' is %g m large: its mesh must be between %g and %g m, also by -%sscale", name, (double)size, SMALLEST_SIZE,
+             LARGEST_SIZE, prefix);
   PetscCheck(
       size >= SMALLEST_EXTENT * distance, comm, PETSC_ERR_USER_INPUT,
-      "Body '%s' is %g m large and lies %g m from the origin after -%stranslate (or -%srotate_centre): so far away its coordinates do "
+      "Body '%s' is %g m large and lies %g m from the origin, also by -%stranslate and -%srotate_centre: so far away its coordinates do "
       "not have the digits that its elements need",
       name, (double)size, (double)distance, prefix, prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -138,10 +143,10 @@ PetscErrorCode MeshPlace(DM dm, const char prefix[], const char name[])
   PetscFunctionBegin;
   PetscCall(DMGetCoordinateDim(dm, &dim));
   PetscCall(ReadMotion(PetscObjectComm((PetscObject)dm), prefix, name, dim, &motion, &moves));
-  if (!moves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(Move(&motion, dim, coordinates));
-  PetscCall(CheckPlace(dm, prefix, name, coordinates));
+  if (moves) PetscCall(Move(&motion, dim, coordinates));
+  PetscCall(CheckPlace(dm, prefix, name, &motion, coordinates));
+  if (!moves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMSetCoordinatesLocal(dm, coordinates)); /* this drops the global coordinates, which have not been moved */
   PetscCall(DMGetCellCoordinatesLocal(dm, &coordinates));
   if (coordinates) {

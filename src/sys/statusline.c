@@ -270,6 +270,13 @@ void StatusLineSetSteps(PetscInt step, PetscInt steps)
   pthread_mutex_unlock(&status.mutex);
 }
 
+/* StatusLineBreak - what is written next to the terminal begins a line; for handlers of signals, which can neither wait for the thread nor
+   have its mutex */
+void StatusLineBreak(void)
+{
+  if (status.running && status.shown && write(status.terminal, "\n", 1) < 0) return; /* without a terminal there is no line to end */
+}
+
 /* StatusLineEnd - erases the line and ends its thread; again without harm */
 void StatusLineEnd(void)
 {

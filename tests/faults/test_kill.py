@@ -42,10 +42,17 @@ def begin(where, ranks, *more, case=CASE):
 
 
 def caught(pid):
-    """Whether a process handles SIGINT itself: from the end of its set-up on."""
+    """Whether a process handles SIGINT itself: from when PETSc has been started, until one has come."""
     with open(f"/proc/{pid}/status") as status:
         mask = int(re.search(r"SigCgt:\s*(\w+)", status.read())[1], 16)
     return bool(mask >> (signal.SIGINT - 1) & 1)
+
+
+def await_begun(process, where):
+    """Until the set-up has ended: the first record of the history is there."""
+    while not (where / "h.h5").exists():
+        assert process.poll() is None
+        time.sleep(0.01)
 
 
 def await_caught(process, expected=True):
@@ -115,11 +122,7 @@ def test_many_kills(run_in, folder, same_runs, ranks, interval, kills, seed):
 def end_by(where, number, seconds, *more, ranks=1, case=CASE):
     with cores(ranks):
         process = begin(where, ranks, "-checkpoint_interval", 100000, *more, case=case)
-        if ranks == 1:
-            await_caught(process)
-        while not (where / "h.h5").exists():  # the first record is there: the run has begun
-            assert process.poll() is None
-            time.sleep(0.01)
+        await_begun(process, where)
         time.sleep(seconds)
         os.kill(process.pid, number)
         stderr = process.communicate(timeout=60)[1]
@@ -147,7 +150,7 @@ def test_checkpoint_by_signal(run_in, folder, same_runs):
     run_in(SLOW, whole)
     with cores(1):
         process = begin(other, 1, "-checkpoint_interval", 100000, case=SLOW)
-        await_caught(process)
+        await_begun(process, other)
         time.sleep(0.1)
         os.kill(process.pid, signal.SIGUSR1)
         process.communicate(timeout=60)
@@ -165,9 +168,10 @@ def test_second_interrupt(folder):
     other = folder("interrupted")
     with cores(1):
         process = begin(other, 1, case="-options_file options/hertz-sphere.opts")
-        for expected in (True, False):  # each signal is sent when the one before has been taken
-            await_caught(process, expected)
-            os.kill(process.pid, signal.SIGINT)
+        await_begun(process, other)
+        os.kill(process.pid, signal.SIGINT)
+        await_caught(process, False)  # the second one is sent when the first has been taken
+        os.kill(process.pid, signal.SIGINT)
         process.communicate(timeout=20)
     assert process.returncode == -signal.SIGINT
 
@@ -196,7 +200,7 @@ def test_without_checkpoint(folder):
             text=True,
             preexec_fn=heed_interrupts,  # noqa: PLW1509
         )
-        await_caught(process)
+        await_begun(process, where)
         process.send_signal(signal.SIGTERM)
         stderr = process.communicate(timeout=30)[1]
     assert process.returncode == 75
@@ -216,3 +220,66 @@ def test_mpiexec(run_in, folder, same_runs):
         assert 0 < asked.attrs["step"] < 600
     run_in(SLOW, other, 2, "-restart", "c.h5")
     same_runs(whole, other)
+
+
+# Three million degrees of freedom: set up for many seconds
+SETUP = CASE + " -left_dm_plex_box_faces 1000,1000"
+
+
+def await_setup(pid):
+    late = time.monotonic() + 30
+    while not caught(pid):
+        assert time.monotonic() < late
+        time.sleep(0.001)
+
+
+def end_setup(where, number, ranks, victim):
+    """Sends a signal to a rank amid the set-up, or to mpiexec (None)."""
+    with cores(ranks):
+        process = begin(where, ranks, case=SETUP)
+        while ranks > 1 and len(children(process.pid)) < ranks:
+            assert process.poll() is None
+            time.sleep(0.01)
+        processes = children(process.pid) if ranks > 1 else [process.pid]
+        for pid in processes:
+            await_setup(pid)
+        os.kill(process.pid if victim is None else processes[victim], number)
+        stderr = process.communicate(timeout=30)[1]
+    return process.returncode, stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_end_of_setup(folder, number):
+    """Before the first step: one line, and no file is left."""
+    where = folder("run")
+    there = set(where.iterdir())
+    code, stderr = end_setup(where, number, 1, 0)
+    assert code == 75, stderr
+    assert stderr == f"impakt: ended by {number.name} during the set-up, before the first step: there is nothing to continue, the same command begins anew\n"
+    assert set(where.iterdir()) == there
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("ranks", "victim"), [(2, 0), (2, 1), (3, 2), (2, None), (3, None)])
+def test_end_of_setup_on_ranks(folder, ranks, victim):
+    """The first rank says so, also where another one has ended and mpiexec ends it; where mpiexec itself is told, it may hand that on or not."""
+    where = folder("run")
+    there = set(where.iterdir())
+    code, stderr = end_setup(where, signal.SIGTERM, ranks, victim)
+    assert code != 0 if victim is None else code == 75, stderr
+    told = stderr.count("impakt: ended by SIGTERM during the set-up, before the first step: there is nothing to continue, the same command begins anew")
+    assert told <= 1 if victim is None else told == 1, stderr
+    assert set(where.iterdir()) == there
+
+
+def test_checkpoint_asked_in_setup(folder):
+    """SIGUSR1 in the set-up does not end the run: the checkpoint is written as soon as there is a step."""
+    where = folder("run")
+    with cores(1):
+        process = begin(where, 1, "-checkpoint_interval", 100000, "-time_end", "2e-5")
+        await_setup(process.pid)
+        os.kill(process.pid, signal.SIGUSR1)
+        stderr = process.communicate(timeout=60)[1]
+    assert process.returncode == 0, stderr
+    with h5py.File(where / "c.prev.h5") as asked:
+        assert asked.attrs["step"] == 0

@@ -246,6 +246,42 @@ static void bad_places(void **state)
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_scale 0|positive", "%s -scale 0", box);
 }
 
+/* Beyond all proportion: the option is blamed that did it, or could mend it */
+static void bad_sizes(void **state)
+{
+  const char *const boxes[] = {"-dm_plex_dim 1 -dm_plex_box_faces 3", "-dm_plex_dim 2 -dm_plex_box_faces 3,3",
+                               "-dm_plex_dim 3 -dm_plex_box_faces 3,3,3"};
+
+  (void)state;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(boxes); i++) {
+    mesh_refused(PETSC_ERR_USER_INPUT, "1e-30 m large after -a_scale 1e-30|between 1e-15 and 1e+22 m", "%s -scale 1e-30", boxes[i]);
+    mesh_refused(PETSC_ERR_USER_INPUT, "1e+30 m large after -a_scale 1e+30", "%s -scale 1e30", boxes[i]);
+    mesh_refused(PETSC_ERR_USER_INPUT, "m large and lies|from the origin|-a_translate", "%s -translate %s", boxes[i],
+                 i == 0   ? "1e12"
+                 : i == 1 ? "0,-1e12"
+                          : "0,0,1e12");
+  }
+  mesh_refused(PETSC_ERR_USER_INPUT, "1e-30 m large: its mesh must be between 1e-15 and 1e+22 m|-a_scale", "%s -dm_plex_box_upper 1e-30",
+               boxes[0]);
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_rotate: 1e+09 degrees are out of all proportion", "%s -rotate 1e9", boxes[1]);
+}
+
+/* Whoever computes in nanometres or in kilometres has bodies that are as large as these */
+static void small_and_large(void **state)
+{
+  const char *const scales[] = {"1e-13", "1e16"};
+
+  (void)state;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(scales); i++) {
+    DM        dm = create_mesh("-dm_plex_dim 3 -dm_plex_box_faces 2,2,2 -scale %s", scales[i]);
+    PetscReal low[3], high[3];
+
+    ok(DMGetBoundingBox(dm, low, high));
+    for (PetscInt d = 0; d < 3; d++) near((high[d] - low[d]) / strtod(scales[i], NULL), 1, 1e-14);
+    ok(DMDestroy(&dm));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -253,6 +289,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(parts_of_ranks),      cmocka_unit_test(place_in_space),   cmocka_unit_test(turn_about_diagonal),
       cmocka_unit_test(place_in_plane),      cmocka_unit_test(place_on_line),    cmocka_unit_test(nodes_of_sides),
       cmocka_unit_test(unknown_names),       cmocka_unit_test(bad_boxes),        cmocka_unit_test(bad_places),
+      cmocka_unit_test(bad_sizes),           cmocka_unit_test(small_and_large),
   };
 
   return impakt_main(argc, argv, tests);
