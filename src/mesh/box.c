@@ -2,25 +2,19 @@
 #include "meshimpl.h"
 
 typedef struct {
-  PetscInt  dim, faces[3];
-  PetscReal lower[3], upper[3];
-  PetscBool simplex, is_box;
-} Box;
-
-typedef struct {
-  MeshFile  *file;
-  const Box *box;
+  MeshFile      *file;
+  const MeshBox *box;
 } Division;
 
 /* Reads and checks DMPLEX's options for boxes. Defaults are DMPLEX's, but that cells are quadrilaterals and hexahedra. */
-static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], Box *box)
+static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
 {
   char      shape[64];
   PetscInt  n;
   PetscBool set;
 
   PetscFunctionBegin;
-  *box = (Box){.dim = 2, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .simplex = PETSC_FALSE, .is_box = PETSC_TRUE};
+  *box = (MeshBox){.dim = 2, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .simplex = PETSC_FALSE, .is_box = PETSC_TRUE};
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", shape, sizeof(shape), &set));
   if (set) PetscCall(PetscStrcasecmp(shape, "box", &box->is_box));
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &box->dim, NULL));
@@ -49,6 +43,60 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], Box *box)
   }
   if (box->dim > 1) PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &box->simplex, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether an option asks for what PETSc alone does with a box: divide it as a graph, leave it whole, make it periodic, ... */
+static PetscErrorCode HasOptionOfGraph(const char prefix[], PetscBool *has)
+{
+  const char *const options[] = {"-petscpartitioner_type",   "-dm_distribute",       "-dm_distribute_overlap", "-dm_plex_box_bd",
+                                 "-dm_plex_separate_marker", "-dm_plex_interpolate", "-dm_plex_cell",          "-dm_plex_reorder"};
+
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !*has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether each rank makes its own brick of the box */
+static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *bricks)
+{
+  const char *const divisions[] = {"bricks", "graph"};
+  PetscInt          n = 3, division = 0, product = 1;
+  PetscBool         set, graph = PETSC_FALSE;
+  PetscMPIInt       size;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 2, &division, &set));
+  if (!set) {
+    PetscCall(HasOptionOfGraph(prefix, &graph));
+    if (!graph) PetscCall(MeshBricksBalance(comm, box, bricks));
+    graph = (PetscBool)(graph || !*bricks);
+  }
+  *bricks = (PetscBool)(!graph && !division);
+  PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-mesh_bricks", box->bricks, &n, &set));
+  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  for (PetscInt d = 0; d < n; d++) {
+    PetscCheck(box->bricks[d] > 0 && box->bricks[d] <= size, comm, PETSC_ERR_USER_INPUT,
+               "-%smesh_bricks: %" PetscInt_FMT " bricks along axis %" PetscInt_FMT "; there are %d ranks", prefix, box->bricks[d], d + 1,
+               size);
+    product *= box->bricks[d];
+  }
+  PetscCheck(n == box->dim && product == size, comm, PETSC_ERR_USER_INPUT,
+             "-%smesh_bricks gives %" PetscInt_FMT " bricks along %" PetscInt_FMT " axes: give one number for each of %" PetscInt_FMT
+             " axes, with the number of ranks, %d, as their product",
+             prefix, product, n, box->dim, size);
+  PetscCheck(!division, comm, PETSC_ERR_USER_INPUT, "-%smesh_bricks needs -%smesh_division bricks", prefix, prefix);
+  *bricks = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The number of a side (xmin, xmax, ymin, ...) in the face sets of DMPLEX's boxes */
+PetscInt MeshBoxSideNumber(PetscInt dim, PetscInt side)
+{
+  static const PetscInt numbers[3][6] = {{1, 2}, {4, 2, 1, 3}, {6, 5, 3, 4, 1, 2}};
+
+  return numbers[dim - 1][side];
 }
 
 static PetscErrorCode AddSimplex(MeshFile *file, PetscInt n, const PetscInt corners[])
@@ -99,10 +147,9 @@ static PetscErrorCode DivideRange(MeshFile *file, PetscInt n_axes, const PetscIn
 /* Fills a file with a box of triangles or tetrahedra, whose sides have the numbers that DMPLEX gives to those of its boxes */
 static PetscErrorCode DivideBox(void *ctx)
 {
-  static const PetscInt       numbers[2][6] = {{4, 2, 1, 3}, {6, 5, 3, 4, 1, 2}}; /* xmin, xmax, ymin, ... */
-  static const DMPolytopeType shapes[]      = {DM_POLYTOPE_SEGMENT, DM_POLYTOPE_TRIANGLE, DM_POLYTOPE_TETRAHEDRON};
-  MeshFile                   *file          = ((Division *)ctx)->file;
-  const Box                  *box           = ((Division *)ctx)->box;
+  static const DMPolytopeType shapes[] = {DM_POLYTOPE_SEGMENT, DM_POLYTOPE_TRIANGLE, DM_POLYTOPE_TETRAHEDRON};
+  MeshFile                   *file     = ((Division *)ctx)->file;
+  const MeshBox              *box      = ((Division *)ctx)->box;
   const PetscInt              dim = box->dim, all[3] = {0, 1, 2}, begin[3] = {0};
   PetscInt                    end[3] = {1, 1, 1}, nodes[3] = {1, 1, 1}, stride[3];
 
@@ -136,14 +183,14 @@ static PetscErrorCode DivideBox(void *ctx)
     from[side / 2] = side % 2 ? box->faces[side / 2] : 0;
     to[side / 2]   = from[side / 2] + 1;
     /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): boxes of one dimension are made elsewhere */
-    PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, dim - 1, numbers[dim - 2][side], &group));
+    PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, dim - 1, MeshBoxSideNumber(dim, side), &group));
     PetscCall(MeshFileAddRun(file, shapes[dim - 2], 1, &group));
     PetscCall(DivideRange(file, dim - 1, axes, from, to, stride));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const Box *box, const char prefix[], const char name[], DM *dm)
+static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const MeshBox *box, const char prefix[], const char name[], DM *dm)
 {
   MeshFile       file;
   Division       division = {&file, box};
@@ -167,21 +214,26 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const Box *box, const char
 /* A box or another of DMPLEX's shapes from options */
 PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
-  Box       box;
+  MeshBox   box;
   char      option[128];
-  PetscBool set;
+  PetscBool set, bricks = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ReadBox(comm, prefix, &box));
-  /* DMPLEX has no setter for this default: it is put among the options */
-  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
-  if (!set && box.is_box && box.dim > 1) {
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
-    PetscCall(PetscOptionsSetValue(NULL, option, "0"));
-  }
   if (box.is_box && box.dim > 1 && box.simplex) {
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (box.is_box) PetscCall(ReadDivision(comm, prefix, &box, &bricks));
+  if (bricks) {
+    PetscCall(MeshCreateBricks(comm, &box, dm));
   } else {
+    /* DMPLEX has no setter for this default: it is put among the options */
+    PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
+    if (!set && box.is_box && box.dim > 1) {
+      PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
+      PetscCall(PetscOptionsSetValue(NULL, option, "0"));
+    }
     PetscCall(DMCreate(comm, dm));
     PetscCall(DMSetType(*dm, DMPLEX));
   }

@@ -113,10 +113,18 @@ static PetscErrorCode OnSide(DM dm, const Selection *selection, PetscInt face, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The selected ones of this rank's boundary faces. Faces between two ranks do not belong to the boundary. */
-static PetscErrorCode CollectFaces(DM dm, const Selection *selection, PetscInt *n_faces, PetscInt *faces[])
+/* The faces of the boundary. Faces between two ranks do not belong to it. */
+static PetscErrorCode MarkBoundary(DM dm, DMLabel *boundary)
 {
-  DMLabel            boundary;
+  PetscFunctionBegin;
+  PetscCall(DMLabelCreate(PETSC_COMM_SELF, "boundary", boundary));
+  PetscCall(DMPlexMarkBoundaryFaces(dm, 1, *boundary));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The selected ones of this rank's boundary faces */
+static PetscErrorCode CollectFaces(DM dm, DMLabel boundary, const Selection *selection, PetscInt *n_faces, PetscInt *faces[])
+{
   IS                 points;
   const PetscInt    *point;
   const PetscScalar *x;
@@ -125,8 +133,6 @@ static PetscErrorCode CollectFaces(DM dm, const Selection *selection, PetscInt *
   PetscInt           n, vstart, vend;
 
   PetscFunctionBegin;
-  PetscCall(DMLabelCreate(PETSC_COMM_SELF, "boundary", &boundary));
-  PetscCall(DMPlexMarkBoundaryFaces(dm, 1, boundary));
   PetscCall(DMLabelGetStratumSize(boundary, 1, &n));
   PetscCall(DMGetCoordinateSection(dm, &section));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
@@ -149,24 +155,25 @@ static PetscErrorCode CollectFaces(DM dm, const Selection *selection, PetscInt *
     PetscCall(ISDestroy(&points));
     PetscCall(VecRestoreArrayRead(coordinates, &x));
   }
-  PetscCall(DMLabelDestroy(&boundary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Labels the faces on the sides of the bounding box as xmin, xmax, ... A side without faces gets no label. */
 PetscErrorCode MeshMarkSides(DM dm)
 {
+  DMLabel  boundary;
   PetscInt dim;
 
   PetscFunctionBegin;
   PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(MarkBoundary(dm, &boundary));
   for (PetscInt side = 0; side < 2 * dim; side++) {
     Selection selection = {.side = -1};
     PetscInt  n, total, *faces;
     DMLabel   label;
 
     PetscCall(FindSide(dm, side, &selection));
-    PetscCall(CollectFaces(dm, &selection, &n, &faces));
+    PetscCall(CollectFaces(dm, boundary, &selection, &n, &faces));
     PetscCallMPI(MPI_Allreduce(&n, &total, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)dm)));
     if (total) {
       PetscCall(DMCreateLabel(dm, sides[side]));
@@ -175,6 +182,7 @@ PetscErrorCode MeshMarkSides(DM dm)
     }
     PetscCall(PetscFree(faces));
   }
+  PetscCall(DMLabelDestroy(&boundary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -203,6 +211,7 @@ PetscErrorCode MeshMarkSides(DM dm)
 PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, PetscInt *faces[])
 {
   Selection selection = {.side = -1};
+  DMLabel   boundary;
   PetscInt  dim, total;
   PetscBool found = PETSC_FALSE;
 
@@ -219,7 +228,9 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
     }
     if (!found) PetscCall(RefuseSurface(dm, name, ""));
   }
-  PetscCall(CollectFaces(dm, &selection, n_faces, faces));
+  PetscCall(MarkBoundary(dm, &boundary));
+  PetscCall(CollectFaces(dm, boundary, &selection, n_faces, faces));
+  PetscCall(DMLabelDestroy(&boundary));
   PetscCallMPI(MPI_Allreduce(n_faces, &total, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)dm)));
   if (!total) {
     PetscCall(PetscFree(*faces));

@@ -61,6 +61,14 @@ typedef struct {
   char *text;
 } MeshFile;
 
+/* A box as its options describe it */
+typedef struct {
+  PetscInt  dim, faces[3];
+  PetscReal lower[3], upper[3]; /* [m] */
+  PetscBool simplex, is_box;
+  PetscInt  bricks[3]; /* bricks along each axis, one for each rank; 0: not given */
+} MeshBox;
+
 PETSC_INTERN PetscErrorCode MeshFileInitialize(MeshFile *, const char[]);
 PETSC_INTERN PetscErrorCode MeshFileDestroy(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshFileAddGroup(MeshFile *, MeshGroupKind, PetscInt, PetscInt, PetscInt *);
@@ -78,6 +86,9 @@ PETSC_INTERN PetscErrorCode MeshCheckNetCDFSize(const char[]);
 PETSC_INTERN PetscErrorCode MeshOnFirstRank(MPI_Comm, PetscErrorCode (*)(void *), void *, const char[]);
 PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], DM *);
+PETSC_INTERN PetscInt       MeshBoxSideNumber(PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode MeshBricksBalance(MPI_Comm, const MeshBox *, PetscBool *);
+PETSC_INTERN PetscErrorCode MeshCreateBricks(MPI_Comm, const MeshBox *, DM *);
 PETSC_INTERN PetscErrorCode MeshIsBall(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBall(MPI_Comm, const char[], const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshReadNumbers(MPI_Comm, const char[], const char[], PetscInt, const char[], PetscReal[], PetscBool *);

@@ -41,6 +41,13 @@ static const KnownOption options[] = {
     {"meshes", OPTION_OF_BODY, "dm_plex_box_upper", "x[,y,z]", "upper corner of a box [m]"},
     {"meshes", OPTION_OF_BODY, "dm_plex_simplex", "true|false",
      "whether a box or a ball is made of triangles or tetrahedra, default false: quadrilaterals or hexahedra"},
+    {"meshes", OPTION_OF_BODY, "mesh_division", "bricks|graph",
+     "how a box is divided among ranks: each makes its own brick of it, or the first makes all and it is divided as a graph; default "
+     "bricks, "
+     "but graph where a brick would have 1.1 times the mean number of elements, or where another option needs it (petscpartitioner_type, "
+     "dm_distribute, dm_distribute_overlap, dm_plex_box_bd)"},
+    {"meshes", OPTION_OF_BODY, "mesh_bricks", "n[,n,n]",
+     "number of bricks along each axis of a box, their product the number of ranks; default: the longest edge is halved again and again"},
     {"meshes", OPTION_OF_BODY, "ball_radius", "r", "radius of a ball [m], default 1"},
     {"meshes", OPTION_OF_BODY, "ball_keep_volume", "true|false",
      "whether the nodes of a ball's surface move outward until the mesh has the ball's volume, default true; or lie at the radius"},

@@ -23,3 +23,10 @@
 #else
 #  define SNES_DIVERGED_NAN SNES_DIVERGED_FUNCTION_NANORINF
 #endif
+
+/* the two arguments of DMPlexCreateBoxMesh() for the coordinates of periodic meshes */
+#if PETSC_VERSION_LT(3, 22, 0)
+#  define BOX_NOT_PERIODIC
+#else
+#  define BOX_NOT_PERIODIC 0, PETSC_TRUE,
+#endif

@@ -62,7 +62,8 @@ PetscErrorCode BodySetDM(Body body, DM dm)
   PetscCall(DMCopyDisc(dm, clone));
   PetscCall(PetscObjectSetName((PetscObject)clone, body->hdr.name)); /* of what messages about its surfaces speak */
   PetscCall(DMDestroy(&body->mesh.dm));
-  body->mesh.dm  = clone;
+  body->mesh.dm = clone;
+  PetscCall(PetscArrayzero(body->mesh.cells, 2));
   body->mesh.dim = dim;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -113,6 +113,8 @@ static PetscErrorCode SumCells(Body body, PetscReal sums[2])
   PetscInt cstart, cend;
 
   PetscFunctionBegin;
+  PetscCall(PetscArraycpy(sums, body->mesh.cells, 2));
+  if (sums[1] > 0) PetscFunctionReturn(PETSC_SUCCESS);
   sums[0] = 0;
   PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
   for (PetscInt cell = cstart; cell < cend; cell++) {
@@ -123,6 +125,7 @@ static PetscErrorCode SumCells(Body body, PetscReal sums[2])
   }
   sums[1] = cend - cstart;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(PetscArraycpy(body->mesh.cells, sums, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,6 +23,7 @@ typedef struct {
   PetscReal     *coordinates;    /* local_nodes x dim: reference positions [m] */
   PetscInt      *ghost_dofs;     /* global numbers */
   Vec            positions;      /* reference positions of owned nodes, laid out as displacements [m] */
+  PetscReal      cells[2];       /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
 } BodyMesh;
 
 /* What internal forces come from */

@@ -1,0 +1,149 @@
+/* Boxes of which each rank makes its own brick: the same mesh as the one that PETSc makes on one rank and divides as a graph. */
+#include "meshes.h"
+#include <petscsf.h>
+
+static DM CreateBox(PetscInt dim, const char faces[], const char more[])
+{
+  const char *const upper[] = {"1", "1,2", "1,2,3"};
+
+  return create_mesh("-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_upper %s %s", (int)dim, faces, upper[dim - 1], more);
+}
+
+/* Vertices of all ranks, shared ones once */
+static PetscInt CountVertices(DM dm)
+{
+  PetscSF         sf;
+  PetscInt        vstart, vend, n_leaves, n;
+  const PetscInt *leaf;
+
+  ok(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
+  ok(DMGetPointSF(dm, &sf));
+  ok(PetscSFGetGraph(sf, NULL, &n_leaves, &leaf, NULL));
+  n = vend - vstart;
+  for (PetscInt i = 0; i < n_leaves; i++)
+    if (leaf[i] >= vstart && leaf[i] < vend) n--;
+  return (PetscInt)sum_of_ranks((PetscReal)n);
+}
+
+/* Cones, faces, orientations, Jacobians, and that points which two ranks share are the same: PETSc's own checks */
+static void CheckMesh(DM dm)
+{
+  ok(DMPlexCheckSymmetry(dm));
+  ok(DMPlexCheckSkeleton(dm, 0));
+  ok(DMPlexCheckFaces(dm, 0));
+  ok(DMPlexCheckGeometry(dm));
+  ok(DMPlexCheckPointSF(dm, NULL, PETSC_FALSE));
+  ok(DMPlexCheckInterfaceCones(dm));
+}
+
+static void CheckSame(DM bricks, DM graph, PetscInt dim)
+{
+  const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+  PetscReal         box[2][2][3];
+
+  assert_int_equal(count_cells(bricks), count_cells(graph));
+  assert_int_equal(CountVertices(bricks), CountVertices(graph));
+  near(volume_of(bricks), volume_of(graph), 1e-13); /* round-off of sums of numbers of size 1 */
+  ok(DMGetBoundingBox(bricks, box[0][0], box[0][1]));
+  ok(DMGetBoundingBox(graph, box[1][0], box[1][1]));
+  for (PetscInt d = 0; d < dim; d++)
+    for (PetscInt end = 0; end < 2; end++) assert_true(box[0][end][d] == box[1][end][d]);
+  for (PetscInt side = 0; side < 2 * dim; side++) {
+    const SurfaceFacts facts = surface_facts(bricks, names[side]), wanted = surface_facts(graph, names[side]);
+
+    assert_int_equal(facts.n, wanted.n);
+    for (PetscInt d = 0; d < dim; d++) near(facts.centre[d], wanted.centre[d], 1e-13);
+  }
+  assert_int_equal(surface_facts(bricks, "marker").n, surface_facts(graph, "marker").n);
+}
+
+static void same_as_graph(void **state)
+{
+  const char *const faces[] = {"7", "5,9", "3,8,4"};
+
+  (void)state;
+  for (PetscInt dim = 1; dim <= 3; dim++) {
+    DM bricks = CreateBox(dim, faces[dim - 1], "-mesh_division bricks"), graph = CreateBox(dim, faces[dim - 1], "-mesh_division graph");
+
+    CheckMesh(bricks);
+    CheckSame(bricks, graph, dim);
+    ok(DMDestroy(&bricks));
+    ok(DMDestroy(&graph));
+  }
+}
+
+/* A cell less than ranks, so that one of them has none, and a single cell */
+static void more_ranks_than_cells(void **state)
+{
+  (void)state;
+  for (PetscInt n = 1; n <= 2; n++) {
+    DM       dm = CreateBox(2, n == 1 ? "1,1" : "1,2", "-mesh_division bricks");
+    PetscInt end;
+
+    CheckMesh(dm);
+    assert_int_equal(count_cells(dm), n);
+    near(volume_of(dm), 2, 1e-14);
+    assert_int_equal(CountVertices(dm), 2 * (n + 1));
+    ok(DMPlexGetHeightStratum(dm, 0, NULL, &end));
+    assert_true(end <= (size_of_world() > 1 ? 1 : n));
+    ok(DMDestroy(&dm));
+  }
+}
+
+/* All bricks side by side along the axis with fewest cells, where the division by itself would cut across the last */
+static void given_bricks(void **state)
+{
+  char     more[64];
+  DM       dm;
+  PetscInt start, end;
+
+  (void)state;
+  ok(PetscSNPrintf(more, sizeof(more), "-mesh_bricks %d,1,1", size_of_world()));
+  dm = CreateBox(3, "6,8,10", more);
+  CheckMesh(dm);
+  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
+  assert_int_equal(end - start, 480 / size_of_world());
+  for (PetscInt c = start; c < end; c++) {
+    PetscReal volume, centre[3];
+
+    ok(DMPlexComputeCellGeometryFVM(dm, c, &volume, centre, NULL));
+    assert_int_equal((int)(centre[0] * size_of_world()), rank_of_world());
+  }
+  ok(DMDestroy(&dm));
+}
+
+/* An option of the partitioner asks for a graph; with this one PETSc divides 12 cells in the order in which it made them */
+static void graph_where_needed(void **state)
+{
+  DM       dm = CreateBox(2, "3,4", "-petscpartitioner_type simple");
+  PetscInt start, end;
+
+  (void)state;
+  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
+  assert_int_equal(end - start, 12 / size_of_world());
+  assert_int_equal(count_cells(dm), 12);
+  ok(DMDestroy(&dm));
+}
+
+static void bad_divisions(void **state)
+{
+  const char box[] = "-dm_plex_dim 3 -dm_plex_box_faces 6,6,6";
+
+  (void)state;
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|7 bricks|axis 2", "%s -mesh_bricks 1,7,1", box);
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|0 bricks|axis 1", "%s -mesh_bricks 0,1,1", box);
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|2 axes|3", "%s -mesh_bricks %d,1", box, size_of_world());
+  if (size_of_world() > 1) mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|1 bricks|product", "%s -mesh_bricks 1,1,1", box);
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|-a_mesh_division", "%s -mesh_bricks %d,1,1 -mesh_division graph", box,
+               size_of_world());
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(same_as_graph),      cmocka_unit_test(more_ranks_than_cells), cmocka_unit_test(given_bricks),
+      cmocka_unit_test(graph_where_needed), cmocka_unit_test(bad_divisions),
+  };
+
+  return impakt_main(argc, argv, tests);
+}
