@@ -52,7 +52,7 @@ PetscErrorCode ContactDestroyResultants(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the resultant of a pair on its second body [N] */
+/* This rank's share of the resultant of a pair on the partner of the body that has the rows [N] */
 static void SumForces(Contact contact, const ContactPair *pair, const PetscReal rows[], PetscReal force[])
 {
   for (PetscInt d = 0; d < 3; d++) force[d] = 0;
@@ -155,7 +155,7 @@ PetscErrorCode ContactAddImpulses(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the moment of a pair about the origin on its second body [N m] */
+/* This rank's share of the moment of a pair about the origin on the partner of the body that has the rows [N m] */
 static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, PetscReal moment[])
 {
   const Body         body = contact->bodies[pair->body[0]];
@@ -235,15 +235,18 @@ static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt en
   }
   for (PetscInt p = begin; p < end; p++, sums += N_SUMS, maxima += N_MAXIMA) {
     ContactPairState *state = &states[p - begin];
+    const PetscInt    sign  = ContactPairSign(&contact->pairs[p]);
 
     state->force   = sums[SUM_FORCE];
     state->active  = (PetscInt)sums[SUM_ACTIVE];
     state->gap     = -maxima[MAX_PENETRATION];
     state->tension = maxima[MAX_TENSION];
     state->area    = sums[SUM_AREA];
-    PetscCall(PetscArraycpy(state->force_vector, sums + SUM_VECTOR, 3));
-    PetscCall(PetscArraycpy(state->moment, sums + SUM_MOMENT, 3));
-    PetscCall(PetscArraycpy(state->impulse, sums + SUM_IMPULSE, 3));
+    for (PetscInt d = 0; d < 3; d++) {
+      state->force_vector[d] = sign * sums[SUM_VECTOR + d];
+      state->moment[d]       = sign * sums[SUM_MOMENT + d];
+      state->impulse[d]      = sign * sums[SUM_IMPULSE + d];
+    }
     state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
