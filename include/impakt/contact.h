@@ -225,6 +225,7 @@ typedef struct {
   PetscReal moment[3];       /* of the forces about the origin, where the nodes that have the rows are now [N m] */
   PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, whole or cut, trapezoidal [N s] */
   PetscReal normal_impulse;  /* the same of `force` [N s] */
+  PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that, see `TransferSetGuards()`; not trapezoidal [N s] */
 } ContactPairState;
 
 /*S
