@@ -50,6 +50,21 @@ typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED } 
 PETSC_EXTERN const char *const ContactLaws[];
 
 /*E
+   ContactRowSide - which body of a pair has a contact row for each of its nodes
+
+   Level: intermediate
+
+   Values:
++  `CONTACT_ROW_SIDE_FIRST`  - the one that is named first
+.  `CONTACT_ROW_SIDE_SECOND` - the one that is named second
+-  `CONTACT_ROW_SIDE_FINER`  - the one whose surface is finer where the two may touch
+
+.seealso: `ContactSetRowSide()`, `ContactSetPairRowSide()`
+E*/
+typedef enum { CONTACT_ROW_SIDE_FIRST, CONTACT_ROW_SIDE_SECOND, CONTACT_ROW_SIDE_FINER } ContactRowSide;
+PETSC_EXTERN const char *const ContactRowSides[];
+
+/*E
    ContactConstraint - what contact forces keep from becoming negative
 
    Values:
@@ -204,12 +219,13 @@ typedef struct {
   PetscReal gap;     /* smallest normal gap [m] */
   PetscInt  active;  /* nodes in contact */
   PetscReal tension; /* largest tensile force of a node along its normal, of ties too; 0 if there is none [N] */
-  PetscReal area;    /* of the active nodes; of bars, the cross-section of the first body [m^2] */
+  PetscReal area;    /* of the active nodes; of bars, the cross-section of the body that has the rows [m^2] */
   /* on the second body; on the first act their opposites; zeros beyond the space dimension */
   PetscReal force_vector[3]; /* resultant [N] */
-  PetscReal moment[3];       /* of the forces about the origin, where the nodes of the first body are now [N m] */
+  PetscReal moment[3];       /* of the forces about the origin, where the nodes that have the rows are now [N m] */
   PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, whole or cut, trapezoidal [N s] */
   PetscReal normal_impulse;  /* the same of `force` [N s] */
+  PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that, see `TransferSetGuards()`; not trapezoidal [N s] */
 } ContactPairState;
 
 /*S
@@ -260,6 +276,10 @@ PETSC_EXTERN PetscErrorCode ContactGetNumObstacles(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetObstacle(Contact, PetscInt, Obstacle *);
 PETSC_EXTERN PetscErrorCode ContactGetPairObstacle(Contact, PetscInt, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetRowSide(Contact, ContactRowSide);
+PETSC_EXTERN PetscErrorCode ContactGetRowSide(Contact, ContactRowSide *);
+PETSC_EXTERN PetscErrorCode ContactSetPairRowSide(Contact, PetscInt, ContactRowSide);
+PETSC_EXTERN PetscErrorCode ContactGetPairRowSide(Contact, PetscInt, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
 PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
 PETSC_EXTERN PetscErrorCode ContactSetEnergyTolerance(Contact, PetscReal);

@@ -114,6 +114,9 @@ static const KnownOption options[] = {
      "pairs that may touch, Dirichlet side first, or, with a tilde, in the order that is better; a.xmax:b.xmin for certain surfaces, a.all "
      "for the whole boundary; a:o with an obstacle; "
      "auto: all with all"},
+    {"contact", OPTION_OF_RUN, "contact_rows", "first|second|finer",
+     "which body of a pair has a contact row for each of its nodes, and takes displacements: the one named first, which is the default, or "
+     "second, or the one whose surface is finer where they may touch; or a value for each pair, with commas"},
     {"contact", OPTION_OF_RUN, "contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method, default schwarz"},
     {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded",
      "what surfaces do to each other, default frictionless; bonded: they stick once they have met"},

@@ -29,21 +29,24 @@ struct _ContactOps {
 
 /* Two bodies, or a body and an obstacle, that may touch */
 typedef struct {
-  char       *name;       /* as given: left:right */
-  PetscInt    body[2];    /* numbers of the first body, which has a node for each row, and of the second; n_bodies if that is an obstacle */
-  PetscInt    dirichlet;  /* which of them takes displacements in this controller step: 0 or 1 */
-  char       *surface[2]; /* names of the surfaces; NULL for all faces that see the other body */
-  Obstacle    obstacle;   /* in place of the second body, or NULL; borrowed */
-  PetscBool   chosen;     /* the program has chosen the pair, not the user */
-  const char *why;        /* why the program has the first body take displacements; NULL: the user says so */
-  Surface     surfaces[2]; /* those of the bodies */
-  Transfer    transfer;    /* between the surfaces */
-  PetscInt    components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
-  PetscInt    begin, end;  /* rows of this rank: begin to end - 1 */
-  PetscReal   normal[3];   /* mean outward normal of the first body */
-  PetscBool   bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
-  PetscBool   keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
-  PetscBool   by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
+  char          *name;        /* as given: left:right */
+  PetscInt       body[2];     /* numbers of the body that has a node for each row, and of the other; n_bodies if that is an obstacle */
+  PetscBool      turned;      /* the body that has the rows is the one that the user names second */
+  PetscInt       dirichlet;   /* which of them takes displacements in this controller step: 0 or 1 */
+  char          *surface[2];  /* names of the surfaces; NULL for all faces that see the other body */
+  Obstacle       obstacle;    /* in place of the second body, or NULL; borrowed */
+  PetscBool      chosen;      /* the program has chosen the pair, not the user */
+  const char    *why;         /* why the program has the first body take displacements; NULL: the user says so */
+  ContactRowSide row_side;    /* which body is to have the rows, if `own_side` */
+  PetscBool      own_side;    /* the pair has been given a side of its own */
+  Surface        surfaces[2]; /* those of the bodies */
+  Transfer       transfer;    /* between the surfaces */
+  PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
+  PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
+  PetscReal      normal[3];   /* mean outward normal of the body that has the rows */
+  PetscBool      bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
+  PetscBool      keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
+  PetscBool      by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
 } ContactPair;
 
 /* Default tolerances on lengths, in parts of the size of the smallest body: see ContactGetLengthScale(). That of the outer iterations is
@@ -83,6 +86,7 @@ typedef struct {
   ContactLaw           law;
   ContactConstraint    constraint;
   ContactStabilization stabilization;
+  ContactRowSide       row_side;         /* which body of a pair has the rows, unless the pair says otherwise */
   PetscBool            facing;           /* pairs of whole bodies keep only the faces that see each other at the start */
   PetscReal            slip_bound;       /* slip after which rows are built again [parts of a face] */
   PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
@@ -342,6 +346,12 @@ struct _p_Contact {
   void             *data;           /* what the method keeps */
 };
 
+/* What acts on the body with the rows and on its partner, in the user's order: 1, or -1 where that is turned round */
+static inline PetscInt ContactPairSign(const ContactPair *pair)
+{
+  return pair->turned ? -1 : 1;
+}
+
 /* For setters */
 #define ContactCheckNotSetUp(contact)                                                                                                      \
   PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
@@ -411,7 +421,10 @@ PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
 PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
-PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *, PetscReal *);
+PETSC_INTERN PetscErrorCode ContactCreateSurfaces(Contact, ContactPair *, PetscReal *);
+PETSC_INTERN PetscErrorCode ContactChooseRowSide(Contact, ContactPair *);
+PETSC_INTERN void           ContactTurnPair(ContactPair *);
+PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMarkNodes(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);

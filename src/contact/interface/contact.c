@@ -261,9 +261,12 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, contact->pairs[p].why ? " %s (sides chosen: %s)" : " %s", contact->pairs[p].name,
-                                     contact->pairs[p].why));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(PetscViewerASCIIPrintf(viewer, pair->why ? " %s (sides chosen: %s)" : " %s", pair->name, pair->why));
+    if (pair->turned) PetscCall(PetscViewerASCIIPrintf(viewer, " (rows on %s)", ((PetscObject)contact->bodies[pair->body[0]])->name));
+  }
   if (contact->setup) PetscCall(CountNodes(contact, &nodes));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", nodes, nodes == 1 ? "" : "s"));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)

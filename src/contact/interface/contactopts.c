@@ -99,6 +99,41 @@ static PetscErrorCode ReadPairs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which body of each pair has the rows: one value for all pairs, or one for each */
+static PetscErrorCode TakeRowSides(Contact contact, PetscInt n, char *names[])
+{
+  PetscFunctionBegin;
+  PetscCheck(n == 1 || n == contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_rows has %" PetscInt_FMT " values for %" PetscInt_FMT " pairs; give one for all, or one for each", n,
+             contact->n_pairs);
+  for (PetscInt p = 0; p < n; p++) {
+    PetscEnum side;
+    PetscBool found;
+
+    PetscCall(PetscEnumFind(ContactRowSides, names[p], &side, &found));
+    PetscCheck(found, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_rows %s is none of first, second, finer",
+               names[p]);
+    if (n == 1) PetscCall(ContactSetRowSide(contact, (ContactRowSide)side));
+    else PetscCall(ContactSetPairRowSide(contact, p, (ContactRowSide)side));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadRowSides(Contact contact)
+{
+  PetscErrorCode error;
+  char         **names;
+  PetscInt       n;
+  PetscBool      set;
+
+  PetscFunctionBegin;
+  PetscCall(NamesRead(((PetscObject)contact)->prefix, "-contact_rows", &n, &names, &set));
+  error = set ? TakeRowSides(contact, n, names) : PETSC_SUCCESS;
+  PetscCall(NamesDestroy(n, &names));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSetFromOptions - reads pairs and method from the options
 
@@ -111,6 +146,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 + -contact_pairs a:b,b~c                                       - pairs of bodies, Dirichlet side first, or, with a tilde, in the order
                                                                  that is better; a.top:b.bottom for certain surfaces; default: the two
                                                                  bodies, where there are two
+. -contact_rows (first|second|finer)                            - which body of a pair has the rows; or a value for each pair
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
@@ -138,7 +174,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
           `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
           `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`,
-          `ContactSetTieDistance()`, `ContactSetBalance()`
+          `ContactSetTieDistance()`, `ContactSetBalance()`, `ContactSetRowSide()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
@@ -153,6 +189,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(ReadSettings(contact));
   PetscCall(ReadObstacles(contact));
   PetscCall(ReadPairs(contact));
+  PetscCall(ReadRowSides(contact));
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);

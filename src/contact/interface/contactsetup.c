@@ -89,7 +89,6 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
-  PetscCall(ContactOrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StatusLineTell("elements of body %s", ((PetscObject)contact->bodies[b])->name);
     PetscCall(BodySetUpDiscretization(contact->bodies[b]));
@@ -229,26 +228,33 @@ PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
 
   Output Parameters:
 + name      - as it was given, or `NULL`
-. dirichlet - body that takes displacements, or `NULL`
-- neumann   - body that takes tractions, `NULL` for an obstacle; or `NULL`
+. dirichlet - body that is named first, or `NULL`
+- neumann   - body that is named second, `NULL` for an obstacle; or `NULL`
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactGetNumPairs()`
+  Note:
+  The first body takes displacements and has the contact rows, the second one takes tractions, unless `ContactSetRowSide()` has turned that
+  round: see `ContactGetPairRowSide()`.
+
+.seealso: `Contact`, `ContactGetNumPairs()`, `ContactGetPairRowSide()`
 @*/
 PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[], Body *dirichlet, Body *neumann)
 {
+  PetscInt first;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   ContactCheckPair(contact, pair);
+  first = contact->pairs[pair].turned ? 1 : 0;
   if (name) *name = contact->pairs[pair].name;
-  if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[0]];
-  if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1]];
+  if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[first]];
+  if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1 - first]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactGetPairNormal - mean outward normal of the Dirichlet side of a pair
+  ContactGetPairNormal - mean outward normal of the first body of a pair
 
   Not Collective
 
@@ -269,7 +275,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(normal, 3);
   ContactCheckPair(contact, pair);
-  PetscCall(PetscArraycpy(normal, contact->pairs[pair].normal, 3));
+  for (PetscInt d = 0; d < 3; d++) normal[d] = ContactPairSign(&contact->pairs[pair]) * contact->pairs[pair].normal[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -174,9 +174,11 @@ PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
   PetscCall(VisitEnergy(contact, checkpoint));
   PetscCall(CheckpointVisitInts(checkpoint, "order", contact->n_bodies, contact->order));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
+    ContactPair   *pair    = &contact->pairs[p];
+    const PetscInt side[1] = {pair->turned ? 2 : 1};
 
     PetscCall(CheckpointBegin(checkpoint, pair->name));
+    PetscCall(CheckpointCheckInts(checkpoint, "the side that has the rows (-contact_rows)", 1, side));
     PetscCall(CheckpointVisitInts(checkpoint, "dirichlet", 1, &pair->dirichlet));
     PetscCall(CheckpointVisitBools(checkpoint, "bonded", 1, &pair->bonded));
     PetscCall(TransferVisitShared(pair->transfer, checkpoint));

@@ -293,27 +293,48 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bodies in an order in which every Dirichlet side comes before its Neumann side */
-PetscErrorCode ContactOrderBodies(Contact contact)
+/* As many bodies as can be in an order in which every Dirichlet side comes before its Neumann side. Methods that prescribe nothing have the
+   user's order. */
+static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
 {
-  PetscInt  done  = 0;
   PetscBool moved = PETSC_TRUE, *placed;
 
   PetscFunctionBegin;
+  *done = 0;
   PetscCall(PetscCalloc1(contact->n_bodies, &placed));
-  while (done < contact->n_bodies && moved) {
+  while (*done < contact->n_bodies && moved) {
     moved = PETSC_FALSE;
     for (PetscInt b = 0; b < contact->n_bodies; b++) {
       PetscBool ready = (PetscBool)!placed[b];
 
-      for (PetscInt p = 0; p < contact->n_pairs; p++)
-        if (contact->pairs[p].body[1] == b && !placed[contact->pairs[p].body[0]]) ready = PETSC_FALSE;
+      for (PetscInt p = 0; p < contact->n_pairs; p++) {
+        const ContactPair *pair  = &contact->pairs[p];
+        const PetscInt     first = pair->turned && !contact->prescribes ? 1 : 0;
+
+        if (pair->body[1 - first] == b && !placed[pair->body[first]]) ready = PETSC_FALSE;
+      }
       if (!ready) continue;
-      contact->order[done++] = b;
+      contact->order[(*done)++] = b;
       placed[b] = moved = PETSC_TRUE;
     }
   }
   PetscCall(PetscFree(placed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bodies in an order in which every Dirichlet side comes before its Neumann side. Pairs that have been turned round for their finer
+   surface, and form a circle by that, are turned back, the last one first. */
+PetscErrorCode ContactOrderBodies(Contact contact)
+{
+  PetscInt done, last;
+
+  PetscFunctionBegin;
+  PetscCall(FindOrder(contact, &done));
+  for (last = contact->n_pairs - 1; done < contact->n_bodies && last >= 0; last--) {
+    if (!contact->pairs[last].turned || contact->pairs[last].row_side != CONTACT_ROW_SIDE_FINER) continue;
+    ContactTurnPair(&contact->pairs[last]);
+    PetscCall(FindOrder(contact, &done));
+  }
   PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a "
              "instead of a:b)");

@@ -12,12 +12,13 @@ enum {
   SUM_MOMENT         = SUM_VECTOR + 3,
   SUM_IMPULSE        = SUM_MOMENT + 3,
   SUM_NORMAL_IMPULSE = SUM_IMPULSE + 3,
-  N_SUMS             = SUM_NORMAL_IMPULSE + 1
+  SUM_BEYOND         = SUM_NORMAL_IMPULSE + 1,
+  N_SUMS             = SUM_BEYOND + 1
 };
 
 /* What is kept of a pair from step to step: its impulse and the force at the end of the last step, 3 numbers each, and the same of the
-   normal forces, one number each */
-#define N_KEPT 8
+   normal forces, one number each; the impulse of nodes beyond the end of the partner */
+#define N_KEPT 9
 
 /* Of what the largest value of a pair's rows is found */
 enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
@@ -52,7 +53,7 @@ PetscErrorCode ContactDestroyResultants(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the resultant of a pair on its second body [N] */
+/* This rank's share of the resultant of a pair on the partner of the body that has the rows [N] */
 static void SumForces(Contact contact, const ContactPair *pair, const PetscReal rows[], PetscReal force[])
 {
   for (PetscInt d = 0; d < 3; d++) force[d] = 0;
@@ -73,6 +74,19 @@ static PetscErrorCode SumNormalForces(Contact contact, const ContactPair *pair, 
 
     *force += (contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1) * row[i];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's share of the normal forces of a pair on nodes that lie beyond the end of the partner [N] */
+static PetscErrorCode SumBeyond(Contact contact, const ContactPair *pair, PetscReal *force)
+{
+  TransferRows rows;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  *force = 0;
+  for (PetscInt i = pair->begin; i < pair->end; i += pair->components)
+    if (rows.beyond[(i - pair->begin) / pair->components]) *force += contact->end.force[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,7 +144,7 @@ PetscErrorCode ContactUnpackImpulses(Contact contact, Tables tables)
   PetscCall(ContactStartImpulses(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (PetscInt k = 0; k < N_KEPT; k++)
-      if (k < 3 || k == 6) contact->resultants.impulse[N_KEPT * p + k] = rank ? 0 : sums[N_KEPT * p + k];
+      if (k < 3 || k == 6 || k == 8) contact->resultants.impulse[N_KEPT * p + k] = rank ? 0 : sums[N_KEPT * p + k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -151,11 +165,13 @@ PetscErrorCode ContactAddImpulses(Contact contact)
     PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->end.force, &now));
     normal[0] += 0.5 * contact->step * (normal[1] + now);
     normal[1] = now;
+    PetscCall(SumBeyond(contact, &contact->pairs[p], &now));
+    impulse[8] += contact->step * now;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the moment of a pair about the origin on its second body [N m] */
+/* This rank's share of the moment of a pair about the origin on the partner of the body that has the rows [N m] */
 static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, PetscReal moment[])
 {
   const Body         body = contact->bodies[pair->body[0]];
@@ -217,6 +233,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
   PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + N_KEPT * p, 3));
   sums[SUM_NORMAL_IMPULSE] = contact->resultants.impulse[N_KEPT * p + 6];
+  sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -235,16 +252,20 @@ static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt en
   }
   for (PetscInt p = begin; p < end; p++, sums += N_SUMS, maxima += N_MAXIMA) {
     ContactPairState *state = &states[p - begin];
+    const PetscInt    sign  = ContactPairSign(&contact->pairs[p]);
 
     state->force   = sums[SUM_FORCE];
     state->active  = (PetscInt)sums[SUM_ACTIVE];
     state->gap     = -maxima[MAX_PENETRATION];
     state->tension = maxima[MAX_TENSION];
     state->area    = sums[SUM_AREA];
-    PetscCall(PetscArraycpy(state->force_vector, sums + SUM_VECTOR, 3));
-    PetscCall(PetscArraycpy(state->moment, sums + SUM_MOMENT, 3));
-    PetscCall(PetscArraycpy(state->impulse, sums + SUM_IMPULSE, 3));
+    for (PetscInt d = 0; d < 3; d++) {
+      state->force_vector[d] = sign * sums[SUM_VECTOR + d];
+      state->moment[d]       = sign * sums[SUM_MOMENT + d];
+      state->impulse[d]      = sign * sums[SUM_IMPULSE + d];
+    }
     state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
+    state->beyond_impulse = sums[SUM_BEYOND];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

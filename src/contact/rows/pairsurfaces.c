@@ -130,27 +130,18 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces and transfer of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. */
-PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair, PetscReal *extent)
+/* Surfaces of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. */
+PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscReal *extent)
 {
-  PetscBool rebuilt;
-  PetscBool inertia = PETSC_TRUE, linear = PETSC_TRUE;
-  PetscInt  dims[2] = {contact->dim, contact->dim};
+  PetscInt dims[2] = {contact->dim, contact->dim};
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal lower[3], upper[3];
-    PetscBool is_static, is_linear;
-    Material  material;
     DM        dm;
 
     PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
     PetscCall(DMGetCoordinateDim(dm, &dims[side]));
-    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    inertia = (PetscBool)(inertia && !is_static);
-    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
-    PetscCall(MaterialIsLinear(material, &is_linear));
-    linear = (PetscBool)(linear && is_linear);
     PetscCall(SurfaceCreate(dm, pair->surface[side], &pair->surfaces[side]));
     PetscCall(SurfaceSetRound(pair->surfaces[side], (PetscBool)(contact->dim == 3 && contact->options.balance)));
     PetscCall(DMGetBoundingBox(dm, lower, upper));
@@ -164,6 +155,26 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair, PetscRe
                               (PetscBool)(contact->options.facing && !pair->surface[0]),
                               (PetscBool)(contact->options.facing && !pair->surface[1])));
   PetscCall(CheckFacing(contact, pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The transfer of a pair, whose surfaces are known */
+PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
+{
+  PetscBool rebuilt;
+  PetscBool inertia = PETSC_TRUE, linear = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    PetscBool is_static, is_linear;
+    Material  material;
+
+    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+    inertia = (PetscBool)(inertia && !is_static);
+    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
+    PetscCall(MaterialIsLinear(material, &is_linear));
+    linear = (PetscBool)(linear && is_linear);
+  }
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
   /* in three dimensions coarse balls lose six times the energy if bends count with normals that are means by areas */

@@ -137,8 +137,9 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
   PetscCall(ContactOr(contact, &any[1]));
   PetscCheck(!any[0] || any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
-             "cannot follow the other side; name that body second, or prescribe less in -%s_boundary_displacement",
-             pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+             "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
+             pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name,
+             pair->turned ? "set -contact_rows first" : "name that body second", ((PetscObject)contact->bodies[pair->body[0]])->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -216,7 +217,12 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscFunctionBegin;
   PetscCall(ContactChooseTiedMass(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscCall(ContactCreateTransfer(contact, &contact->pairs[p], &extent));
+    PetscCall(ContactCreateSurfaces(contact, &contact->pairs[p], &extent));
+    PetscCall(ContactChooseRowSide(contact, &contact->pairs[p]));
+  }
+  PetscCall(ContactOrderBodies(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscCall(ContactCreateTransfer(contact, &contact->pairs[p]));
     PetscCall(ContactMarkNodes(contact, &contact->pairs[p]));
   }
   PetscCall(CountRows(contact));

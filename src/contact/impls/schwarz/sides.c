@@ -129,6 +129,11 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
                "-contact_pairs %s: an obstacle has no other side, neither for -contact_swap_sides nor for -schwarz_transmission robin or "
                "impedance",
                contact->pairs[p].name);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    PetscCheck(!schwarz->swap || !contact->pairs[p].turned, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_swap_sides: the rows of pair %s are on its second body, and the first one takes displacements first; leave "
+               "-contact_rows at first",
+               contact->pairs[p].name);
   PetscCall(PetscCalloc5(contact->n_pairs, &schwarz->side_levels[0], contact->n_pairs, &schwarz->side_levels[1], 2 * contact->n_pairs,
                          &schwarz->trace, contact->n_pairs, &schwarz->room, 2 * contact->n_pairs, &schwarz->kinematic));
   for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)

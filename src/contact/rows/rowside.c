@@ -1,0 +1,253 @@
+/* Which body of a pair has the contact rows: a row for each of its nodes. Pairs whose second body has them are turned round here, once and
+   for all; what users and files see stays in the order in which the user has named the bodies. */
+#include <impakt/private/contactimpl.h>
+
+/* Two surfaces are alike if the ratio of the distances between their nodes is above this, so that round-off does not choose the side */
+#define ALIKE 0.999
+
+const char *const ContactRowSides[] = {"first", "second", "finer", "ContactRowSide", "CONTACT_ROW_SIDE_", NULL};
+
+static PetscErrorCode CheckSide(Contact contact, ContactRowSide side)
+{
+  PetscFunctionBegin;
+  PetscCheck((int)side >= 0 && side <= CONTACT_ROW_SIDE_FINER, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no side %d; a pair has its rows on the first body, the second, or the finer one", (int)side);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetRowSide - sets which body of each pair has the contact rows, one for each of its nodes
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+- side    - a `ContactRowSide`, `CONTACT_ROW_SIDE_FIRST` by default
+
+  Options Database Key:
+. -contact_rows (first|second|finer) - the side
+
+  Level: intermediate
+
+  Notes:
+  The body that has the rows takes displacements, its partner tractions, whatever their order in `ContactAddPair()`. Names, forces, moments
+  and normals of the pair stay in that order.
+
+  The finer surface is the one whose nodes are closer together by more than a thousandth where the two may touch; else the first body has
+the rows. That distance is the mean over those faces of each surface, in the reference positions, that lie within the box around the other
+  one; along an axis on which the boxes are apart all do. It is the same on any number of ranks. In one dimension the first body has the
+  rows. A pair for which that would bring the bodies into a circle, each waiting for the reaction of the one before, has them on its first
+  body too. `ContactView()` says which body has the rows, if it is the second.
+
+  A pair with an obstacle has its rows on the body.
+
+.seealso: `Contact`, `ContactGetRowSide()`, `ContactSetPairRowSide()`, `ContactAddPair()`
+@*/
+PetscErrorCode ContactSetRowSide(Contact contact, ContactRowSide side)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveEnum(contact, side, 2);
+  PetscCheck(!contact->surfaces_known, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
+  PetscCall(CheckSide(contact, side));
+  contact->options.row_side = side;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetRowSide - which body of each pair has the contact rows
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. side - see `ContactSetRowSide()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetRowSide()`, `ContactGetPairRowSide()`
+@*/
+PetscErrorCode ContactGetRowSide(Contact contact, ContactRowSide *side)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(side, 2);
+  *side = contact->options.row_side;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetPairRowSide - sets which body of one pair has the contact rows
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+. pair    - 0 to the number of pairs - 1
+- side    - a `ContactRowSide`; that of `ContactSetRowSide()` by default
+
+  Options Database Key:
+. -contact_rows first,finer - a side for each pair
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetRowSide()`, `ContactGetPairRowSide()`
+@*/
+PetscErrorCode ContactSetPairRowSide(Contact contact, PetscInt pair, ContactRowSide side)
+{
+  ContactPair *p;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveInt(contact, pair, 2);
+  PetscValidLogicalCollectiveEnum(contact, side, 3);
+  PetscCheck(!contact->surfaces_known, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  PetscCall(CheckSide(contact, side));
+  p = &contact->pairs[pair];
+  PetscCheck(!p->obstacle || side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_rows second: pair %s is that of a body and an obstacle, which has no rows; say first", p->name);
+  p->row_side = side;
+  p->own_side = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairRowSide - which body of a pair has the contact rows
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. body - 0: the one that `ContactGetPair()` gives first; 1: the second one
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetRowSide()`, `ContactGetPair()`
+@*/
+PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(body, 3);
+  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  *body = contact->pairs[pair].turned ? 1 : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bounds of the nodes of a surface on all ranks [m] */
+static PetscErrorCode GetBox(Contact contact, Surface surface, PetscReal lower[3], PetscReal upper[3])
+{
+  const SurfaceData *data;
+  PetscReal          box[6];
+
+  PetscFunctionBegin;
+  PetscCall(SurfaceGetData(surface, &data));
+  for (PetscInt i = 0; i < 6; i++) box[i] = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < 3 * data->n_nodes; i++) {
+    box[i % 3]     = PetscMin(box[i % 3], data->reference[i]);
+    box[3 + i % 3] = PetscMin(box[3 + i % 3], -data->reference[i]);
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt d = 0; d < 3; d++) {
+    lower[d] = box[d];
+    upper[d] = -box[3 + d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a face reaches into a box; axes that do not count are passed over */
+static PetscBool IsWithin(const SurfaceData *data, PetscInt f, const PetscBool counts[3], const PetscReal lower[3],
+                          const PetscReal upper[3])
+{
+  for (PetscInt d = 0; d < 3; d++) {
+    PetscReal least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
+
+    for (PetscInt k = 0; k < data->face_nodes; k++) {
+      const PetscReal x = data->reference[3 * data->faces[data->face_nodes * f + k] + d];
+
+      least = PetscMin(least, x);
+      most  = PetscMax(most, x);
+    }
+    if (counts[d] && (most < lower[d] || least > upper[d])) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* Mean distance of the nodes of a surface, on the faces that reach into a box [m], zero if none does: the root of the area for each node,
+   of which triangles have half as many as quadrilaterals */
+static PetscErrorCode GetSpacing(Contact contact, Surface surface, const PetscBool counts[3], const PetscReal lower[3],
+                                 const PetscReal upper[3], PetscReal *spacing)
+{
+  const SurfaceData *data;
+  PetscReal          sums[2] = {0, 0}; /* area, and nodes on it */
+
+  PetscFunctionBegin;
+  PetscCall(SurfaceGetData(surface, &data));
+  for (PetscInt f = 0; f < data->n_faces; f++) {
+    if (!IsWithin(data, f, counts, lower, upper)) continue;
+    sums[0] += data->face_areas[f];
+    sums[1] += data->face_nodes == 3 ? 0.5 : 1;
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  *spacing = sums[1] > 0 ? sums[0] / sums[1] : 0;
+  if (contact->dim == 3) *spacing = PetscSqrtReal(*spacing);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the second surface of a pair is the finer one where the two may touch */
+static PetscErrorCode SecondIsFiner(Contact contact, const ContactPair *pair, PetscBool *finer)
+{
+  const PetscBool everywhere[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
+  PetscReal       lower[2][3], upper[2][3], spacing[2];
+  PetscBool       counts[3];
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < 2; side++) PetscCall(GetBox(contact, pair->surfaces[side], lower[side], upper[side]));
+  for (PetscInt d = 0; d < 3; d++) counts[d] = (PetscBool)(lower[0][d] <= upper[1][d] && lower[1][d] <= upper[0][d]);
+  for (PetscInt side = 0; side < 2; side++)
+    PetscCall(GetSpacing(contact, pair->surfaces[side], counts, lower[1 - side], upper[1 - side], &spacing[side]));
+  for (PetscInt side = 0; side < 2; side++) /* curved surfaces may pass by the place where the boxes meet */
+    if (spacing[side] == 0) PetscCall(GetSpacing(contact, pair->surfaces[side], everywhere, lower[side], upper[side], &spacing[side]));
+  *finer = (PetscBool)(spacing[1] < ALIKE * spacing[0]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Swap(void *a, void *b, size_t size)
+{
+  char held[sizeof(void *)];
+
+  memcpy(held, a, size);
+  memcpy(a, b, size);
+  memcpy(b, held, size);
+}
+
+/* Turns a pair round, before it has a transfer */
+void ContactTurnPair(ContactPair *pair)
+{
+  Swap(&pair->body[0], &pair->body[1], sizeof(pair->body[0]));
+  Swap((void *)&pair->surface[0], (void *)&pair->surface[1], sizeof(pair->surface[0]));
+  Swap((void *)&pair->surfaces[0], (void *)&pair->surfaces[1], sizeof(pair->surfaces[0]));
+  pair->turned = (PetscBool)!pair->turned;
+}
+
+/* Turns a pair round if its second body is to have the rows. Its surfaces must be known. */
+PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
+{
+  PetscBool second = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (!pair->own_side) pair->row_side = contact->options.row_side;
+  if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->row_side == CONTACT_ROW_SIDE_SECOND) second = PETSC_TRUE;
+  if (pair->row_side == CONTACT_ROW_SIDE_FINER && contact->dim > 1) PetscCall(SecondIsFiner(contact, pair, &second));
+  if (second) ContactTurnPair(pair);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
