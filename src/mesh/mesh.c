@@ -4,7 +4,7 @@
 #include <sys/names.h>
 #include <sys/stat.h>
 #if PetscDefined(HAVE_PTSCOTCH)
-  #include <ptscotch.h>
+#  include <ptscotch.h>
 #endif
 
 typedef PetscErrorCode (*Reader)(MeshFile *);

@@ -357,6 +357,7 @@ PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 /* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
    can: ContactFailed() tells. */
 PETSC_EXTERN PetscErrorCode ContactIntegrateBody(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactCompleteBodies(Contact);
 PETSC_EXTERN PetscErrorCode ContactRejectResidual(Vec);
 PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);
