@@ -288,15 +288,8 @@ static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Central differences know where nodes with mass get in a step before the force at its end. So the rows, where all are on massless nodes,
-   ask for the balance of the layer, as often as sweeps want it, and the acceleration is computed once, when the step is complete. Dashpots
-   of a nonlinear body are left as they were, since their forces depend on where the layer is. */
-static PetscBool LayerAnswersAlone(Body body, PetscBool layer)
-{
-  return (PetscBool)(layer && body->time.substeps == 1 && body->rows.global && !body->rows.have_mass && !body->rows.tied_mass &&
-                     (body->model.linear || !BodyIsDamped(body)));
-}
-
+/* Central differences know where nodes with mass get in a step before the force at its end. So rows that are all on massless nodes ask for
+   the balance of the layer, as often as sweeps want it, and the acceleration is computed once, when the step is complete. */
 static PetscErrorCode SetUp(Body body)
 {
   BodyIntegrator integrator = body->integrator;
@@ -306,7 +299,10 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionBegin;
   PetscCall(BodyAnyRank(body, &layer));
   if (layer) PetscCall(LayerBalanceCreate(body, &explicit->layer));
-  explicit->layer_alone = LayerAnswersAlone(body, layer);
+  integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && body->rows.global && !body->rows.have_mass &&
+                                             !body->rows.tied_mass);
+  /* dashpots of a nonlinear body act by where the layer is, and by its velocity at mid-step */
+  explicit->layer_alone = (PetscBool)(integrator->answers_by_layer && (body->model.linear || !BodyIsDamped(body)));
   if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));
   PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body));
   PetscCall(TSCentralDifferenceSetAccelerationVec(body->time.ts, body->state.a));

@@ -68,6 +68,7 @@ struct _n_BodyIntegrator {
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
   PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
   PetscBool feels_end_force;    /* displacements at the end of the controller step answer to the contact forces there */
+  PetscBool answers_by_layer;   /* those of the rows do so by the massless layer alone, whose matrix is that of body->solver */
 };
 
 PETSC_INTERN PetscErrorCode BodyIntegratorCreate(Body, const char[]);
