@@ -96,6 +96,15 @@ PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver solver, KSP *ksp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A and B, owned by the solver */
+PetscErrorCode ConstrainedSolverGetMatrices(ConstrainedSolver s, Mat *A, Mat *B)
+{
+  PetscFunctionBegin;
+  if (A) PetscCall(KSPGetOperators(s->ksp, A, NULL));
+  if (B) *B = s->B;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Operations of one solution */
 PetscLogDouble ConstrainedSolverGetFlops(ConstrainedSolver s)
 {

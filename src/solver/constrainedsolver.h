@@ -8,6 +8,7 @@ typedef struct _n_ConstrainedSolver *ConstrainedSolver;
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCreate(Mat, Mat, PetscInt, const char[], Compliance, ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverDestroy(ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverRefactor(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverGetMatrices(ConstrainedSolver, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetDenseLimit(ConstrainedSolver, PetscInt);

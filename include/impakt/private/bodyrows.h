@@ -92,6 +92,8 @@ PETSC_EXTERN PetscErrorCode BodyGetRowForces(Body, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputeEnergy(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
+PETSC_EXTERN PetscErrorCode BodyTryIntegrateRows(Body, StepConvergedReason *);
+PETSC_EXTERN PetscErrorCode BodyCompleteStep(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
@@ -106,6 +108,7 @@ PETSC_EXTERN PetscErrorCode BodyMoveSprings(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 
 /* Displacements of rows under contact forces: the interface compliance */
+PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
 PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);

@@ -362,7 +362,7 @@ static inline PetscInt ContactPairSign(const ContactPair *pair)
 
 PETSC_INTERN PetscFunctionList ContactList;
 
-PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
+PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;
 
 PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
@@ -370,6 +370,7 @@ PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 /* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
    can: ContactFailed() tells. */
 PETSC_EXTERN PetscErrorCode ContactIntegrateBody(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactCompleteBodies(Contact);
 PETSC_EXTERN PetscErrorCode ContactRejectResidual(Vec);
 PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);

@@ -2,7 +2,8 @@
 #include "explicitimpl.h"
 
 typedef struct {
-  LayerBalance layer; /* NULL: no node is massless, on any rank */
+  LayerBalance layer;       /* NULL: no node is massless, on any rank */
+  PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
 } BodyExplicit;
 
 static LayerBalance GetLayer(Body body)
@@ -52,24 +53,35 @@ static PetscErrorCode SolveMassPrescribed(Body body, Vec f, PetscReal position, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Held and contact conditions on U, then the acceleration it brings about. Dashpots feel the velocity V at mid-step; NULL: their forces are
-   known. */
-static PetscErrorCode FindAcceleration(Body body, PetscReal t, Vec U, Vec V, Vec A)
+static PetscReal GetPosition(Body body)
 {
-  const LayerBalance layer      = GetLayer(body);
-  const PetscReal    position   = (PetscReal)(body->time.substep + 1) / body->time.substeps;
-  const PetscBool    prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
-  PetscBool          outside    = BodyHasOutsideForce(body, PETSC_TRUE);
-  Vec                force      = body->work.nodes[0];
+  return (PetscReal)(body->time.substep + 1) / body->time.substeps;
+}
+
+/* Held and contact conditions on U, with the massless layer in balance. Where there are forces from outside, and a layer, `force` becomes
+   them. */
+static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
+{
+  const LayerBalance layer    = GetLayer(body);
+  const PetscReal    position = GetPosition(body);
 
   PetscFunctionBegin;
   PetscCall(BodyPrescribeHeld(body, t, U, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
   if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, PETSC_TRUE, U, force));
-  /* Robin rows have moved with the layer */
-  if (outside && (!layer || body->rows.n_robin)) PetscCall(BodyComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The acceleration that U brings about, being in place; the forces of the dashpots are known. known: `force` is that from outside. */
+static PetscErrorCode Accelerate(Body body, PetscReal t, PetscBool known, Vec force, Vec U, Vec A)
+{
+  const PetscReal position   = GetPosition(body);
+  const PetscBool prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
+  PetscBool       outside    = BodyHasOutsideForce(body, PETSC_TRUE);
+
+  PetscFunctionBegin;
+  if (outside && !known) PetscCall(BodyComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
   if (body->state.damping) {
-    if (V) PetscCall(BodyMultiplyDamping(body, U, V, body->state.damping));
     if (!outside) PetscCall(VecZeroEntries(force));
     PetscCall(VecAXPY(force, -1, body->state.damping));
     outside = PETSC_TRUE;
@@ -90,12 +102,34 @@ static PetscErrorCode FindAcceleration(Body body, PetscReal t, Vec U, Vec V, Vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `TSCentralDifferenceFn` */
-static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
+/* Whether the force that LayerBalanceSolve() has left is the one that acts: Robin rows have moved with the layer since */
+static PetscBool KnowsForce(Body body)
+{
+  return (PetscBool)(GetLayer(body) && !body->rows.n_robin);
+}
+
+/* What LayerBalanceSolve() has found is all that the rows depend on: the acceleration is left to Complete() */
+static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
+  PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
+  if (!body->state.incomplete) PetscCall(VecZeroEntries(A));
+  body->state.incomplete = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* `TSCentralDifferenceFn`. Dashpots feel the velocity V at mid-step. */
+static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
+{
+  Body body  = (Body)ctx;
+  Vec  force = body->work.nodes[0];
+
+  PetscFunctionBegin;
   (void)ts;
-  PetscCall(FindAcceleration((Body)ctx, t, U, V, A));
+  PetscCall(PlaceRows(body, t, U, force));
+  if (body->state.damping) PetscCall(BodyMultiplyDamping(body, U, V, body->state.damping));
+  if (((BodyExplicit *)body->integrator->data)->layer_alone) PetscCall(LeaveIncomplete(body, U, A));
+  else PetscCall(Accelerate(body, t, KnowsForce(body), force, U, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,8 +211,34 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   }
   body->time.substep = 0;
   PetscCall(VecAXPY(body->state.v, -half, body->state.a));
-  PetscCall(FindAcceleration(body, body->state.time, body->state.u, NULL, body->state.a));
+  PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
+  PetscCall(Accelerate(body, body->state.time, KnowsForce(body), body->work.nodes[0], body->state.u, body->state.a));
   PetscCall(VecAXPY(body->state.v, half, body->state.a));
+  PetscCall(FinishSubstep(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the layer alone answers: it is put in place anew, from where it is, and all else is as it was at mid-step */
+static PetscErrorCode RepeatLayer(Body body, const PetscScalar force[], const PetscScalar displacement[])
+{
+  PetscFunctionBegin;
+  (void)force;
+  (void)displacement;
+  body->time.substep = 0;
+  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
+  PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
+  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
+  PetscCall(FinishSubstep(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The elements' forces, the acceleration, and the velocity at the end of the step */
+static PetscErrorCode Complete(Body body)
+{
+  PetscFunctionBegin;
+  body->time.substep = 0;
+  PetscCall(Accelerate(body, body->state.time, PETSC_FALSE, body->work.nodes[0], body->state.u, body->state.a));
+  PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, body->state.a));
   PetscCall(FinishSubstep(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -228,14 +288,21 @@ static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Central differences know where nodes with mass get in a step before the force at its end. So rows that are all on massless nodes ask for
+   the balance of the layer, as often as sweeps want it, and the acceleration is computed once, when the step is complete. */
 static PetscErrorCode SetUp(Body body)
 {
   BodyIntegrator integrator = body->integrator;
-  PetscBool      layer      = (PetscBool)(body->layer.n_dofs > 0);
+  BodyExplicit *explicit    = (BodyExplicit *)integrator->data;
+  PetscBool layer           = (PetscBool)(body->layer.n_dofs > 0);
 
   PetscFunctionBegin;
   PetscCall(BodyAnyRank(body, &layer));
-  if (layer) PetscCall(LayerBalanceCreate(body, &((BodyExplicit *)integrator->data)->layer));
+  if (layer) PetscCall(LayerBalanceCreate(body, &explicit->layer));
+  integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && body->rows.global && !body->rows.have_mass &&
+                                             !body->rows.tied_mass);
+  /* dashpots of a nonlinear body act by where the layer is, and by its velocity at mid-step */
+  explicit->layer_alone = (PetscBool)(integrator->answers_by_layer && (body->model.linear || !BodyIsDamped(body)));
   if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));
   PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body));
   PetscCall(TSCentralDifferenceSetAccelerationVec(body->time.ts, body->state.a));
@@ -243,9 +310,12 @@ static PetscErrorCode SetUp(Body body)
   integrator->reads_start     = layer;
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
   if (layer && body->time.substeps == 1) integrator->ops.freerows = ComputeFreeRows;
-  if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
+  if (explicit->layer_alone) {
+    integrator->ops.repeat   = RepeatLayer;
+    integrator->ops.complete = Complete;
+  } else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
-  integrator->repeats_prescribed = body->model.linear;
+  integrator->repeats_prescribed = (PetscBool)(body->model.linear || explicit->layer_alone);
   if (body->time.substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn;
   else integrator->ops.compliancecolumns = BodyProbeBySubsteps; /* only making the substeps tells */
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -144,6 +144,18 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The internal force of the body at displacement u, on the dofs of the layer alone; other entries of `force` are left alone */
+PetscErrorCode LayerBalanceGetForce(LayerBalance layer, Body body, Vec u, Vec force)
+{
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(layer->rhs));
+  PetscCall(BodySubtractLayerForce(body, u, layer->rhs));
+  PetscCall(VecScale(layer->rhs, -1));
+  PetscCall(VecScatterBegin(layer->scatter, layer->rhs, force, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(layer->scatter, layer->rhs, force, INSERT_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Displacement of this rank's rows under a unit force on one row of any rank [m/N] */
 PetscErrorCode LayerBalanceApplyUnit(LayerBalance layer, Body body, PetscInt row, PetscScalar displacement[])
 {

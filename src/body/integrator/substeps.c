@@ -3,7 +3,7 @@
 
 /* Notes body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from
    wherever they arise. Its 2-norm is checked, since a sum over ranks keeps the NaN of one, which a maximum may lose. */
-static PetscErrorCode CheckSubstep(Body body)
+PetscErrorCode BodyCheckSubstep(Body body)
 {
   TSConvergedReason reason;
   PetscReal         norm;
@@ -36,7 +36,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     PetscCall(TSStep(body->time.ts));
     body->state.step++;
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
-    PetscCall(CheckSubstep(body));
+    PetscCall(BodyCheckSubstep(body));
     if (body->failure.reason < 0) break;
     PetscCall((*body->integrator->ops.finishsubstep)(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));

@@ -160,6 +160,86 @@ static PetscErrorCode CheckSolver(Body body)
 }
 
 /*@
+  BodyTryIntegrateRows - as `BodyTryIntegrate()`, as far as the rows depend on it
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. reason - negative where the step has failed, the same on every rank; or `NULL`
+
+  Level: developer
+
+  Notes:
+  For sweeps, of which the last one alone counts. All output traces are there afterwards but the acceleration, which massless nodes do not
+  have. An explicit body whose rows are on massless nodes has its displacements, and leaves the forces of its elements, its acceleration
+  and its velocity to `BodyCompleteStep()`: no sweep changes them but by where the massless nodes get. Other bodies are complete.
+
+.seealso: `Body`, `BodyTryIntegrate()`, `BodyCompleteStep()`
+@*/
+PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
+{
+  PetscBool      done = PETSC_FALSE;
+  PetscLogDouble begin, end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
+  PetscCall(PetscTime(&begin));
+  StepFailureClear(&body->failure);
+  PetscCall(BodyRepeat(body, &done));
+  if (!done) PetscCall(BodyMakeSubsteps(body));
+  PetscCall(CheckSolver(body));
+  if (!done && body->failure.reason >= 0) PetscCall(BodyNoteInputs(body));
+  PetscCall(PetscTime(&end));
+  body->statistics.seconds += end - begin;
+  PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
+  if (reason) *reason = body->failure.reason;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyCompleteStep - makes the state at the end of the controller step complete
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodyTryIntegrateRows()`
+
+  Output Parameter:
+. reason - negative where the step has failed, the same on every rank; or `NULL`
+
+  Level: developer
+
+  Note:
+  A state that is complete stays as it is.
+
+.seealso: `Body`, `BodyTryIntegrateRows()`
+@*/
+PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
+{
+  PetscLogDouble begin, end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->state.incomplete && body->failure.reason >= 0) {
+    PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
+    PetscCall(PetscTime(&begin));
+    PetscCall((*body->integrator->ops.complete)(body));
+    body->state.incomplete = PETSC_FALSE;
+    PetscCall(BodyCheckSubstep(body));
+    PetscCall(BodyWriteTraces(body, body->time.substeps));
+    PetscCall(PetscTime(&end));
+    body->statistics.seconds += end - begin;
+    PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
+  }
+  if (reason) *reason = body->failure.reason;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyTryIntegrate - as `BodyIntegrate()`, for those who can do something about a step that fails
 
   Collective
@@ -176,28 +256,13 @@ static PetscErrorCode CheckSolver(Body body)
   After a failure state and output traces are good for nothing, and the saved state is as it was: `BodyRestore()` or another integration
   begins there. `BodyGetFailure()` has the message.
 
-.seealso: `Body`, `BodyIntegrate()`, `BodyGetFailure()`, `StepConvergedReason`
+.seealso: `Body`, `BodyIntegrate()`, `BodyTryIntegrateRows()`, `BodyGetFailure()`, `StepConvergedReason`
 @*/
 PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
 {
-  PetscBool      done = PETSC_FALSE;
-  PetscLogDouble begin, end;
-
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
-  PetscCall(PetscTime(&begin));
-  StepFailureClear(&body->failure);
-  PetscCall(BodyRepeat(body, &done));
-  if (!done) {
-    PetscCall(BodyMakeSubsteps(body));
-    PetscCall(CheckSolver(body));
-    if (body->failure.reason >= 0) PetscCall(BodyNoteInputs(body));
-  }
-  PetscCall(PetscTime(&end));
-  body->statistics.seconds += end - begin;
-  PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
-  if (reason) *reason = body->failure.reason;
+  PetscCall(BodyTryIntegrateRows(body, NULL));
+  PetscCall(BodyCompleteStep(body, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

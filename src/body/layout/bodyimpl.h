@@ -91,7 +91,8 @@ typedef struct {
   PetscReal external_work;  /* done by the applied forces since the start [J] */
   PetscReal damping_work;   /* taken by the dashpots since the start [J] */
   PetscReal time;
-  PetscInt  step; /* substeps since the start */
+  PetscInt  step;       /* substeps since the start */
+  PetscBool incomplete; /* displacements, and internal forces on massless nodes, are there; the rest waits for BodyCompleteStep() */
 } BodyState;
 
 /* Contact forces that go over from the rows of the last accepted step to those of this one, see handover.c */
@@ -317,6 +318,7 @@ PETSC_INTERN PetscErrorCode BodyTurnToMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);
+PETSC_INTERN PetscErrorCode BodyCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
 PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);

@@ -29,6 +29,9 @@ typedef struct {
   /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
+  /* (NULL) finds what TSStep() and repeat() have left out of the state, since rows do not depend on it, where they have marked it as
+     incomplete; may be set in setup() */
+  PetscErrorCode (*complete)(Body);
   PetscErrorCode (*save)(Body, BodySlot);    /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
   PetscErrorCode (*restore)(Body, BodySlot); /* (NULL) the state has been brought back: what the integrator remembers must be as it was
                                                 then, so that the same integration gives the same bits */
@@ -65,6 +68,7 @@ struct _n_BodyIntegrator {
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
   PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
   PetscBool feels_end_force;    /* displacements at the end of the controller step answer to the contact forces there */
+  PetscBool answers_by_layer;   /* those of the rows do so by the massless layer alone, whose matrix is that of body->solver */
 };
 
 PETSC_INTERN PetscErrorCode BodyIntegratorCreate(Body, const char[]);

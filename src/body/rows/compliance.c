@@ -220,6 +220,36 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
 }
 
 /*@
+  BodyGetLayerMatrices - what makes up the compliance of rows that answer by a massless contact layer alone
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ stiffness - K of the layer, held by the rest of the body [N/m]; `NULL` where rows answer otherwise
+- rows      - B, the rows on the dofs of the layer, without held ones; or `NULL`
+
+  Level: developer
+
+  Note:
+  The compliance is B K^{-1} B^T. Both matrices are owned by the body, which gives them new values where layer or rows change, or puts
+  others in their place.
+
+.seealso: `Body`, `BodyApplyCompliance()`
+@*/
+PetscErrorCode BodyGetLayerMatrices(Body body, Mat *stiffness, Mat *rows)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (stiffness) *stiffness = NULL;
+  if (rows) *rows = NULL;
+  if (body->integrator->answers_by_layer) PetscCall(ConstrainedSolverGetMatrices(body->solver, stiffness, rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyCountUnknown - how many of some rows its compliance does not know yet
 
   Not Collective

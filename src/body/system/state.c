@@ -27,6 +27,7 @@ PetscErrorCode BodyStateCopy(const BodyState *from, BodyState *to)
   to->damping_work  = from->damping_work;
   to->time          = from->time;
   to->step          = from->step;
+  to->incomplete    = from->incomplete;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -76,18 +76,40 @@ PetscErrorCode ContactComputeGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One body through the controller step, unless that has failed already */
+/* The failure of a body's step is that of the controller step */
+static PetscErrorCode TakeFailure(Contact contact, PetscInt b, StepConvergedReason reason)
+{
+  const StepFailure *failure;
+
+  PetscFunctionBegin;
+  if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetFailure(contact->bodies[b], &failure));
+  StepFailureCopy(failure, &contact->attempt.failure);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One body through the controller step, as far as its rows depend on it, unless the step has failed already */
 PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
 {
-  const StepFailure  *failure;
   StepConvergedReason reason;
 
   PetscFunctionBegin;
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyTryIntegrate(contact->bodies[b], &reason));
-  if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetFailure(contact->bodies[b], &failure));
-  StepFailureCopy(failure, &contact->attempt.failure);
+  PetscCall(BodyTryIntegrateRows(contact->bodies[b], &reason));
+  PetscCall(TakeFailure(contact, b, reason));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the bodies have left undone in the sweeps of a controller step, once it has been made */
+PetscErrorCode ContactCompleteBodies(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies && !ContactFailed(contact); b++) {
+    StepConvergedReason reason;
+
+    PetscCall(BodyCompleteStep(contact->bodies[b], &reason));
+    PetscCall(TakeFailure(contact, b, reason));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,6 +5,8 @@
 
 #define INTERFACE_MAPS 4
 
+typedef struct _n_InterfaceDirect *InterfaceDirect;
+
 struct _n_InterfaceOperator {
   Contact           contact; /* borrowed */
   InterfaceSettings settings;
@@ -24,8 +26,9 @@ struct _n_InterfaceOperator {
   PetscInt     n_in, *places; /* which of the listed rows these are */
   PetscScalar *listed[2];     /* work space */
   /* rows of this rank */
-  InterfaceMark *marks;
-  PetscScalar   *diagonal; /* added to that of S, less than 0 on rows that are not solved for at present */
+  InterfaceMark  *marks;
+  PetscScalar    *diagonal; /* added to that of S, less than 0 on rows that are not solved for at present */
+  InterfaceDirect direct;   /* sparse factors; NULL: the bodies do not answer by massless layers alone, or factors are not wanted */
   /* conjugate gradients */
   KSP            iterative;
   Vec            unknown, rhs, work[2];
@@ -36,6 +39,18 @@ PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator);
+PETSC_INTERN PetscErrorCode InterfaceDirectCreate(InterfaceOperator, InterfaceDirect *);
+PETSC_INTERN PetscErrorCode InterfaceDirectDestroy(InterfaceDirect *);
+PETSC_INTERN void           InterfaceDirectForget(InterfaceDirect);
+PETSC_INTERN PetscErrorCode InterfaceDirectSolve(InterfaceOperator, const PetscScalar[], PetscScalar[], PetscBool *);
+
+PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceDirect, Checkpoint);
+
+/* Whether a row of this rank is solved for at present */
+static inline PetscBool InterfaceIsIn(InterfaceOperator op, PetscInt i)
+{
+  return (PetscBool)(PetscRealPart(op->diagonal[i]) >= 0);
+}
 
 /* With what sign forces on row i act on body b, and its displacement counts */
 static inline PetscInt InterfaceSideIn(InterfaceMap map, const ContactPair *pair, PetscInt b)

@@ -23,12 +23,6 @@ PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row of this rank is solved for at present */
-static PetscBool IsIn(InterfaceOperator op, PetscInt i)
-{
-  return (PetscBool)(PetscRealPart(op->diagonal[i]) >= 0);
-}
-
 /* What one body adds to y = M x on the rows that are solved for */
 static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt b, Vec x, Vec y)
 {
@@ -77,7 +71,7 @@ static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArray(y, &out));
   for (PetscInt i = 0; i < op->contact->rows.n; i++) {
-    if (IsIn(op, i)) out[i] += op->diagonal[i] * in[i];
+    if (InterfaceIsIn(op, i)) out[i] += op->diagonal[i] * in[i];
     else out[i] = in[i];
   }
   PetscCall(VecRestoreArray(y, &out));
@@ -99,7 +93,7 @@ static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
   PetscCall(VecGetArray(diagonal, &values));
   for (PetscInt i = 0; i < op->contact->rows.n; i++) {
     values[i] += op->diagonal[i];
-    if (!IsIn(op, i) || !(PetscRealPart(values[i]) > 0)) values[i] = 1;
+    if (!InterfaceIsIn(op, i) || !(PetscRealPart(values[i]) > 0)) values[i] = 1;
   }
   PetscCall(VecRestoreArray(diagonal, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -165,10 +159,10 @@ PetscErrorCode InterfaceOperatorIterate(InterfaceOperator op, const PetscScalar 
   PetscFunctionBegin;
   if (!op->iterative) PetscCall(CreateIterative(op));
   PetscCall(VecGetArrayWrite(op->rhs, &values));
-  for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = IsIn(op, i) ? x[i] : 0;
+  for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = InterfaceIsIn(op, i) ? x[i] : 0;
   PetscCall(VecRestoreArrayWrite(op->rhs, &values));
   PetscCall(VecGetArrayWrite(op->unknown, &values));
-  for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = IsIn(op, i) && op->settings.warm ? y[i] : 0;
+  for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = InterfaceIsIn(op, i) && op->settings.warm ? y[i] : 0;
   PetscCall(VecRestoreArrayWrite(op->unknown, &values));
   PetscCall(KSPSolve(op->iterative, op->rhs, op->unknown));
   PetscCall(CheckConverged(op));

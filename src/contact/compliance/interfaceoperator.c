@@ -17,6 +17,7 @@ PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings 
   op->levels   = 1;
   PetscCall(PetscCalloc3(contact->rows.n, &op->marks, contact->rows.n, &op->diagonal, contact->n_bodies, &op->feels));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
+  if (settings->direct) PetscCall(InterfaceDirectCreate(op, &op->direct));
   *operator= op;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -33,6 +34,7 @@ PetscErrorCode InterfaceOperatorDestroy(InterfaceOperator *operator)
   for (PetscInt m = 0; m < INTERFACE_MAPS; m++) PetscCall(PetscFree(op->matrices[m]));
   PetscCall(DenseFactorDestroy(&op->factor));
   PetscCall(InterfaceOperatorDestroyIterative(op));
+  PetscCall(InterfaceDirectDestroy(&op->direct));
   PetscCall(PetscFree(*operator));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -91,9 +93,15 @@ static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether matrices are to be dense: where they are small or cost little, and else once iterations have cost as much, which with an unknown
-   number of steps to come is never more than twice as dear as the better of the two. Where bodies make substeps a product is not all of S,
-   and iterations take more sweeps: there matrices are dense up to the limit. */
+/* Whether S has sparse factors: it has no other levels than the first where all bodies answer by massless layers */
+static PetscBool IsDirect(InterfaceOperator op)
+{
+  return (PetscBool)(op->direct && !op->matrix);
+}
+
+/* Whether matrices are to be dense: where they are small or cost little, and else, without sparse factors, once iterations have cost as
+   much, which with an unknown number of steps to come is never more than twice as dear as the better of the two. Where bodies make substeps
+   a product is not all of S, and iterations take more sweeps: there matrices are dense up to the limit. */
 static PetscErrorCode ChooseDense(InterfaceOperator op)
 {
   const PetscInt size     = op->n_known * op->levels;
@@ -103,6 +111,10 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
   op->dense_flops = 0;
   op->dense       = (PetscBool)(size <= op->settings.dense_limit);
   if (!op->dense || size <= op->settings.few || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  if (IsDirect(op)) {
+    op->dense = PETSC_FALSE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
     PetscInt n;
 
@@ -282,6 +294,7 @@ PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[
   for (PetscInt i = 0; i < op->contact->rows.n; i++)
     op->diagonal[i] = op->marks[i] != INTERFACE_SOLVED || (in && !in[i]) ? -1 : diagonal ? diagonal[i] : 0;
   op->factored = PETSC_TRUE;
+  InterfaceDirectForget(op->direct);
   if (!op->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MakeMatrices(op, INTERFACE_GAP));
   S = op->matrices[INTERFACE_GAP];
@@ -341,8 +354,11 @@ PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[
 {
   PetscFunctionBegin;
   if (!op->dense) {
+    PetscBool solved = PETSC_FALSE;
+
     if (!op->factored) PetscCall(InterfaceOperatorFactor(op, NULL, NULL));
-    PetscCall(InterfaceOperatorIterate(op, x, y));
+    if (IsDirect(op)) PetscCall(InterfaceDirectSolve(op, x, y, &solved));
+    if (!solved) PetscCall(InterfaceOperatorIterate(op, x, y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
@@ -417,5 +433,6 @@ PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoin
     PetscCall(CheckpointVisitReals(checkpoint, "map", size, op->matrices[m]));
   }
   PetscCall(DenseFactorVisit(&op->factor, op->contact->rows.n_all, checkpoint));
+  PetscCall(InterfaceDirectVisit(op->direct, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

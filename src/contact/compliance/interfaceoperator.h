@@ -28,6 +28,7 @@ typedef struct {
   PetscInt    dense_limit; /* rows, times levels, up to which matrices are dense */
   PetscInt    few;         /* up to which they are so from the start */
   PetscBool   warm;        /* conjugate gradients begin with what the solution is before */
+  PetscBool   direct;      /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
 } InterfaceSettings;
 
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreate(Contact, const InterfaceSettings *, InterfaceOperator *);

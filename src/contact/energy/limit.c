@@ -44,6 +44,7 @@ static PetscErrorCode MakeStep(Contact contact)
   PetscCall(PetscArraycpy(contact->start.force, energy->start_force, contact->rows.n));
   energy->again = energy->changed = PETSC_TRUE;
   PetscUseTypeMethod(contact, step);
+  PetscCall(ContactCompleteBodies(contact));
   energy->again = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

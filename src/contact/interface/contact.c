@@ -184,6 +184,7 @@ PetscErrorCode ContactStep(Contact contact)
     PetscBool penetrating;
 
     PetscCall(ContactIntegrateFree(contact, &penetrating));
+    PetscCall(ContactCompleteBodies(contact));
   }
   contact->counts.total_sweeps += contact->counts.sweeps;
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));

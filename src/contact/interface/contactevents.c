@@ -2,4 +2,4 @@
 #include <impakt/private/contactimpl.h>
 
 PetscClassId  CONTACT_CLASSID = 0;
-PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update;
+PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;

@@ -68,6 +68,7 @@ PetscErrorCode ContactInitializePackage(void)
   PetscCall(PetscLogEventRegister("ContactStep", CONTACT_CLASSID, &CONTACT_Step));
   PetscCall(PetscLogEventRegister("ContactSweep", CONTACT_CLASSID, &CONTACT_Sweep));
   PetscCall(PetscLogEventRegister("ContactUpdate", CONTACT_CLASSID, &CONTACT_Update));
+  PetscCall(PetscLogEventRegister("ContactFactor", CONTACT_CLASSID, &CONTACT_Factor));
   PetscCall(ContactRegisterAll());
   PetscCall(ImpaktFinishPackage("contact", CONTACT_CLASSID, ContactFinalizePackage));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -124,6 +124,7 @@ static PetscErrorCode MakeStep(Contact contact, PetscBool first)
   }
   contact->energy.again = (PetscBool)(again || !first);
   PetscUseTypeMethod(contact, step);
+  PetscCall(ContactCompleteBodies(contact));
   contact->energy.again = again;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -167,6 +168,7 @@ PetscErrorCode ContactMakeStep(Contact contact)
   PetscFunctionBegin;
   if (!f->n) {
     PetscUseTypeMethod(contact, step);
+    PetscCall(ContactCompleteBodies(contact));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscArraycpy(f->start_force, contact->start.force, contact->rows.n));

@@ -234,12 +234,85 @@ static void what_is_kept_comes_back_with_its_work(void **state)
   }
 }
 
+/* Rows may be asked for again and again before the step is complete: it ends as if it had been made once, under the last loads. The balance
+   of a nonlinear layer is found to 1e-12 of what it moves by. */
+static void a_step_is_completed_once(void **state)
+{
+  static const char *const materials[] = {"", "-material_type linear_elastic -damping_stiffness 0.01"};
+
+  (void)state;
+  for (PetscInt m = 0; m < 2; m++) {
+    Body         body;
+    BodyTraces   traces;
+    NodeRows     rows;
+    End          end;
+    PetscScalar *row, displacement[ROWS], velocity[ROWS];
+    Vec          now[3];
+    PetscInt     local;
+    PetscOptions options = solid_body_create(&body, BLOCK "-ts_type centraldifference -gravity 0.3,-0.2 %s", materials[m]);
+
+    touch_side(body, "ymax");
+    ok(BodySetControllerStep(body, 0, STEP));
+    set_node_rows(body, ROWS, row_nodes, row_directions, &rows);
+    ok(BodySetUp(body));
+    ok(BodyGetTraces(body, &traces));
+    ok(TraceGetSizes(traces.displacement, &local, NULL));
+    ok(BodySetInitialState(body, Spinning, NULL));
+    condition_rows(body, &rows, BODY_FORCED);
+    create_end(body, &end);
+    for (PetscInt k = 0; k < 3; k++) {
+      load(&rows, &traces, 1, k, 1e-3);
+      ok(BodyIntegrate(body));
+      assert_false(body->state.incomplete);
+      note_end(body, &end);
+      ok(BodyRestore(body));
+      load(&rows, &traces, 1, k, 5e-2);
+      ok(BodyTryIntegrateRows(body, NULL));
+      assert_true(body->state.incomplete);
+      ok(BodyKeep(body));
+      load(&rows, &traces, 1, k, 1e-3);
+      ok(BodyTryIntegrateRows(body, NULL));
+      ok(TraceGetLevel(traces.displacement, 1, &row));
+      ok(PetscArraycpy(displacement, row, local));
+      ok(TraceGetLevel(traces.velocity, 1, &row));
+      ok(PetscArraycpy(velocity, row, local));
+      if (k == 2) { /* what has been put aside is completed as well */
+        ok(BodyReinstate(body));
+        assert_true(body->state.incomplete);
+        load(&rows, &traces, 1, k, 5e-2);
+        ok(BodyCompleteStep(body, NULL));
+        assert_false(body->state.incomplete);
+        load(&rows, &traces, 1, k, 1e-3);
+        ok(BodyRestore(body));
+        ok(BodyTryIntegrateRows(body, NULL));
+      }
+      ok(BodyCompleteStep(body, NULL));
+      assert_false(body->state.incomplete);
+      ok(BodyGetSolution(body, &now[0], &now[1], &now[2]));
+      for (PetscInt i = 0; i < 3; i++) {
+        PetscReal differ, size;
+
+        ok(VecNorm(end.vecs[i], NORM_2, &size));
+        ok(VecAXPY(end.vecs[i], -1, now[i]));
+        ok(VecNorm(end.vecs[i], NORM_2, &differ));
+        between(differ, 0, 1e-11 * size);
+      }
+      ok(TraceGetLevel(traces.displacement, 1, &row));
+      for (PetscInt i = 0; i < local; i++) near(displacement[i], row[i], 1e-13);
+      ok(TraceGetLevel(traces.velocity, 1, &row));
+      for (PetscInt i = 0; i < local; i++) near(velocity[i], row[i], 1e-12);
+      ok(BodySave(body));
+    }
+    for (PetscInt i = 0; i < 3; i++) ok(VecDestroy(&end.vecs[i]));
+    bar_destroy(&body, options);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(explicit_bodies_repeat_as_they_turn),
-      cmocka_unit_test(implicit_bodies_repeat_as_they_turn),
-      cmocka_unit_test(what_is_kept_comes_back_with_its_work),
+      cmocka_unit_test(explicit_bodies_repeat_as_they_turn),   cmocka_unit_test(implicit_bodies_repeat_as_they_turn),
+      cmocka_unit_test(what_is_kept_comes_back_with_its_work), cmocka_unit_test(a_step_is_completed_once),
       cmocka_unit_test(a_lag_from_step_to_step_is_refused),
   };
 

@@ -7,6 +7,7 @@
 
 static const InterfaceSettings dense     = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 100, .few = 100};
 static const InterfaceSettings iterative = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 0};
+static const InterfaceSettings sparse    = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 0, .direct = PETSC_TRUE};
 static const InterfaceSettings chooses   = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 100, .few = 0};
 
 /* Two blocks that do not match, one implicit and one with a massless layer, 1 kg/m^3 and 1 Pa */
@@ -108,6 +109,47 @@ static void solutions_are_the_same(void **state)
   }
 }
 
+/* Where both bodies have massless layers, sparse factors take over from conjugate gradients when the same rows are solved for again; other
+   rows, springs, and another layer begin anew */
+static void sparse_factors_solve_the_same(void **state)
+{
+  Simulation       *simulation = (Simulation *)*state;
+  InterfaceOperator op;
+  Contact           contact;
+  Mat               K;
+
+  AddOptions("-a_ts_type centraldifference");
+  Create(simulation);
+  contact = simulation->contact;
+  ok(BodyGetLayerMatrices(contact->bodies[0], &K, NULL));
+  assert_non_null(K);
+  op = SetUp(simulation, &sparse, PETSC_FALSE);
+  for (PetscInt round = 0; round < 4; round++) { /* all rows, with and without springs; some of them; with the first layer made anew */
+    PetscScalar x[MOST_ROWS], gap[MOST_ROWS];
+    PetscReal   springs[MOST_ROWS];
+    PetscBool   in[MOST_ROWS];
+
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      in[i]      = (PetscBool)(round < 2 || (contact->rows.begin + i) % 2);
+      springs[i] = round ? 0.3 + 0.1 * i : 0;
+      x[i]       = in[i] ? force(contact->rows.begin + i) : 0;
+    }
+    ok(InterfaceOperatorMultiply(op, INTERFACE_GAP, x, gap));
+    for (PetscInt i = 0; i < contact->rows.n; i++) gap[i] += springs[i] * x[i];
+    if (round < 3) ok(InterfaceOperatorFactor(op, in, springs));
+    else ok(PetscObjectStateIncrease((PetscObject)K));
+    for (PetscInt time = 0; time < 3; time++) {
+      const PetscInt before           = contact->counts.inner_iterations;
+      PetscScalar    found[MOST_ROWS] = {0};
+
+      ok(InterfaceOperatorSolve(op, gap, found));
+      assert_int_equal(contact->counts.inner_iterations > before, time == 0);
+      for (PetscInt i = 0; i < contact->rows.n; i++) near(found[i], x[i], 1e-10);
+    }
+  }
+  ok(InterfaceOperatorDestroy(&op));
+}
+
 /* Rows are dense once iterations have cost as much as columns and factors would, and never before; solutions stay what they are */
 static void becomes_dense_when_that_has_paid(void **state)
 {
@@ -200,11 +242,9 @@ static void iterations_that_do_not_converge_are_an_error(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(products_are_the_same),
-      simulation_test(solutions_are_the_same),
-      simulation_test(becomes_dense_when_that_has_paid),
-      simulation_test(may_be_a_sparse_matrix),
-      simulation_test(iterations_that_do_not_converge_are_an_error),
+      simulation_test(products_are_the_same),         simulation_test(solutions_are_the_same),
+      simulation_test(sparse_factors_solve_the_same), simulation_test(becomes_dense_when_that_has_paid),
+      simulation_test(may_be_a_sparse_matrix),        simulation_test(iterations_that_do_not_converge_are_an_error),
   };
 
   return impakt_main(argc, argv, tests);

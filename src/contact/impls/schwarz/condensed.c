@@ -91,6 +91,41 @@ static PetscErrorCode MarkUnshared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether both sides of a pair answer by massless layers alone */
+static PetscErrorCode AnswersByLayers(Contact contact, const ContactPair *pair, PetscBool *answers)
+{
+  PetscFunctionBegin;
+  *answers = PETSC_TRUE;
+  for (PetscInt side = 0; side < 2; side++) {
+    Mat K;
+
+    PetscCall(BodyGetLayerMatrices(contact->bodies[pair->body[side]], &K, NULL));
+    if (!K) *answers = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Newton's method finds forces as well as displacements. Where there are many rows, a massless layer under given forces takes one solution
+   with its factors, and one with prescribed displacements as many as conjugate gradients make: there the forces of pairs of layers become
+   the unknowns. */
+PetscErrorCode SchwarzPreferForces(Contact contact)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  if (contact->rows.n_all <= PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit) || schwarz->swap || schwarz->mode == SCHWARZ_MASS ||
+      schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    if (pair->obstacle || pair->by_force) continue;
+    PetscCall(AnswersByLayers(contact, pair, &pair->by_force));
+    for (PetscInt i = pair->begin; i < pair->end; i++) contact->rows.by_force[i] = pair->by_force;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* How controller steps in contact are made. Everything but the mass of prescribed nodes changes the way to the solution, not the solution:
    forces of rows that are let go fade in the course of the step wherever contact nodes are massless. */
 PetscErrorCode SchwarzChooseMode(Contact contact)

@@ -25,8 +25,6 @@
 
 /* Rows of interfaces with so few are known to the bodies from the start, which leaves nothing to allocate in the time loop */
 #define FEW_ROWS 16
-/* Up to so many unknowns matrices are dense from the start, where factoring them is cheap beside a step */
-#define DENSE_ROWS 256
 /* Conjugate gradients, relative to the residual: a step of Newton's method that leaves so much takes one more sweep at most */
 #define FORCE_TOLERANCE 1e-9
 
@@ -235,14 +233,18 @@ static PetscErrorCode ApplyByLevels(Contact contact, const PetscScalar f[], Pets
   Schwarz     *schwarz  = (Schwarz *)contact->data;
   Jacobian    *jacobian = &schwarz->jacobian;
   PetscScalar *residual = schwarz->row_work, *force = residual + contact->rows.n, *moved = force + contact->rows.n;
-  PetscInt     most = 1;
+  PetscInt     most     = 1;
+  PetscBool    by_force = PETSC_TRUE; /* all forces are unknowns themselves */
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) most = PetscMax(most, schwarz->levels[p]);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    most     = PetscMax(most, schwarz->levels[p]);
+    by_force = (PetscBool)(by_force && contact->pairs[p].by_force);
+  }
   for (PetscInt k = 0; k < most; k++) {
     GetLastLevels(contact, most, k, f, residual);
     PetscCall(InterfaceOperatorSolve(jacobian->S, residual, force));
-    PetscCall(InterfaceOperatorMultiply(jacobian->S, INTERFACE_DIRICHLET, force, moved));
+    if (!by_force) PetscCall(InterfaceOperatorMultiply(jacobian->S, INTERFACE_DIRICHLET, force, moved));
     for (PetscInt i = 0; i < contact->rows.n; i++) {
       const PetscInt at = k - (most - schwarz->levels[contact->rows.pair[i]]);
 
@@ -352,7 +354,8 @@ PetscErrorCode SchwarzCreateJacobian(Contact contact)
   const InterfaceSettings settings = {.prefix      = "schwarz_interface_",
                                       .tolerance   = FORCE_TOLERANCE,
                                       .dense_limit = schwarz->dense_limit,
-                                      .few         = PetscMin(DENSE_ROWS, schwarz->dense_limit)};
+                                      .few         = PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit),
+                                      .direct      = PETSC_TRUE};
 
   PetscFunctionBegin;
   schwarz->stale = PETSC_TRUE;

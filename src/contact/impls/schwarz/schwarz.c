@@ -118,14 +118,15 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(ContactSetUpSharedNodes(
       contact,
       (PetscBool)(schwarz->mode != SCHWARZ_MASS && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN && !schwarz->swap)));
-  schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
-  for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL,
                                       OUTER_MAX_ITERATIONS));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
+  if (schwarz->newton) PetscCall(SchwarzPreferForces(contact));
+  schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
   if (schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN) {
     SNESLineSearch line_search;

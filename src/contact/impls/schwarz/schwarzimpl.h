@@ -33,6 +33,9 @@ typedef struct {
   Vec               probe[2];                  /* work space */
 } Jacobian;
 
+/* Up to so many unknowns matrices are dense from the start, where factoring them is cheap beside a step */
+#define SCHWARZ_DENSE_ROWS 256
+
 #define SCHWARZ_MAX_SECANTS 12
 
 /* Changes from sweep to sweep, the newest before `next`, in units of the change of F */
@@ -201,6 +204,7 @@ PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
 PETSC_INTERN PetscErrorCode SchwarzDestroyJacobian(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetRoles(Contact);
 PETSC_INTERN PetscErrorCode SchwarzChooseMode(Contact);
+PETSC_INTERN PetscErrorCode SchwarzPreferForces(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSecants(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroySecants(Contact);
 PETSC_INTERN PetscErrorCode SchwarzApplySecants(Contact, Vec, Vec *, PetscInt *, PetscInt[], PetscScalar[]);
