@@ -16,7 +16,7 @@
 static PetscErrorCode ExtendByOne(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
-  if (s->global <= FEW_ROWS) {
+  if (s->keeps) {
     s->fresh[j] = (PetscBool)(s->fresh[j] && ComplianceKnows(s->compliance, j)); /* its owner may have forgotten it */
     PetscCall(ConstrainedSolverMakeColumn(s, j));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -103,6 +103,15 @@ static PetscErrorCode SolveBlock(ConstrainedSolver s, PetscInt n, const PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode KeepColumn(ConstrainedSolver s, PetscInt j, Vec column)
+{
+  PetscFunctionBegin;
+  if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+  PetscCall(VecCopy(column, s->columns[j]));
+  s->fresh[j] = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes n rows known by solutions that are found together */
 static PetscErrorCode ExtendByBlock(ConstrainedSolver s, PetscInt n, const PetscInt rows[])
 {
@@ -120,6 +129,7 @@ static PetscErrorCode ExtendByBlock(ConstrainedSolver s, PetscInt n, const Petsc
 
     PetscCall(MatDenseGetColumnVecRead(x, k, &column));
     PetscCall(MatMult(s->B, column, s->row));
+    if (s->keeps) PetscCall(KeepColumn(s, rows[k], column));
     PetscCall(MatDenseRestoreColumnVecRead(x, k, &column));
     PetscCall(VecGetArrayRead(s->row, &w));
     PetscCall(ComplianceSetColumn(s->compliance, rows[k], 1, w));

@@ -16,6 +16,18 @@
 /* Constraint forces up to this number by a dense matrix, whose factors take 64 MB then */
 #define MAX_DENSE_CONSTRAINTS 2000
 
+/* Whether columns are kept: on interfaces of few rows, and where to add up those of all rows is half the work of a solution by factors, or
+   less; they take a quarter of the factors' memory then, or less */
+static PetscErrorCode ChooseColumns(ConstrainedSolver s)
+{
+  PetscInt size;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetSize(s->rhs, &size));
+  s->keeps = (PetscBool)(s->global <= FEW_ROWS || (s->direct && 2.0 * s->global * size <= 0.5 * s->solve_flops));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A is the matrix of a body in `dim` dimensions; `compliance`: where W is kept, or NULL for one of the solver's own */
 PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
 {
@@ -54,7 +66,8 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(
       PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
   PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));
-  s->room = PetscMin(s->global, FEW_ROWS);
+  PetscCall(ChooseColumns(s));
+  s->room = s->keeps ? s->global : FEW_ROWS;
   PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
   s->shares     = (PetscBool)(compliance != NULL);
@@ -230,15 +243,37 @@ PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver s, PetscInt j)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The columns of A^{-1} B^T follow from A and B, as they are, to the last bit if each was found by itself */
+static PetscErrorCode VisitColumns(ConstrainedSolver s, Checkpoint checkpoint)
+{
+  PetscInt local;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "columns", s->global, s->fresh));
+  PetscCall(VecGetLocalSize(s->rhs, &local));
+  for (PetscInt j = 0; j < s->global; j++) {
+    PetscScalar *values;
+
+    if (!s->fresh[j]) continue;
+    if (s->global <= FEW_ROWS || !s->keeps) {
+      if (CheckpointLoads(checkpoint)) PetscCall(SolveForColumn(s, j));
+      continue;
+    }
+    if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+    PetscCall(VecGetArray(s->columns[j], &values));
+    PetscCall(CheckpointVisitReals(checkpoint, "column", local, values));
+    PetscCall(VecRestoreArray(s->columns[j], &values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* State for a checkpoint. A and B, and a compliance that is shared, are loaded before. Collective. */
 PetscErrorCode ConstrainedSolverVisit(ConstrainedSolver s, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   PetscCall(CheckpointCheckInts(checkpoint, "rows", 1, &s->global));
   if (!s->shares) PetscCall(ComplianceVisit(s->compliance, checkpoint));
-  PetscCall(CheckpointVisitBools(checkpoint, "columns", s->global, s->fresh));
-  for (PetscInt j = 0; j < s->global && CheckpointLoads(checkpoint); j++)
-    if (s->fresh[j]) PetscCall(SolveForColumn(s, j)); /* columns of W are loaded; those of A^{-1} B^T follow from A and B as they are */
+  PetscCall(VisitColumns(s, checkpoint));
   PetscCall(ConstrainedSolverVisitConstraints(s, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -30,12 +30,13 @@ struct _n_ConstrainedSolver {
   KSP            iterative;
   Vec            force_vec, gap_vec, product;
   PetscLogDouble solve_flops, spent; /* of one solution with A; of all iterations so far */
-  /* corrections by stored columns, on interfaces of few rows: their changes, all rows on every rank */
+  /* corrections by stored columns: their changes, all rows on every rank */
+  PetscBool    keeps; /* columns are kept of all rows that become known */
   PetscScalar *changes, *coefficients;
   PetscScalar *column; /* work space: of this rank's rows */
 };
 
-/* Interfaces of so few rows in all keep the column of each row that is asked for: a correction adds them up in place of a solution */
+/* Interfaces of so few rows in all make the column of each row that is asked for: a correction adds them up in place of a solution */
 #define FEW_ROWS 16
 
 PETSC_INTERN PetscErrorCode ConstrainedSolverChoose(KSP, Mat, PetscInt);

@@ -234,26 +234,40 @@ static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Changes of forces and targets, of all rows on every rank. `columns`: the columns of all rows whose force changes are there; where the
+   interface has few rows they are made. */
+static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], PetscBool *columns)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
+
+  PetscFunctionBegin;
+  if (s->size > 1) {
+    PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR, comm));
+    PetscCallMPI(
+        MPI_Allgatherv(target, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes + s->global, s->counts, s->offsets, MPIU_SCALAR, comm));
+  } else {
+    PetscCall(PetscArraycpy(s->changes, force, s->local));
+    PetscCall(PetscArraycpy(s->changes + s->global, target, s->local));
+  }
+  *columns = PETSC_TRUE;
+  for (PetscInt j = 0; j < s->global; j++) {
+    if (s->changes[j] == 0) continue;
+    if (s->global <= FEW_ROWS) PetscCall(ConstrainedSolverMakeColumn(s, j));
+    *columns = (PetscBool)(*columns && s->fresh[j]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* x with A x = B^T (force - s) and B_m x = target, for forces and targets of this rank's rows: what a change of both changes. By the
-   columns where the interface has few rows, else by a solution. */
+   columns where they are kept, else by a solution. */
 PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], Vec x)
 {
   PetscScalar *row;
+  PetscBool    columns = PETSC_FALSE;
 
   PetscFunctionBegin;
-  if (s->global <= FEW_ROWS && s->dense) {
-    MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
-
-    if (s->size > 1) {
-      PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR, comm));
-      PetscCallMPI(
-          MPI_Allgatherv(target, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes + s->global, s->counts, s->offsets, MPIU_SCALAR, comm));
-    } else {
-      PetscCall(PetscArraycpy(s->changes, force, s->local));
-      PetscCall(PetscArraycpy(s->changes + s->global, target, s->local));
-    }
-    for (PetscInt j = 0; j < s->global; j++)
-      if (s->changes[j] != 0) PetscCall(ConstrainedSolverMakeColumn(s, j));
+  if (s->keeps && s->dense) PetscCall(GatherChanges(s, force, target, &columns));
+  if (columns) {
     PetscCall(AddColumns(s, x));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

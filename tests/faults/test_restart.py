@@ -14,6 +14,7 @@ SHORT = [
     ("-options_file options/beam-hit.opts -time_step 2e-4 -time_end 4e-3", 2, 0.55),  # steps that are cut in halves
     ("-options_file options/blocks.opts -left_damping_mass 1e3 -right_damping_stiffness 1e-8 -left_probe -0.02,0.02", 1, 0.55),
     ("-options_file options/twisting-column.opts -time_end 0.05", 1, 0.55),  # nonlinear, rows that are built again
+    ("-options_file options/bars-3d.opts -time_end 6e-5", 1, 0.7),  # columns of a large body, found together
 ]
 # Two blocks off-centre, with meshes that do not match
 BLOCKS = (

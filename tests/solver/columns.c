@@ -152,12 +152,83 @@ static void columns_of_a_block_count_less(void **state)
   destroy(&s);
 }
 
+/* A full matrix has so many entries in its factors that columns are kept: their sum is what a solution gives */
+static void kept_columns_give_what_a_solution_gives(void **state)
+{
+  static const char *const factors[] = {"-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps",
+                                        "-columns_pc_type redundant -columns_redundant_pc_type lu"};
+  const PetscInt           kept      = 40;
+
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(factors); k++) {
+    PetscOptions      options = options_begin("%s", factors[k]);
+    PetscInt          begin, end, row, local, rows[40];
+    Mat               A, B;
+    Vec               x, y, force, rhs;
+    PetscScalar      *values;
+    PetscReal         target[40] = {0}, difference, size;
+    PetscBool         none[40]   = {PETSC_FALSE};
+    Compliance        compliance;
+    ConstrainedSolver solver;
+
+    ok(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, SIZE, SIZE, SIZE, NULL, SIZE, NULL, &A));
+    ok(MatGetOwnershipRange(A, &begin, &end));
+    for (PetscInt i = begin; i < end; i++)
+      for (PetscInt j = 0; j < SIZE; j++) ok(MatSetValue(A, i, j, PetscExpReal(-PetscAbsReal((PetscReal)(i - j)) / 50), INSERT_VALUES));
+    ok(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+    ok(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+    ok(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, end - begin, kept, SIZE, 2, NULL, 2, NULL, &B));
+    ok(MatGetOwnershipRange(B, &row, &end));
+    for (PetscInt r = row; r < end; r++) {
+      ok(MatSetValue(B, r, first(r), 1, INSERT_VALUES));
+      ok(MatSetValue(B, r, second(r), -0.5, INSERT_VALUES));
+    }
+    ok(MatAssemblyBegin(B, MAT_FINAL_ASSEMBLY));
+    ok(MatAssemblyEnd(B, MAT_FINAL_ASSEMBLY));
+    ok(MatGetLocalSize(B, &local, NULL));
+    ok(ComplianceCreate(PETSC_COMM_WORLD, local, row, kept, 1, &compliance));
+    ok(ConstrainedSolverCreate(A, B, 1, "columns_", compliance, &solver));
+    ok(ConstrainedSolverSetConstraints(solver, none, NULL));
+    ok(MatCreateVecs(A, &x, &rhs));
+    ok(VecDuplicate(x, &y));
+    ok(MatCreateVecs(B, NULL, &force));
+    ok(VecGetArrayWrite(force, &values));
+    for (PetscInt i = 0; i < local; i++) values[i] = PetscSinReal(1 + row + i);
+    ok(VecRestoreArrayWrite(force, &values));
+    for (PetscInt r = 0; r < kept; r++) rows[r] = r;
+    ok(MatMultTranspose(B, force, rhs));
+    ok(ConstrainedSolverSolveFree(solver, rhs, y));
+    for (PetscInt pass = 0; pass < 2; pass++) { /* without columns, then with all of them */
+      ok(VecGetArray(force, &values));
+      ok(ConstrainedSolverCorrect(solver, values, target, x));
+      ok(VecRestoreArray(force, &values));
+      ok(VecAXPY(x, -1, y));
+      ok(VecNorm(x, NORM_INFINITY, &difference));
+      ok(VecNorm(y, NORM_INFINITY, &size));
+      assert_true(size > 1);
+      near(difference / size, 0, pass ? 1e-12 : 0); /* the sum rounds otherwise; a solution is the same one */
+      if (!pass) ok(ConstrainedSolverExtend(solver, kept, rows));
+      else assert_true(difference > 0); /* else it was no sum of columns */
+    }
+    ok(VecDestroy(&force));
+    ok(VecDestroy(&y));
+    ok(VecDestroy(&x));
+    ok(VecDestroy(&rhs));
+    ok(MatDestroy(&A));
+    ok(MatDestroy(&B));
+    ok(ConstrainedSolverDestroy(&solver));
+    ok(ComplianceDestroy(&compliance));
+    options_drop(options);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(blocks_and_single_columns_are_exact),
       cmocka_unit_test(more_rows_than_a_block_are_exact),
       cmocka_unit_test(columns_of_a_block_count_less),
+      cmocka_unit_test(kept_columns_give_what_a_solution_gives),
   };
 
   return impakt_main(argc, argv, tests);
