@@ -30,8 +30,7 @@ struct _p_Controller {
   const char    *whole;     /* why steps are not cut, or NULL */
   PetscInt       most_cuts; /* how often a step may be cut in halves */
   ControllerCuts cuts;
-  PetscInt       step_cuts, step_sweeps;         /* of the controller step under way; the sweeps with those of steps that failed */
-  PetscReal      initial_energy, largest_energy; /* of all bodies, with the work of loads: at the start; so far [J] */
+  PetscInt       step_cuts, step_sweeps; /* of the controller step under way; the sweeps with those of steps that failed */
   /* observers */
   PetscInt             n_monitors;
   ControllerMonitorFn *monitor[MAX_MONITORS];
@@ -81,4 +80,4 @@ PETSC_INTERN PetscErrorCode ControllerWarnOfStep(Controller);
 PETSC_INTERN PetscErrorCode ControllerReadStepControl(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpStepControl(Controller);
 PETSC_INTERN PetscErrorCode ControllerMakeStep(Controller);
-PETSC_INTERN PetscErrorCode ControllerNoteEnergies(Controller, PetscInt);
+PETSC_INTERN PetscErrorCode ControllerNoteEnergies(Controller);

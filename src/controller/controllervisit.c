@@ -87,8 +87,6 @@ PetscErrorCode ControllerVisit(Controller controller, Checkpoint checkpoint)
   PetscCall(CheckTimes(controller, checkpoint));
   PetscCall(CheckpointVisitInts(checkpoint, "step", 1, &controller->step));
   PetscCall(CheckpointVisitBytes(checkpoint, "cuts", sizeof(controller->cuts), &controller->cuts));
-  PetscCall(CheckpointVisitReals(checkpoint, "initial energy", 1, &controller->initial_energy));
-  PetscCall(CheckpointVisitReals(checkpoint, "largest energy", 1, &controller->largest_energy));
   PetscCall(CheckpointVisitReals(checkpoint, "scale start", 1, &controller->scale.start));
   PetscCall(CheckpointVisitReals(checkpoint, "scale largest", 1, &controller->scale.largest));
   PetscCall(CheckpointVisitBools(checkpoint, "from rest", 1, &controller->scale.from_rest));

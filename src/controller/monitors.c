@@ -59,7 +59,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
     if (controller->has_obstacle[b]) controller->measures[b].loaded = PETSC_TRUE;
     PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
   }
-  PetscCall(ControllerNoteEnergies(controller, step));
+  PetscCall(ControllerNoteEnergies(controller));
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
   PetscCall(ControllerFindReactions(controller));
   PetscCall(ControllerFindProbes(controller));

@@ -155,32 +155,19 @@ PetscErrorCode ControllerSetUpStepControl(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes the energies of the bodies as their measures have them, those of step 0 as the start */
-PetscErrorCode ControllerNoteEnergies(Controller controller, PetscInt step)
+/* Hands the energies of the bodies, as their measures have them, to contact: those that the next step starts with */
+PetscErrorCode ControllerNoteEnergies(Controller controller)
 {
-  PetscReal size = 0, energy = 0;
-
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < controller->n_bodies; b++) {
-    const BodyMeasures *body = &controller->measures[b];
-
-    controller->energies[b] = BodyMeasuresGetBalance(body);
-    size += body->kinetic + body->potential + PetscAbsReal(body->external_work);
-    energy += controller->energies[b];
-  }
+  for (PetscInt b = 0; b < controller->n_bodies; b++) controller->energies[b] = BodyMeasuresGetBalance(&controller->measures[b]);
   PetscCall(ContactSetStartEnergies(controller->contact, controller->energies));
-  if (!step) {
-    controller->initial_energy = energy;
-    controller->largest_energy = 0;
-  }
-  controller->largest_energy = PetscMax(controller->largest_energy, size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Energy that contact may take or bring in a step, part of what the errors of the summary are compared with [J] */
 static PetscErrorCode GetMostLoss(Controller controller, PetscReal *most)
 {
-  const PetscReal largest = controller->largest_energy, start = controller->initial_energy;
+  const PetscReal largest = controller->scale.largest, start = controller->scale.start;
   PetscReal       tolerance;
 
   PetscFunctionBegin;

@@ -46,6 +46,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
   PetscCall(ContactTimesCreate(controller, &s->times));
+  s->scale = ControllerGetEnergyScale(controller);
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
   PetscCall(ControllerGetSupports(controller, &s->results.n_supports, &supports));
   PetscCall(PetscCalloc1(s->results.n_supports, &s->results.supports));
@@ -170,7 +171,6 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   Statistics s = (Statistics)context;
 
   PetscFunctionBegin;
-  s->scale = ControllerGetEnergyScale(controller);
   if (frame->step == 0) NoteInitialState(s, frame);
   AddEnergies(s, frame);
   AddSupports(s, frame);

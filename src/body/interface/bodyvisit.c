@@ -59,22 +59,25 @@ static PetscErrorCode VisitCompliance(struct _BodyCompliance *compliance, Checkp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One level of cut steps; loading, it becomes the present one. What it shares with the first level has been visited with that. */
-static PetscErrorCode VisitLevel(Body body, PetscInt k, PetscInt present, Checkpoint checkpoint)
+/* Compliance and solver of a level of cut steps: the body itself has those of the present one */
+static BodyLevel GetLevel(Body body, PetscInt k)
 {
-  const PetscBool loads = CheckpointLoads(checkpoint);
-  const BodyLevel now   = {body->compliance, body->solver};
-  BodyLevel       level, *first = &body->levels[0];
-  PetscBool       made;
+  return k == body->time.level ? (BodyLevel){body->compliance, body->solver} : body->levels[k];
+}
+
+/* One level of cut steps; loading, it becomes the present one. What it shares with the first level has been visited with that. */
+static PetscErrorCode VisitLevel(Body body, PetscInt k, Checkpoint checkpoint)
+{
+  BodyLevel level, first;
+  PetscBool made;
 
   PetscFunctionBegin;
-  if (loads && k != body->time.level) PetscCall(BodyTakeLevel(body, k, &made));
-  level = loads ? (BodyLevel){body->compliance, body->solver} : k == present ? now : body->levels[k];
+  if (CheckpointLoads(checkpoint) && k != body->time.level) PetscCall(BodyTakeLevel(body, k, &made));
+  level = GetLevel(body, k);
+  first = GetLevel(body, 0);
   if (body->integrator->ops.visit) PetscCall((*body->integrator->ops.visit)(body, k, checkpoint));
-  if (k == 0 || level.compliance != (present == 0 && !loads ? now : *first).compliance)
-    PetscCall(VisitCompliance(level.compliance, checkpoint));
-  if (level.solver && (k == 0 || level.solver != (present == 0 && !loads ? now : *first).solver))
-    PetscCall(ConstrainedSolverVisit(level.solver, checkpoint));
+  if (k == 0 || level.compliance != first.compliance) PetscCall(VisitCompliance(level.compliance, checkpoint));
+  if (level.solver && (k == 0 || level.solver != first.solver)) PetscCall(ConstrainedSolverVisit(level.solver, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,7 +93,7 @@ static PetscErrorCode VisitLevels(Body body, Checkpoint checkpoint)
     PetscBool exists = (PetscBool)(k == present || body->levels[k].compliance);
 
     PetscCall(CheckpointVisitBools(checkpoint, "level exists", 1, &exists));
-    if (exists) PetscCall(VisitLevel(body, k, present, checkpoint));
+    if (exists) PetscCall(VisitLevel(body, k, checkpoint));
   }
   if (CheckpointLoads(checkpoint) && present != body->time.level) PetscCall(BodyTakeLevel(body, present, &made));
   PetscFunctionReturn(PETSC_SUCCESS);
