@@ -137,10 +137,12 @@ PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
 static PetscErrorCode TakePlace(Fields fields)
 {
   PetscBool placed = PETSC_TRUE;
+  char      xdmf[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
   if (fields->first_rank) {
-    (void)remove(fields->xdmf);
+    PetscCall(OutputPathResolve(fields->xdmf, sizeof(xdmf), xdmf)); /* a link stays, and is written through */
+    (void)remove(xdmf);
     PetscCall(OutputFilePlace(fields->part, fields->path, &fields->held, &placed));
   }
   PetscCheck(placed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s has vanished while it was written", fields->part);

@@ -43,6 +43,57 @@ def small_disk(tmp_path):
     subprocess.run(["umount", disk], check=True)
 
 
+def fill(disk, room):
+    """Leaves so many bytes free."""
+    with open(disk / "other", "wb", buffering=0) as other:
+        with pytest.raises(OSError, match="No space"):
+            while True:
+                other.write(bytes(4096))
+        other.truncate(other.tell() - room)
+
+
+# What lies on the full disk, and what is left there at most
+ON_DISK = {
+    "history": (["-output_history", "disk/h.h5"], {"h.h5"}),
+    "fields": (["-output_fields", "disk/f.h5"], set()),
+    "xdmf": (["-output_fields", "f.h5"], {"f.xdmf"}),  # by a symbolic link
+    "summary": (["-output_summary", "disk/s.json"], set()),
+    "checkpoint": (["-checkpoint", "disk/c.h5", "-checkpoint_interval", "200"], {"c.h5", "c.prev.h5"}),
+}
+SHORT = [*RUN, "-time_step", "4e-7", "-progress", "false"]
+
+
+@pytest.mark.parametrize(("output", "ranks"), [*((output, 1) for output in ON_DISK), *(pytest.param(output, 2, marks=pytest.mark.long) for output in ON_DISK)])
+def test_full_disk(output, ranks, small_disk, tmp_path, take_cores):
+    """No room at all, or for the begin of the file: one message, and nothing under the file's name that is not whole."""
+    take_cores(ranks)
+    options, most = ON_DISK[output]
+    for room in (0, 4096, 65536, 460 * 1024) if output in ("history", "checkpoint") else (0, 4096):
+        fill(small_disk, room)
+        if output == "xdmf":
+            (tmp_path / "f.xdmf").unlink(missing_ok=True)
+            (tmp_path / "f.xdmf").symlink_to("disk/f.xdmf")
+        run = run_command([*SHORT, *options], ranks, 60, cwd=tmp_path)
+        assert run.returncode > 0, (room, run.stderr)
+        errors = [line for line in run.stderr.splitlines() if line.startswith("impakt: error")]
+        assert len(errors) == 1, run.stderr
+        assert "disk" in errors[0] and ("No space left" in errors[0] or "disk full" in errors[0] or "there is room for" in errors[0])
+        assert "SEGV" not in run.stderr
+        left = {path.name for path in small_disk.iterdir()} - {"other"}
+        assert left <= most
+        if "h.h5" in left:
+            with h5py.File(small_disk / "h.h5") as history:
+                assert len(history["time"]) == len(history["schwarz/iterations"]) > 0
+        if "f.xdmf" in left:
+            assert (small_disk / "f.xdmf").read_text().endswith("</Xdmf>\n")
+        (small_disk / "other").unlink()
+        if "c.h5" in left:
+            run = run_command([*SHORT, *options, "-restart", "disk/c.h5"], ranks, 60, cwd=tmp_path)
+            assert run.returncode == 0 and "continued from" in run.stderr
+        for name in left:
+            (small_disk / name).unlink(missing_ok=True)
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_disk_that_fills_up(ranks, small_disk, tmp_path, take_cores):
     """Frames before the one that had no room are whole, and the XDMF file lists them."""

@@ -98,6 +98,12 @@ def test_links_are_written_through(folder):
     assert (folder / "h.h5").is_symlink() and (folder / "s.json").is_symlink()
     assert h5py.is_hdf5(folder / "store/real.h5")
     assert json.loads((folder / "store/s.json").read_text())
+    for name in ("f.h5", "f.xdmf"):
+        (folder / name).symlink_to(f"store/{name}")
+    for _ in range(2):  # what the first one has written is replaced by the second
+        assert run(folder, *SHORT, "-output_fields", "f.h5").returncode == 0
+        assert (folder / "f.h5").is_symlink() and (folder / "f.xdmf").is_symlink()
+        assert h5py.is_hdf5(folder / "store/f.h5") and (folder / "store/f.xdmf").read_text().endswith("</Xdmf>\n")
     (folder / "ring").symlink_to("ring")
     refused = run(folder, *SHORT, "-output_history", "ring")
     assert refused.returncode > 0
