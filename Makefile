@@ -4,6 +4,7 @@
 # then runs itself again with what it found: PETSC_ROOT, the directory of PETSc's libraries, and PYTHON, an interpreter.
 #   PETSC_DIR, PETSC_ARCH   your own PETSc, 3.21 or newer, instead of the private build
 #   DEBUG=1                 unoptimised, in build/debug          ASAN=1   address and undefined-behaviour checks, in build/asan
+#   INDICES=64              PETSc with indices of 64 bits, for more than 2^31 unknowns, in build/indices-64 (.setup/petsc --indices-64)
 #   COVERAGE=1              counts the lines that run, in build/coverage
 #   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
 #   PREFIX=/usr/local       where `make install` puts program, library and headers; DESTDIR=stage puts them under a stage
@@ -20,7 +21,7 @@ $(goals): made ; @:
 
 made: $(filter clean,$(MAKECMDGOALS))
 	@.setup/debian
-	@petsc=$(if $(filter-out $(without_petsc),$(goals)),$$(.setup/petsc),none) && python=$$(.setup/python) && \
+	@petsc=$(if $(filter-out $(without_petsc),$(goals)),$$(.setup/petsc$(if $(filter 64,$(INDICES)), --indices-64)),none) && python=$$(.setup/python) && \
 	$(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(cores)) PETSC_ROOT="$$petsc" PYTHON="$$python" $(goals)
 
 help: ## this list
@@ -49,6 +50,9 @@ OPTIMISE := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined 
 export ASAN_OPTIONS := detect_leaks=1:fast_unwind_on_malloc=0
 export LSAN_OPTIONS := suppressions=$(CURDIR)/tests/asan-suppressions.txt:print_suppressions=0
 export UBSAN_OPTIONS := print_stacktrace=1
+endif
+ifeq ($(INDICES),64)
+BUILD    := build/indices-64
 endif
 ifeq ($(COVERAGE),1)
 BUILD    := build/coverage
@@ -111,7 +115,7 @@ ifneq ($(filter analyse coverage,$(MAKECMDGOALS)),)
 analysis := $(dir $(shell .setup/python --analysis))
 endif
 
-.PHONY: all run paper test test-all bench docs format lint analyse coverage fuzz fuzzers install force
+.PHONY: all run paper test test-all bench scaling docs format lint analyse coverage fuzz fuzzers install force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units) $(replays))
 
@@ -153,6 +157,10 @@ bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time, memor
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD)
 	$(PYTHON) tests/scaling/solids.py --build $(BUILD)
 	$(PYTHON) tests/scaling/contact.py --build $(BUILD)
+
+# RANKS="--ranks 16 --size 12 --only counts" makes it shorter
+scaling: $(BUILD)/impakt $(BUILD)/yardstick_memory ## counts on up to 64 ranks, one rank against two, the same results: a report in out/scaling
+	$(PYTHON) tests/scaling/ranks.py --build $(BUILD) --mpiexec "$(MPIEXEC)" $(RANKS)
 
 docs: $(BUILD)/impakt ## the table of options in options/README.md, as the program prints it
 	@$(BUILD)/impakt -help markdown >$(BUILD)/options.md
@@ -230,6 +238,10 @@ $(BUILD)/yardstick: tests/scaling/yardstick.c
 $(BUILD)/yardstick_hex8: tests/scaling/yardstick_hex8.c
 	@mkdir -p $(@D)
 	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
+
+$(BUILD)/yardstick_memory: tests/scaling/yardstick_memory.c
+	@mkdir -p $(@D)
+	$(call say,CC) gcc -O3 -std=c11 $(WARNINGS) -o $@ $< -lm
 
 # The options files that need nothing but themselves, as text for -example
 examples := $(sort $(shell grep -l '^-bodies' $$(grep -LE 'filename|options_file|file:' options/*.opts)))

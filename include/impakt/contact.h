@@ -314,6 +314,7 @@ PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUpSurfaces(Contact);
+PETSC_EXTERN PetscErrorCode ContactGetShare(Contact, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetResolvedStep(Contact, PetscReal *, size_t, char[]);
 PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
 PETSC_EXTERN PetscErrorCode ContactStep(Contact);

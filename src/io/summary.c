@@ -1,6 +1,7 @@
 /* The summary: one JSON object, whose members scripts rely on. Numbers that do not exist (no contact, no release) are null. */
 #include "summary.h"
 #include "outputfile.h"
+#include "ranks.h"
 #include <impakt.h>
 #include <jansson.h>
 
@@ -308,7 +309,23 @@ static PetscErrorCode AddPhases(json_t *timing, Contact contact, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact contact, PetscInt n, const Body bodies[])
+static PetscErrorCode AddRanks(json_t *timing, const RanksSummary *summary)
+{
+  json_t *object, *count;
+
+  PetscFunctionBegin;
+  PetscCall(SetObject(timing, "ranks", &object));
+  PetscCall(SetInteger(object, "count", summary->size));
+  for (PetscInt i = 0; i < RANKS_COUNTS; i++) {
+    PetscCall(SetObject(object, RanksNames[i], &count));
+    PetscCall(SetReal(count, "largest", summary->largest[i]));
+    PetscCall(SetReal(count, "mean", summary->mean[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact contact, PetscInt n, const Body bodies[],
+                                const RanksSummary *ranks)
 {
   json_t        *object;
   PetscLogDouble setup, wall, cpu;
@@ -320,6 +337,7 @@ static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact con
   PetscCall(SetReal(object, "cpu", (PetscReal)cpu));
   PetscCall(SetReal(object, "wall_setup", (PetscReal)setup));
   PetscCall(AddPhases(object, contact, n, bodies));
+  PetscCall(AddRanks(object, ranks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -335,7 +353,7 @@ static PetscErrorCode WriteObject(const char part[], void *ctx)
 /*
   SummaryWrite - writes the summary of a run
 
-  Not Collective; rank 0 writes
+  Collective; rank 0 writes
 
   Input Parameters:
 + controller - the `Controller`, at its end
@@ -347,6 +365,7 @@ static PetscErrorCode WriteObject(const char part[], void *ctx)
 PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const Verdict *verdict, const char path[])
 {
   PetscErrorCode error;
+  RanksSummary   ranks;
   json_t        *root;
   Contact        contact;
   const Body    *bodies;
@@ -354,6 +373,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscMPIInt    rank;
 
   PetscFunctionBegin;
+  PetscCall(RanksGather(controller, &ranks));
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)controller), &rank));
   if (rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ControllerGetBodies(controller, &n, &bodies));
@@ -368,7 +388,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(AddSystem(root, results));
   if (exact) PetscCall(AddErrors(root, exact));
   PetscCall(AddWarnings(root, verdict));
-  PetscCall(AddTiming(root, controller, contact, n, bodies));
+  PetscCall(AddTiming(root, controller, contact, n, bodies, &ranks));
   error = OutputFileWrite(path, WriteObject, root, NULL);
   json_decref(root);
   PetscCall(error);

@@ -30,3 +30,10 @@
 #else
 #  define BOX_NOT_PERIODIC 0, PETSC_TRUE,
 #endif
+
+/* how PetscSFGetRootRanks() and PetscSFGetLeafRanks() count ranks */
+#if PETSC_VERSION_LT(3, 23, 0)
+#  define SF_RANK_COUNT PetscInt
+#else
+#  define SF_RANK_COUNT PetscMPIInt
+#endif

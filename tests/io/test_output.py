@@ -88,6 +88,10 @@ SUMMARY = {
         "cpu": float,
         "wall_setup": float,
         "per_phase": {"alpha2": {"seconds": float, "substeps": int}, "sweeps": {"seconds": float, "count": int}},
+        "ranks": {
+            "count": int,
+            **{name: {"largest": float, "mean": float} for name in ("elements", "nodes", "facets", "rows", "neighbours", "peak_memory")},
+        },
     },
 }
 

@@ -134,13 +134,15 @@ def ratio_row(name, bound, yardsticks, summaries):
     ]
 
 
-def command_line(description, programs, time_limit, **more):
-    """What the options of a comparison say: a directory with programs, seconds for one run, and numbers with their default and meaning."""
+def command_line(description, programs, time_limit, texts=(), **more):
+    """What the options of a comparison say: a directory with programs, seconds for one run, and numbers and texts with their default and meaning."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=ROOT / "build", help=f"directory of {programs}")
     parser.add_argument("--time-limit", type=float, default=time_limit, help=f"for one run, in s (default: {time_limit:g})")
     for name, (default, meaning) in more.items():
         parser.add_argument(f"--{name}", type=int, default=default, help=f"{meaning} (default: {default})")
+    for name, (default, meaning) in dict(texts).items():
+        parser.add_argument(f"--{name}", default=default, help=f"{meaning} (default: {default})")
     arguments = parser.parse_args()
     if any(getattr(arguments, name) < 1 for name in more):
         parser.error(f"{' and '.join(f'--{name}' for name in more)} must be at least 1")

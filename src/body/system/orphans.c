@@ -186,7 +186,7 @@ PetscErrorCode BodyFindOrphans(Body body)
   Orphans   orphans;
   Vec       work;
   PetscReal total, left;
-  PetscInt  furthest;
+  PetscInt  furthest = 0;
 
   PetscFunctionBegin;
   PetscCall(BodyCreateVec(body, &orphans.mass));

@@ -1,0 +1,270 @@
+"""How runs scale with the number of ranks: counts on many ranks, times on one and two, the same results on all.
+
+    python tests/scaling/ranks.py --build build [--ranks 64] [--size 24] [--repeats 5] [--only counts,speed,results,corner]
+
+Two `hex8` boxes that meet, 2n x n x n and 5/6 of that along each axis, n being --size. The report is out/scaling/report.md, with its figures in
+report.json and pictures beside it. Counts do not hang on a clock, so that they may be taken with many more ranks than cores. Messages, bytes and
+reductions are those of PETSc's log of controller steps, on the rank that has most of them; the difference of two runs of different length leaves
+out what is made once. The exit code tells whether all runs worked.
+"""
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+
+from bench import RunError, command_line, execute, read_summary
+from reporting import ROOT, build, heading, machine, number, spread, table
+
+PARTS = ("counts", "results", "corner", "speed")
+COUNTED = {"messages": "Num Messages", "bytes": "Message Length", "reductions": "Num Reductions"}
+MPI = {
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_pml": "ob1",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+}
+
+
+def boxes(n, contact=True, integrator="centraldifference", corner=False):
+    """Options of two boxes that meet from the first step on, or that never do; on a corner of the first alone."""
+    faces = {"a": (n, n, 2 * n), "b": tuple(max(2, 5 * k // 6) for k in (n, n, 2 * n))}
+    width = {"a": 0.1, "b": 0.1}
+    if corner:
+        faces["b"], width["b"] = tuple(max(2, n // 3) for _ in range(3)), 0.1 / 3
+    length = {name: 2 * width[name] if name == "a" or not corner else width[name] for name in faces}
+    gap = 1e-7 if contact else 1e-2
+    options = {"bodies": "a,b", "contact_pairs": "a.zmax:b.zmin", "progress": 0}
+    for name, low in (("a", -length["a"]), ("b", gap)):
+        options |= {
+            f"{name}_dm_plex_dim": 3,
+            f"{name}_dm_plex_box_faces": ",".join(map(str, faces[name])),
+            f"{name}_dm_plex_box_lower": f"0,0,{low}",
+            f"{name}_dm_plex_box_upper": f"{width[name]},{width[name]},{low + length[name]}",
+            f"{name}_density": 1000,
+            f"{name}_youngs_modulus": 1e9,
+            f"{name}_poissons_ratio": 0.25,
+            f"{name}_initial_velocity": f"0,0,{10 if name == 'a' else -10}",
+            f"{name}_ts_type": integrator,
+        }
+    return options | {"time_step": 0.3 * 0.1 / n / 1100}
+
+
+def run(arguments, options, ranks, steps, more=(), launcher=()):
+    """Summary of a run, and for each rank the counts and seconds of PETSc's log of controller steps."""
+    with tempfile.TemporaryDirectory() as directory:
+        summary, log = Path(directory) / "summary.json", Path(directory) / "log.csv"
+        words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
+        words += ["-time_end", repr(steps * options["time_step"]), "-output_summary", str(summary)]
+        words += ["-log_view", f":{log}:ascii_csv", *more]
+        execute([*arguments.mpiexec, *launcher, "-n", str(ranks), arguments.build / "impakt", *words], arguments.time_limit)
+        with log.open(encoding="utf-8") as file:
+            events = [row for row in csv.DictReader(file) if row["Event Name"] == "ContactStep"]
+        counts = [{name: float(row[column]) for name, column in COUNTED.items()} | {"seconds": float(row["Time"])} for row in events]
+        return read_summary(summary, f"{ranks} ranks"), counts
+
+
+def exponent(ranks, values):
+    """The power of the number of ranks with which a count grows, by least squares of logarithms; None where there are not two of them."""
+    points = [(math.log(r), math.log(v)) for r, v in zip(ranks, values) if r > 1 and v and v > 0]
+    if len(points) < 2:
+        return None
+    x, y = (sum(p[k] for p in points) / len(points) for k in (0, 1))
+    return sum((p[0] - x) * (p[1] - y) for p in points) / sum((p[0] - x) ** 2 for p in points)
+
+
+def counts_of(arguments, options, ranks, steps):
+    """What each of these steps counts on the rank with most of it, and what lies on the largest rank."""
+    short, before = run(arguments, options, ranks, steps[0])
+    long, after = run(arguments, options, ranks, steps[1])
+    made = steps[1] - steps[0]
+    sweeps = long["timing"]["per_phase"]["sweeps"]["count"] - short["timing"]["per_phase"]["sweeps"]["count"]
+    found = {"ranks": ranks, "sweeps": sweeps / made}
+    for name in COUNTED:
+        most = max(a[name] - b[name] for a, b in zip(after, before)) / made
+        found[name] = most
+        found[f"{name}_per_sweep"] = most * made / sweeps if sweeps else None
+    for name, value in long["timing"]["ranks"].items():
+        if isinstance(value, dict):
+            found[name] = value["largest"]
+            found[f"{name}_imbalance"] = value["largest"] / value["mean"] if value["mean"] else None
+    found["steps_in_contact"] = long["contact"]["steps_in_contact"]
+    return found
+
+
+COLUMNS = ("messages", "bytes", "reductions", "sweeps", "messages_per_sweep", "reductions_per_sweep", "neighbours", "elements", "facets", "rows", "peak_memory")
+
+
+def counts(arguments, found, lines):
+    """Counts of each step of explicit and implicit bodies on 1, 2, 4, ... ranks."""
+    ranks = [2**k for k in range(20) if 2**k <= arguments.ranks]
+    for integrator, steps in (("centraldifference", (4, 12)), ("alpha2", (3, 6))):
+        if integrator == "alpha2":
+            ranks = [r for r in ranks if r <= arguments.implicit]
+        size = arguments.size if integrator == "centraldifference" else max(4, arguments.size // 3)
+        rows = [counts_of(arguments, boxes(size, integrator=integrator), r, steps) for r in ranks]
+        powers = {name: exponent(ranks, [row[name] for row in rows]) for name in COLUMNS}
+        found[integrator] = {"size": size, "rows": rows, "exponents": powers}
+        lines += [f"## Counts: {integrator}, boxes of {size}x{size}x{2 * size} and 5/6 of that", ""]
+        lines += ["Of one controller step, on the rank with most; elements, facets, rows, neighbours and memory of the largest rank.", ""]
+        cells = [[row["ranks"], *(number(row[name], 4) for name in COLUMNS)] for row in rows]
+        lines += table([["ranks", *(name.replace("_", " ") for name in COLUMNS)], *cells, ["exponent", *(number(powers[name], 2) for name in COLUMNS)]])
+        names = ("elements", "facets", "rows")
+        lines += ["Largest by mean:", ""]
+        lines += table([["ranks", *names], *([row["ranks"], *(number(row[f"{name}_imbalance"]) for name in names)] for row in rows)])
+
+
+FIGURES = (("contact", "force_mean"), ("contact", "impulse"), ("contact", "max_penetration"), ("bodies", "a", "kinetic"), ("bodies", "a", "potential"), ("bodies", "b", "kinetic"), ("bodies", "b", "potential"))
+
+
+def pick(summary, path):
+    for key in path:
+        summary = summary[key]
+    return summary
+
+
+def results(arguments, found, lines):
+    """The same figures on 1 to 16 ranks."""
+    size, rows = max(6, arguments.size // 3), []
+    reference, _ = run(arguments, boxes(size), 1, 60)
+    scale = pick(reference, ("bodies", "a", "kinetic"))
+    for ranks in [r for r in (2, 3, 5, 8, 16) if r <= arguments.ranks]:
+        summary, _ = run(arguments, boxes(size), ranks, 60)
+        differences = {}
+        for path in FIGURES:
+            value, wanted = pick(summary, path), pick(reference, path)
+            # energies are compared in parts of the kinetic energy, a depth in parts of an element, others in parts of themselves
+            unit = 0.1 / size if path[-1] == "max_penetration" else scale if path[0] == "bodies" else abs(wanted)
+            differences["/".join(path)] = abs(value - wanted) / unit if unit else abs(value)
+        rows.append({"ranks": ranks, "differences": differences, "largest": max(differences.values())})
+    found["results"] = {"size": size, "rows": rows}
+    lines += [f"## The same results: {size}x{size}x{2 * size} and 5/6 of that, explicit, 60 steps", "", "Largest relative difference of a figure from that on one rank.", ""]
+    lines += table([["ranks", "difference", "of"], *([row["ranks"], number(row["largest"], 2), max(row["differences"], key=row["differences"].get)] for row in rows)])
+
+
+def corner(arguments, found, lines):
+    """A small box on one corner of a large one: how facets and rows lie on 4 ranks, cut as by default, as a graph, and across the surface."""
+    size, rows = max(6, arguments.size // 2), []
+    ways = {
+        "default": (),
+        "graph": ("-a_mesh_division", "graph", "-b_mesh_division", "graph"),
+        "across the surface": ("-a_mesh_bricks", "2,2,1", "-b_mesh_bricks", "2,2,1"),
+    }
+    for name, more in ways.items():
+        summary, _ = run(arguments, boxes(size, corner=True), 4, 6, more)
+        ranks = summary["timing"]["ranks"]
+        rows.append({"division": name} | {key: ranks[key]["largest"] / ranks[key]["mean"] if ranks[key]["mean"] else None for key in ("elements", "facets", "rows")})
+    found["corner"] = {"size": size, "rows": rows}
+    lines += ["## Contact on one corner, 4 ranks: largest by mean", ""]
+    lines += table([["division", "elements", "facets", "rows"], *([row["division"], *(number(row[key]) for key in ("elements", "facets", "rows"))] for row in rows)])
+
+
+def bandwidth(arguments, processes):
+    """GB/s of all of so many processes at a time, each on a core of its own."""
+    cores = sorted(os.sched_getaffinity(0))
+    command = [str(arguments.build / "yardstick_memory"), "100", "2"]
+    running = [subprocess.Popen(["taskset", "-c", str(cores[k]), *command], stdout=subprocess.PIPE, text=True) for k in range(processes)]
+    outputs = [process.communicate()[0] for process in running]
+    if any(process.returncode for process in running):
+        raise RunError("yardstick_memory failed")
+    return sum(json.loads(output)["GB_per_s"] for output in outputs)
+
+
+def speed(arguments, found, lines):
+    """One rank against two, pinned to cores, in turn; beside the same without contact, and bandwidth of memory."""
+    lines += ["## One rank against two", ""]
+    if len(os.sched_getaffinity(0)) < 2:
+        lines += ["This machine has one core: not measured.", ""]
+        return
+    steps = (4, 24)
+    names = {"in contact": boxes(arguments.size), "without contact": boxes(arguments.size, contact=False)}
+    times = {name: {1: [], 2: []} for name in (*names, "memory")}
+    for _ in range(arguments.repeats):
+        for ranks in (1, 2):
+            times["memory"][ranks].append(bandwidth(arguments, ranks))
+            for name, options in names.items():
+                loops = [run(arguments, options, ranks, n, launcher=("--bind-to", "core"))[0]["timing"]["wall"] for n in steps]
+                times[name][ranks].append((loops[1] - loops[0]) / (steps[1] - steps[0]))
+    ratios = {name: [a / b for a, b in zip(times[name][1], times[name][2])] for name in names}
+    ratios["memory"] = [b / a for a, b in zip(times["memory"][1], times["memory"][2])]
+    found["speed"] = {"size": arguments.size, "times": times, "ratios": ratios}
+    ceiling = median(ratios["memory"])
+    lines += [f"Boxes of {arguments.size}x{arguments.size}x{2 * arguments.size} and 5/6 of that, explicit; ms of a step, {arguments.repeats} repeats in turn, median [smallest largest].", ""]
+    rows = [[name, *(spread([1e3 * t for t in times[name][r]]) for r in (1, 2)), spread(ratios[name]), number(median(ratios[name]) / ceiling)] for name in names]
+    rows.append(["memory (GB/s)", *(spread(times["memory"][r]) for r in (1, 2)), spread(ratios["memory"]), "1"])
+    lines += table([["", "1 rank", "2 ranks", "2 ranks are faster", "of memory's ceiling"], *rows])
+
+
+def draw(found, directory):
+    """Pictures of counts over ranks."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    for integrator in ("centraldifference", "alpha2"):
+        if integrator not in found:
+            continue
+        rows = found[integrator]["rows"]
+        figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
+        for axis, names, title in ((axes[0], ("messages", "bytes", "reductions"), "of one step, largest rank"), (axes[1], ("elements", "facets", "rows", "neighbours"), "on the largest rank")):
+            for name in names:
+                points = [(row["ranks"], row[name]) for row in rows if row[name]]
+                if points:
+                    axis.loglog(*zip(*points), "o-", label=name, base=2)
+            axis.set_yscale("log", base=10)
+            axis.set_xlabel("ranks")
+            axis.set_title(f"{integrator}: {title}")
+            axis.grid(True, which="both", alpha=0.3)
+            axis.legend()
+        figure.savefig(directory / f"counts-{integrator}.png", dpi=120)
+        plt.close(figure)
+        yield f"counts-{integrator}.png"
+
+
+def main():
+    arguments = command_line(
+        __doc__,
+        "impakt and yardstick_memory",
+        900,
+        ranks=(64, "most ranks"),
+        implicit=(16, "most ranks of implicit bodies"),
+        size=(24, "elements along the short edges of the first box"),
+        repeats=(5, "repeats of what is timed"),
+        texts={"only": (",".join(PARTS), "parts of the report"), "out": (str(ROOT / "out/scaling"), "directory of the report"), "mpiexec": ("mpiexec", "how to start a run on several ranks")},
+    )
+    os.environ.update({key: os.environ.get(key, value) for key, value in MPI.items()})
+    arguments.mpiexec = arguments.mpiexec.split()
+    wanted = arguments.only.split(",")
+    unknown = set(wanted) - set(PARTS)
+    if unknown:
+        sys.exit(f"ranks.py: --only {','.join(sorted(unknown))}: there are {', '.join(PARTS)}")
+    directory = Path(arguments.out)
+    directory.mkdir(parents=True, exist_ok=True)
+    about = {"machine": machine(), "build": build(arguments.build / "impakt")}
+    found, lines = {"about": about}, heading("Ranks", about)
+    try:
+        for part in PARTS:
+            if part in wanted:
+                print(f"{part} ...", flush=True)
+                globals()[part](arguments, found, lines)
+    except RunError as error:
+        print(f"ranks.py: a run failed: {error}", file=sys.stderr)
+        return 1
+    pictures = list(draw(found, directory))
+    lines += [f"![{name}]({name})" for name in pictures]
+    (directory / "report.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
+    (directory / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print("\n".join(lines))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
