@@ -139,6 +139,7 @@ typedef struct {
   PetscInt  *begin;     /* per pair: its first one; n_pairs + 1 */
   PetscReal *change;    /* by how much gaps are turned in the controller step [m] */
   PetscReal *stiffness; /* per pair: of both sides against a force on a row [N/m] */
+  PetscReal *edge;      /* per pair: of an element of the coarser body [m] */
   PetscReal *turned;    /* per row: what that adds to its gap at the end of the step [m] */
 } ContactTurns;
 

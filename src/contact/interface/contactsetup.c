@@ -89,6 +89,7 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
+  PetscCall(ContactOrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StatusLineTell("elements of body %s", ((PetscObject)contact->bodies[b])->name);
     PetscCall(BodySetUpDiscretization(contact->bodies[b]));

@@ -128,8 +128,8 @@ PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
 }
 
 /* The stiffness of both bodies of a pair against a force on a node [N/m]: in two dimensions their modulus times the thickness, in three
-   times the edge of an element */
-static PetscErrorCode GetStiffness(Contact contact, const ContactPair *pair, PetscReal *stiffness)
+   times the edge of an element. `edge` becomes the larger edge [m]. */
+static PetscErrorCode GetStiffness(Contact contact, const ContactPair *pair, PetscReal *stiffness, PetscReal *edge)
 {
   PetscReal softness = 0;
 
@@ -140,6 +140,7 @@ static PetscErrorCode GetStiffness(Contact contact, const ContactPair *pair, Pet
     PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &of_element));
     PetscCall(BodyGetElementSize(contact->bodies[pair->body[side]], &size));
     PetscCall(BodyGetCrossSection(contact->bodies[pair->body[side]], &thickness));
+    *edge = PetscMax(*edge, size);
     softness += 1 / (of_element * size * (contact->dim == 2 ? thickness : size));
   }
   *stiffness = 1 / softness;
@@ -152,13 +153,13 @@ PetscErrorCode ContactSetUpTurns(Contact contact)
   ContactTurns *turns = &contact->turns;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(contact->n_pairs + 1, &turns->begin, contact->n_pairs, &turns->stiffness));
+  PetscCall(PetscCalloc3(contact->n_pairs + 1, &turns->begin, contact->n_pairs, &turns->stiffness, contact->n_pairs, &turns->edge));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscInt n;
 
     PetscCall(TransferGetTurns(contact->pairs[p].transfer, &n, NULL, NULL, NULL, NULL));
     turns->begin[p + 1] = turns->begin[p] + n;
-    if (n) PetscCall(GetStiffness(contact, &contact->pairs[p], &turns->stiffness[p]));
+    if (n) PetscCall(GetStiffness(contact, &contact->pairs[p], &turns->stiffness[p], &turns->edge[p]));
   }
   turns->n = turns->begin[contact->n_pairs];
   PetscCall(PetscCalloc2(turns->n, &turns->change, contact->rows.n, &turns->turned));
@@ -168,7 +169,7 @@ PetscErrorCode ContactSetUpTurns(Contact contact)
 PetscErrorCode ContactDestroyTurns(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree2(contact->turns.begin, contact->turns.stiffness));
+  PetscCall(PetscFree3(contact->turns.begin, contact->turns.stiffness, contact->turns.edge));
   PetscCall(PetscFree2(contact->turns.change, contact->turns.turned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -44,22 +44,27 @@ static void Run(Simulation *simulation, const char options[], const char name[],
   ok(PetscArraycpy(answer->momentum, measures.momentum, 3));
 }
 
-/* To the last bit what the other order gives; signs alone follow the names. `turned`: the names of the runs are not in the same order. */
+/* To the last bit what the other order gives, or to round-off where ranks add in the order in which messages come; signs alone follow the
+   names. `turned`: the names of the runs are not in the same order. */
 static void check_same(const Answer *a, const Answer *b, PetscBool turned)
 {
   const PetscReal sign = turned ? -1 : 1;
+  PetscMPIInt     ranks;
+  PetscReal       off;
 
-  near(a->pair.force, b->pair.force, 0);
-  near(a->pair.gap, b->pair.gap, 0);
-  near(a->pair.area, b->pair.area, 0);
-  near(a->pair.normal_impulse, b->pair.normal_impulse, 0);
+  ok(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  off = ranks > 1 ? 1e-12 : 0;
+  near(a->pair.force, b->pair.force, off);
+  near(a->pair.gap, b->pair.gap, off);
+  near(a->pair.area, b->pair.area, off);
+  near(a->pair.normal_impulse, b->pair.normal_impulse, off);
   assert_int_equal(a->pair.active, b->pair.active);
   for (PetscInt d = 0; d < 3; d++) {
-    near(a->normal[d], sign * b->normal[d], 0);
-    near(a->pair.force_vector[d], sign * b->pair.force_vector[d], 0);
-    near(a->pair.moment[d], sign * b->pair.moment[d], 0);
-    near(a->pair.impulse[d], sign * b->pair.impulse[d], 0);
-    near(a->momentum[d], b->momentum[d], 0);
+    near(a->normal[d], sign * b->normal[d], off);
+    near(a->pair.force_vector[d], sign * b->pair.force_vector[d], off);
+    near(a->pair.moment[d], sign * b->pair.moment[d], off);
+    near(a->pair.impulse[d], sign * b->pair.impulse[d], off);
+    near(a->momentum[d], b->momentum[d], off);
   }
 }
 

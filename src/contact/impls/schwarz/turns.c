@@ -299,20 +299,6 @@ PetscErrorCode SchwarzApplyTurned(Contact contact, const PetscScalar f[], PetscS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far a pair may be turned [m] */
-static PetscErrorCode GetLargestTurn(Contact contact, PetscInt p, PetscReal *largest)
-{
-  PetscFunctionBegin;
-  *largest = 0;
-  for (PetscInt side = 0; side < 2; side++) {
-    PetscReal edge;
-
-    PetscCall(BodyGetElementSize(contact->bodies[contact->pairs[p].body[side]], &edge));
-    *largest = PetscMax(*largest, LARGEST * edge);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* After Newton's step Y: pairs whose gaps it would turn too far are not turned in this controller step, and the iteration begins anew */
 PetscErrorCode SchwarzLimitTurns(Contact contact, Vec Y)
 {
@@ -330,13 +316,12 @@ PetscErrorCode SchwarzLimitTurns(Contact contact, Vec Y)
   PetscCall(SumOverRanks(contact, n, step));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const PetscInt begin = contact->turns.begin[p], end = contact->turns.begin[p + 1];
-    PetscReal      turn[2] = {0, 0}, square = 0, largest;
+    PetscReal      turn[2] = {0, 0}, square = 0;
 
     if (begin == end || schwarz->turns.fixed[p]) continue;
-    PetscCall(GetLargestTurn(contact, p, &largest));
     PetscCall(TransferGetTurns(contact->pairs[p].transfer, NULL, NULL, NULL, NULL, turn));
     for (PetscInt t = begin; t < end; t++) square += PetscSqr(turn[t - begin] + contact->turns.change[t] - step[t]);
-    if (square <= PetscSqr(largest)) continue;
+    if (square <= PetscSqr(LARGEST * contact->turns.edge[p])) continue;
     schwarz->turns.fixed[p] = any = PETSC_TRUE;
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
@@ -383,12 +368,10 @@ PetscErrorCode SchwarzJoinTurned(Contact contact, PetscBool *again)
   PetscFunctionBegin;
   *again = PETSC_FALSE;
   for (PetscInt p = 0; p < contact->n_pairs && contact->turns.n; p++) {
-    PetscReal largest;
     PetscBool joined;
 
     if (!schwarz->turns.fixed[p] || schwarz->turns.joined[p]) continue;
-    PetscCall(GetLargestTurn(contact, p, &largest));
-    PetscCall(JoinNext(contact, p, largest, &joined));
+    PetscCall(JoinNext(contact, p, LARGEST * contact->turns.edge[p], &joined));
     schwarz->turns.joined[p] = PETSC_TRUE;
     schwarz->turns.fixed[p]  = (PetscBool)!joined;
     *again                   = (PetscBool)(*again || joined);
