@@ -1,4 +1,4 @@
-"""What contact costs: two bars of hexahedra that meet, implicit and explicit, and contact alone for surfaces from 10^2 to 10^5 facets.
+"""What contact costs: two bars of hexahedra that meet, implicit and explicit, beside none, and contact alone for surfaces from 10^2 to 10^5 facets.
 
     python tests/scaling/contact.py --build build [--largest 100000]
 
@@ -12,11 +12,12 @@ import sys
 import tempfile
 from pathlib import Path
 
-from bench import command_line, execute, print_table, read_summary, report
+from bench import ROOT, command_line, execute, print_table, read_summary, report
 
 CALCULIX = {"implicit": 1270.0, "explicit": 256.0}  # s
 FASTER = {"implicit": 20.0, "explicit": 50.0}
 SHARE = {"implicit": 0.10, "explicit": 0.15}
+DEARER = 1.25  # a run in contact beside one without, at most
 
 
 def bars(faces, length, speed, gap, more):
@@ -68,6 +69,19 @@ def whole_runs(build, limit):
         yield [name, f"{cpu:.2f}", f"{CALCULIX[name]:g}", f"{ratio:.0f}", f"{100 * share:.1f} %", f"{FASTER[name]:g} times, {100 * SHARE[name]:g} %: {held}"]
 
 
+def many_elements(build, limit):
+    """Row of the table of options/bars-hex.opts, in contact and with the bars apart."""
+    words = {"options_file": ROOT / "options" / "bars-hex.opts", "progress": 0}
+    seconds, counts = [], []
+    for more in ({}, {"right_translate": "0.01,0,0"}):
+        summary, events = run(build, words | more, limit)
+        seconds.append(summary["timing"]["cpu"])
+        counts.append(events)
+    ratio = seconds[0] / seconds[1]
+    shares = [f"{100 * counts[0].get(name, 0) / counts[0]['ContactStep']:.1f} %" for name in ("BodyForce", "MatSolve", "ContactUpdate")]
+    return [f"{seconds[0]:.1f}", f"{seconds[1]:.1f}", f"{ratio:.2f}", *shares, f"{DEARER} times: {'held' if ratio <= DEARER else 'not held'}"]
+
+
 def surfaces(build, largest, limit):
     """Rows of the table of growing surfaces: microseconds of contact per facet and step, in steps that all are in contact, the first of them with
     whatever is made once: the bars part after 20."""
@@ -89,6 +103,8 @@ def print_tables(arguments):
     build, limit = arguments.build, arguments.time_limit
     print("\nTwo bars of 10 x 10 x 100 hex8, 200 implicit or 1000 explicit steps: CPU time with set-up [s].\n")
     print_table([["steps", "Impakt", "CalculiX 2.20", "ratio", "contact", "bounds"], *whole_runs(build, limit)])
+    print("\nTwo bars of 96 x 48 x 48 and 80 x 40 x 40 hex8, 200 explicit steps in contact and apart: CPU time [s], and shares of the steps in contact.\n")
+    print_table([["in contact", "apart", "ratio", "elements", "layers and interface", "search", "bound"], many_elements(build, limit)])
     print("\nContact of two square surfaces, explicit bodies: microseconds per facet and step.\n")
     print_table([["facets", "search and transfer", "active set, sweeps", "bodies", "sweeps"], *surfaces(build, arguments.largest, limit)])
 
