@@ -1,7 +1,6 @@
 /* The program: everything from options, run, report. */
 #include <impakt.h>
 #include <io/stopsignals.h>
-#include <signal.h>
 #include <sys/commandline.h>
 #include <sys/example.h>
 #include <sys/help.h>
@@ -74,8 +73,6 @@ static PetscErrorCode Start(CommandLine *line)
   PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   StopSignalsBegin(rank);
-  (void)signal(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
-  (void)signal(SIGXFSZ, SIG_IGN); /* a file that becomes larger than the shell allows is an error with a message, not the end */
   PetscCall(CommandLineInsert(line));
   PetscCall(OptionsCheckValues());
   return PETSC_SUCCESS;

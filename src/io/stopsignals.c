@@ -64,8 +64,8 @@ static PetscBool Handles(int number, void (*handler)(int))
 }
 
 /* From now on signals end the process with a line that says that there is nothing to continue; but SIGUSR1 is taken note of, and asks for a
-   checkpoint after the first step. An interrupt that the process ignores, as one does that a shell has started in the background, stays
-   ignored. */
+   checkpoint after the first step, and two others no longer end it. An interrupt that the process ignores, as one does that a shell has
+   started in the background, stays ignored. */
 void StopSignalsBegin(PetscMPIInt rank)
 {
   void (*const end)(int) = rank ? EndOther : EndFirst;
@@ -73,6 +73,8 @@ void StopSignalsBegin(PetscMPIInt rank)
   if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, end);
   Handle(SIGTERM, end);
   Handle(SIGUSR1, Note);
+  Handle(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
+  Handle(SIGXFSZ, SIG_IGN); /* a file that becomes larger than the shell allows is an error with a message, not the end */
 }
 
 /* From now on signals are taken note of; an interrupt that is ignored stays so, and one for a checkpoint that has come already is not lost
