@@ -35,6 +35,7 @@ struct _n_InterfaceOperator {
   PetscLogDouble product_flops, spent, dense_flops; /* of one product; of all iterations so far; of dense matrices that are put off, or 0 */
 };
 
+PETSC_INTERN PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator, PetscInt);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);
@@ -45,6 +46,12 @@ PETSC_INTERN void           InterfaceDirectForget(InterfaceDirect);
 PETSC_INTERN PetscErrorCode InterfaceDirectSolve(InterfaceOperator, const PetscScalar[], PetscScalar[], PetscBool *);
 
 PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceDirect, Checkpoint);
+
+/* Whether S has sparse factors: it has no other levels than the first where all bodies answer by massless layers */
+static inline PetscBool InterfaceIsDirect(InterfaceOperator op)
+{
+  return (PetscBool)(op->direct && !op->matrix);
+}
 
 /* Whether a row of this rank is solved for at present */
 static inline PetscBool InterfaceIsIn(InterfaceOperator op, PetscInt i)

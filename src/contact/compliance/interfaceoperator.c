@@ -1,10 +1,5 @@
-/* The rows of S and its dense form; conjugate gradients are in interfaceiteration.c. */
+/* S, and its dense form; which rows it has is in interfacerows.c, conjugate gradients are in interfaceiteration.c. */
 #include "interfaceimpl.h"
-
-/* Dense matrices that cost no more than so many products with S are made at once. Two cubes that come into contact with all 961 and 625
-   nodes of a face each take 55 products a controller step where conjugate gradients do without, most of them in sweeps that prescribe
-   displacements, and their dense matrices cost 75. */
-#define AT_ONCE 100
 
 PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings *settings, InterfaceOperator *operator)
 {
@@ -50,122 +45,6 @@ PetscErrorCode InterfaceOperatorSetMatrix(InterfaceOperator op, Mat matrix)
   op->factored = PETSC_FALSE;
   for (PetscInt m = 0; m < INTERFACE_MAPS; m++) op->assembled[m] = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MakeRoom(InterfaceOperator op, PetscInt n)
-{
-  PetscFunctionBegin;
-  if (n <= op->room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(op->rows, op->body_rows, op->places, op->listed[0], op->listed[1]));
-  op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->rows.n_all));
-  PetscCall(PetscMalloc5(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->places, op->room, &op->listed[0], op->room,
-                         &op->listed[1]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The listed rows that concern a body, if it answers to forces on them, into body_rows */
-static PetscInt ListBodyRows(InterfaceOperator op, PetscInt b)
-{
-  PetscInt n = 0;
-
-  for (PetscInt i = 0; i < op->n_known && op->feels[b]; i++) {
-    const ContactPair *pair = &op->contact->pairs[op->contact->ranks.row_pair[op->rows[i]]];
-
-    if (pair->body[0] == b || pair->body[1] == b) op->body_rows[n++] = op->rows[i];
-  }
-  return n;
-}
-
-/* Operations that one product with S takes, and those that it takes to have a dense matrix, its columns and its factors, in its place */
-static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, PetscLogDouble *dense)
-{
-  PetscFunctionBegin;
-  *product = 0;
-  *dense   = DenseFactorFlops(op->n);
-  for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
-    const PetscInt n = ListBodyRows(op, b);
-    PetscLogDouble apply, extend;
-
-    PetscCall(BodyGetComplianceFlops(op->contact->bodies[b], n, op->body_rows, &apply, &extend));
-    if (op->feels[b]) *product += apply;
-    *dense += extend;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether S has sparse factors: it has no other levels than the first where all bodies answer by massless layers */
-static PetscBool IsDirect(InterfaceOperator op)
-{
-  return (PetscBool)(op->direct && !op->matrix);
-}
-
-/* Whether matrices are to be dense: where they are small or cost little, and else, without sparse factors, once iterations have cost as
-   much, which with an unknown number of steps to come is never more than twice as dear as the better of the two. Where bodies make substeps
-   a product is not all of S, and iterations take more sweeps: there matrices are dense up to the limit. */
-static PetscErrorCode ChooseDense(InterfaceOperator op)
-{
-  const PetscInt size     = op->n_known * op->levels;
-  PetscBool      substeps = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  op->dense_flops = 0;
-  op->dense       = (PetscBool)(size <= op->settings.dense_limit);
-  if (!op->dense || size <= op->settings.few || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
-  if (IsDirect(op)) {
-    op->dense = PETSC_FALSE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
-    PetscInt n;
-
-    PetscCall(BodyGetSubsteps(op->contact->bodies[b], &n));
-    if (n > 1) substeps = PETSC_TRUE;
-  }
-  if (substeps) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CountFlops(op, &op->product_flops, &op->dense_flops));
-  op->dense = (PetscBool)(op->dense_flops <= AT_ONCE * op->product_flops || op->spent >= op->dense_flops);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Lists the rows of the problem: `marks` of this rank's rows. Where matrices are dense, the bodies get to know the rows that are solved for
-   or known; else nothing but the marks is kept. Collective. */
-PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMark marks[], PetscInt levels)
-{
-  Contact  contact  = op->contact;
-  PetscInt count[3] = {0, 0, 0}, next[3];
-
-  PetscFunctionBegin;
-  op->levels   = levels;
-  op->factored = PETSC_FALSE;
-  for (PetscInt m = 0; m < INTERFACE_MAPS; m++) op->assembled[m] = PETSC_FALSE;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    op->marks[i]                  = marks[i];
-    contact->ranks.mine_active[i] = (int)marks[i];
-  }
-  PetscCallMPI(MPI_Allgatherv(contact->ranks.mine_active, (PetscMPIInt)contact->rows.n, MPI_INT, contact->ranks.all_active,
-                              contact->ranks.counts, contact->ranks.offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt i = 0; i < contact->rows.n_all; i++) count[contact->ranks.all_active[i]]++;
-  op->n       = count[INTERFACE_SOLVED];
-  op->n_known = op->n + count[INTERFACE_KNOWN];
-  PetscCall(MakeRoom(op, op->n_known));
-  next[INTERFACE_SOLVED] = 0;
-  next[INTERFACE_KNOWN]  = op->n;
-  for (PetscInt i = 0; i < contact->rows.n_all; i++)
-    if (contact->ranks.all_active[i]) op->rows[next[contact->ranks.all_active[i]]++] = i;
-  PetscCall(ChooseDense(op));
-  if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscInt n = ListBodyRows(op, b);
-
-    PetscCall(BodyExtendCompliance(contact->bodies[b], n, op->body_rows));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether iterations have cost as much by now as dense matrices of these rows would: then it is time to set the rows again */
-PetscBool InterfaceOperatorWantsDense(InterfaceOperator op)
-{
-  return (PetscBool)(!op->dense && op->dense_flops > 0 && op->spent >= op->dense_flops);
 }
 
 /* Any of: how many rows are solved for, which, and whether matrices are dense */
@@ -357,7 +236,7 @@ PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[
     PetscBool solved = PETSC_FALSE;
 
     if (!op->factored) PetscCall(InterfaceOperatorFactor(op, NULL, NULL));
-    if (IsDirect(op)) PetscCall(InterfaceDirectSolve(op, x, y, &solved));
+    if (InterfaceIsDirect(op)) PetscCall(InterfaceDirectSolve(op, x, y, &solved));
     if (!solved) PetscCall(InterfaceOperatorIterate(op, x, y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -406,7 +285,7 @@ PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoin
   PetscCall(CheckpointVisitBools(checkpoint, "dense", PETSC_STATIC_ARRAY_LENGTH(flags), flags));
   PetscCall(CheckpointVisitReals(checkpoint, "flops", PETSC_STATIC_ARRAY_LENGTH(flops), flops));
   if (loads) {
-    PetscCall(MakeRoom(op, sizes[2]));
+    PetscCall(InterfaceOperatorMakeRoom(op, sizes[2]));
     op->levels        = sizes[0];
     op->n             = sizes[1];
     op->n_known       = sizes[2];
