@@ -280,15 +280,12 @@ PetscErrorCode CheckpointReadArray(const CheckpointFile *file, const char name[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An array of the first rank to every rank, in blocks of rows; collective */
+/* An array of the first rank to every rank, in blocks of rows; of the others it is NULL before. Collective. */
 PetscErrorCode CheckpointShareArray(MPI_Comm comm, PetscInt size[2], PetscReal **values)
 {
-  PetscMPIInt rank;
-
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Bcast(size, 2, MPIU_INT, 0, comm));
-  if (rank && size[0]) PetscCall(PetscMalloc1(size[0] * size[1], values));
+  if (!*values && size[0]) PetscCall(PetscMalloc1(size[0] * size[1], values));
   for (PetscInt row = 0; row < size[0]; row += 1 << 20)
     PetscCallMPI(MPI_Bcast(*values + row * size[1], (PetscMPIInt)(PetscMin(1 << 20, size[0] - row) * size[1]), MPIU_REAL, 0, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
