@@ -14,7 +14,7 @@ cores := $(shell nproc)
 ifneq ($(origin PETSC_ROOT),command line)
 
 goals := $(if $(MAKECMDGOALS),$(filter-out help clean,$(MAKECMDGOALS)),all)
-without_petsc := format lint
+without_petsc := format lint bench-compare %.json
 
 .PHONY: made help clean $(goals)
 $(goals): made ; @:
@@ -115,7 +115,7 @@ ifneq ($(filter analyse coverage,$(MAKECMDGOALS)),)
 analysis := $(dir $(shell .setup/python --analysis))
 endif
 
-.PHONY: all run paper test test-all bench scaling docs format lint analyse coverage fuzz fuzzers install force
+.PHONY: all run paper test test-all bench bench-compare scaling docs format lint analyse coverage fuzz fuzzers install force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units) $(replays))
 
@@ -153,10 +153,15 @@ test test-all: $(BUILD)/impakt $(units) $(replays)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
 	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long")
 
-bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time, memory and scaling, beside plain C yardsticks
-	$(PYTHON) tests/scaling/bench.py --build $(BUILD)
-	$(PYTHON) tests/scaling/solids.py --build $(BUILD)
-	$(PYTHON) tests/scaling/contact.py --build $(BUILD)
+# BENCH="--largest 10000" makes it shorter
+bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time and memory, beside plain C yardsticks: a report in out/bench
+	$(PYTHON) tests/scaling/bench.py --build $(BUILD) --json out/bench/bars.json
+	$(PYTHON) tests/scaling/solids.py --build $(BUILD) --json out/bench/solids.json $(BENCH)
+	$(PYTHON) tests/scaling/contact.py --build $(BUILD) --json out/bench/contact.json $(BENCH)
+	$(PYTHON) tests/scaling/benchreport.py --program $(BUILD)/impakt --out out/bench out/bench/bars.json out/bench/solids.json out/bench/contact.json
+
+bench-compare: ## what got slower since an earlier report: make bench-compare OLD.json, a copy of its out/bench/report.json
+	@$(PYTHON) tests/scaling/benchreport.py --out out/bench --compare $(or $(firstword $(filter %.json,$(MAKECMDGOALS))),OLD.json)
 
 # RANKS="--ranks 16 --size 12 --only counts" makes it shorter
 scaling: $(BUILD)/impakt $(BUILD)/yardstick_memory ## counts on up to 64 ranks, one rank against two, the same results: a report in out/scaling

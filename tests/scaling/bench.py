@@ -143,11 +143,18 @@ def command_line(description, programs, time_limit, texts=(), **more):
         parser.add_argument(f"--{name}", type=int, default=default, help=f"{meaning} (default: {default})")
     for name, (default, meaning) in dict(texts).items():
         parser.add_argument(f"--{name}", default=default, help=f"{meaning} (default: {default})")
+    parser.add_argument("--json", type=Path, help="file for the figures, from which benchreport.py makes a report")
     arguments = parser.parse_args()
+    arguments.measured = []
     if any(getattr(arguments, name) < 1 for name in more):
         parser.error(f"{' and '.join(f'--{name}' for name in more)} must be at least 1")
     arguments.build = arguments.build.resolve()
     return arguments
+
+
+def measured(arguments, name, unit, values, yardstick=(), what=""):
+    """Keeps repeats of a figure, of which less is better, and of what it is beside: `what`, measured in turn with it or known."""
+    arguments.measured.append({"name": name, "unit": unit, "values": list(values), "yardstick": list(yardstick), "beside": what})
 
 
 def report(print_tables, arguments):
@@ -157,6 +164,9 @@ def report(print_tables, arguments):
     except RunError as error:
         print(f"{Path(sys.argv[0]).name}: a run failed: {error}", file=sys.stderr)
         return 1
+    if arguments.json:
+        arguments.json.parent.mkdir(parents=True, exist_ok=True)
+        arguments.json.write_text(json.dumps(arguments.measured, indent=1), encoding="utf-8")
     return 0
 
 
@@ -172,6 +182,10 @@ def print_tables(arguments):
         summaries["default"].append(run_program(build, DEFAULT_RUN, limit))
 
     print(f"Median [minimum maximum] of {arguments.repeats} runs; CPU time of the time loop only, set-up apart.\n")
+    for name, _, _ in CASES:
+        times, references = [run["timing"]["cpu"] for run in summaries[name]], [run["cpu"] for run in yardsticks[name]]
+        measured(arguments, f"bars in 1-D, {name}", "s", times, references, "yardstick.c")
+    measured(arguments, "bars in 1-D, default run", "s", [run["timing"]["cpu"] for run in summaries["default"]])
     header = ["case", "program, s", "set-up, s", "yardstick, s", "ratio", "bound", "verdict"]
     header += ["sweeps max / mean", "yardstick's"]
     rows = [ratio_row(name, bound, yardsticks[name], summaries[name]) for name, _, bound in CASES]

@@ -12,7 +12,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from bench import ROOT, command_line, execute, print_table, read_summary, report
+from bench import ROOT, command_line, execute, measured, print_table, read_summary, report
 
 CALCULIX = {"implicit": 1270.0, "explicit": 256.0}  # s
 FASTER = {"implicit": 20.0, "explicit": 50.0}
@@ -53,7 +53,7 @@ def contact_seconds(events):
     return events["ContactStep"] - events["BodyIntegrate"] - events.get("BodyCompliance", 0.0)
 
 
-def whole_runs(build, limit):
+def whole_runs(arguments, build, limit):
     """Rows of the table of the two whole runs."""
     cases = {
         "implicit": {"time_step": 1e-6, "time_end": 2e-4},
@@ -66,10 +66,12 @@ def whole_runs(build, limit):
         share = contact_seconds(events) / timing["wall"]
         ratio = CALCULIX[name] / cpu
         held = "held" if ratio >= FASTER[name] and share <= SHARE[name] else "not held"
+        measured(arguments, f"two bars of hexahedra, {name}", "s", [cpu], [CALCULIX[name]], "CalculiX 2.20, not measured here")
+        measured(arguments, f"contact beside all of the time loop, two bars of hexahedra, {name}", "1", [share])
         yield [name, f"{cpu:.2f}", f"{CALCULIX[name]:g}", f"{ratio:.0f}", f"{100 * share:.1f} %", f"{FASTER[name]:g} times, {100 * SHARE[name]:g} %: {held}"]
 
 
-def many_elements(build, limit):
+def many_elements(arguments, build, limit):
     """Row of the table of options/bars-hex.opts, in contact and with the bars apart."""
     words = {"options_file": ROOT / "options" / "bars-hex.opts", "progress": 0}
     seconds, counts = [], []
@@ -78,11 +80,12 @@ def many_elements(build, limit):
         seconds.append(summary["timing"]["cpu"])
         counts.append(events)
     ratio = seconds[0] / seconds[1]
+    measured(arguments, "two bars of 3.5e5 hexahedra, explicit, in contact", "s", [seconds[0]], [seconds[1]], "the same bars apart")
     shares = [f"{100 * counts[0].get(name, 0) / counts[0]['ContactStep']:.1f} %" for name in ("BodyForce", "MatSolve", "ContactUpdate")]
     return [f"{seconds[0]:.1f}", f"{seconds[1]:.1f}", f"{ratio:.2f}", *shares, f"{DEARER} times: {'held' if ratio <= DEARER else 'not held'}"]
 
 
-def surfaces(build, largest, limit):
+def surfaces(arguments, build, largest, limit):
     """Rows of the table of growing surfaces: microseconds of contact per facet and step, in steps that all are in contact, the first of them with
     whatever is made once: the bars part after 20."""
     steps = 18
@@ -95,6 +98,8 @@ def surfaces(build, largest, limit):
         summary, events = run(build, bars((side, side, 2), 2 * size, 10, 0.0, more), limit)
         per_facet = 1e6 / steps / side**2
         outer = contact_seconds(events) - events["ContactUpdate"]
+        measured(arguments, f"search and transfer, {side**2} facets, per facet and step", "us", [events["ContactUpdate"] * per_facet])
+        measured(arguments, f"active set and sweeps, {side**2} facets, per facet and step", "us", [outer * per_facet])
         yield [f"{side**2}", f"{events['ContactUpdate'] * per_facet:.2f}", f"{outer * per_facet:.2f}", f"{(events['BodyIntegrate'] + events.get('BodyCompliance', 0)) * per_facet:.1f}", f"{summary['schwarz']['mean_contact_steps']:.2f}"]
 
 
@@ -102,11 +107,11 @@ def print_tables(arguments):
     """Run everything and print the tables."""
     build, limit = arguments.build, arguments.time_limit
     print("\nTwo bars of 10 x 10 x 100 hex8, 200 implicit or 1000 explicit steps: CPU time with set-up [s].\n")
-    print_table([["steps", "Impakt", "CalculiX 2.20", "ratio", "contact", "bounds"], *whole_runs(build, limit)])
+    print_table([["steps", "Impakt", "CalculiX 2.20", "ratio", "contact", "bounds"], *whole_runs(arguments, build, limit)])
     print("\nTwo bars of 96 x 48 x 48 and 80 x 40 x 40 hex8, 200 explicit steps in contact and apart: CPU time [s], and shares of the steps in contact.\n")
-    print_table([["in contact", "apart", "ratio", "elements", "layers and interface", "search", "bound"], many_elements(build, limit)])
+    print_table([["in contact", "apart", "ratio", "elements", "layers and interface", "search", "bound"], many_elements(arguments, build, limit)])
     print("\nContact of two square surfaces, explicit bodies: microseconds per facet and step.\n")
-    print_table([["facets", "search and transfer", "active set, sweeps", "bodies", "sweeps"], *surfaces(build, arguments.largest, limit)])
+    print_table([["facets", "search and transfer", "active set, sweeps", "bodies", "sweeps"], *surfaces(arguments, build, arguments.largest, limit)])
 
 
 if __name__ == "__main__":
