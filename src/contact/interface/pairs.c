@@ -337,6 +337,6 @@ PetscErrorCode ContactOrderBodies(Contact contact)
   }
   PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a "
-             "instead of a:b)");
+             "instead of a:b, or another side in -contact_rows)");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -167,36 +167,44 @@ static void AddBox(const char name[], const char faces[], const char lower[], co
   AddOptions(options);
 }
 
-/* Each pair has a side of its own. Three bodies each of which is finer where it meets the next: the last pair is turned back. */
-static void pairs_have_sides_of_their_own(void **state)
+static void check_rows(Simulation *simulation, PetscInt n, const PetscInt rows[])
 {
-  static const PetscInt rows[] = {0, 1, 1}, circle[] = {1, 1, 0};
-  Simulation           *simulation = (Simulation *)*state;
-  ContactRowSide        side;
-  PetscInt              found;
+  for (PetscInt p = 0; p < n; p++) {
+    PetscInt found;
 
-  AddBox("a", "1,4", "0,0", "1,1"); /* fine at x = 1, coarse at y = 1 */
-  AddBox("b", "3,2", "1.01,0", "2.01,1");
-  AddBox("c", "2,2", "0,1.01", "2.01,2.01");
-  AddOptions("-bodies a,b,c -contact_pairs a.ymax:c.ymin,b.ymax:c.ymin,b.xmin:a.xmax -time_step 0.01 -time_end 0.1 -contact_rows "
-             "first,second,finer");
-  ok(SimulationCreate(simulation));
-  for (PetscInt p = 0; p < 3; p++) {
     ok(ContactGetPairRowSide(simulation->contact, p, &found));
     assert_int_equal(found, rows[p]);
   }
+}
+
+/* Each pair has a side of its own, and circles that come of that are turned back or refused */
+static void pairs_have_sides_of_their_own(void **state)
+{
+  static const PetscInt rows[] = {0, 1, 1}, finer[] = {1, 0}, circle[] = {0, 0, 0};
+  Simulation           *simulation = (Simulation *)*state;
+  ContactRowSide        side;
+
+  AddBox("a", "1,4", "0,0", "1,1"); /* fine at x = 1, coarse at y = 1 */
+  AddBox("b", "3,2", "1.01,0", "2.01,1");
+  AddBox("c", "3,2", "0,1.01", "2.01,2.01");
+  AddOptions("-bodies a,b,c -time_step 0.01 -time_end 0.1 -contact_pairs a.ymax:c.ymin,b.ymax:c.ymin,b.xmin:a.xmax -contact_rows "
+             "first,second,finer");
+  ok(SimulationCreate(simulation));
+  check_rows(simulation, 3, rows);
   ok(ContactGetRowSide(simulation->contact, &side));
   assert_int_equal(side, CONTACT_ROW_SIDE_FIRST);
   ok(ContactStep(simulation->contact));
   refused(PETSC_ERR_ARG_WRONGSTATE, "before ContactSetUp", ContactSetRowSide(simulation->contact, CONTACT_ROW_SIDE_FINER));
-  /* c is finer than a where they meet, a than b, and b than c */
-  SimulationRepeat(simulation, "-contact_pairs a.ymax:c.ymin,b.xmin:a.xmax,c.ymin:b.ymax -contact_rows finer -c_dm_plex_box_faces 3,2");
+  /* where they meet c is finer than a, a than b, and b than c: the pair that has been turned round is turned back */
+  SimulationRepeat(simulation, "-contact_pairs a.ymax:c.ymin,a.xmax:b.xmin -contact_rows finer");
+  check_rows(simulation, 2, finer);
+  SimulationRepeat(simulation, "-contact_pairs a.ymax:c.ymin,a.xmax:b.xmin,b.ymax:c.ymin");
+  check_rows(simulation, 3, circle);
   ok(ContactGetRowSide(simulation->contact, &side));
   assert_int_equal(side, CONTACT_ROW_SIDE_FINER);
-  for (PetscInt p = 0; p < 3; p++) {
-    ok(ContactGetPairRowSide(simulation->contact, p, &found));
-    assert_int_equal(found, circle[p]);
-  }
+  ok(ControllerDestroy(&simulation->controller));
+  AddOptions("-contact_rows second,first,first");
+  refused(PETSC_ERR_USER_INPUT, "circle|-contact_rows", SimulationCreate(simulation));
 }
 
 static void bad_sides_are_refused(void **state)
