@@ -12,7 +12,15 @@ import sys
 import tempfile
 from pathlib import Path
 
-from bench import ROOT, command_line, execute, measured, print_table, read_summary, report
+from bench import (
+    ROOT,
+    command_line,
+    execute,
+    measured,
+    print_table,
+    read_summary,
+    report,
+)
 
 CALCULIX = {"implicit": 1270.0, "explicit": 256.0}  # s
 FASTER = {"implicit": 20.0, "explicit": 50.0}
