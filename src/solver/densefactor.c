@@ -1,6 +1,9 @@
 #include "densefactor.h"
 #include <petscblaslapack.h>
 
+/* Of a pivot, in parts of the largest entry of its column */
+#define ROUND_OFF (16 * PETSC_MACHINE_EPSILON)
+
 /* Gives the matrix an order; its entries are undefined afterwards. Room grows by doubling, up to `most`, so that an interface whose active
    rows become more step by step does not allocate in each of them. */
 PetscErrorCode DenseFactorResize(DenseFactor *factor, PetscInt n, PetscInt most)
@@ -9,10 +12,29 @@ PetscErrorCode DenseFactorResize(DenseFactor *factor, PetscInt n, PetscInt most)
   factor->n        = n;
   factor->factored = PETSC_FALSE;
   if (n <= factor->room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2(factor->values, factor->pivots));
+  PetscCall(PetscFree3(factor->values, factor->pivots, factor->largest));
   factor->room = PetscMax(n, PetscMin(2 * factor->room, most));
-  PetscCall(PetscMalloc2(factor->room * factor->room, &factor->values, factor->room, &factor->pivots));
+  PetscCall(PetscMalloc3(factor->room * factor->room, &factor->values, factor->room, &factor->pivots, factor->room, &factor->largest));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest entry of each column, without sign: what its pivot is measured by */
+static void FindLargest(DenseFactor *factor)
+{
+  for (PetscInt j = 0; j < factor->n; j++) {
+    factor->largest[j] = 0;
+    for (PetscInt i = 0; i < factor->n; i++)
+      factor->largest[j] = PetscMax(factor->largest[j], PetscAbsScalar(factor->values[j * factor->n + i]));
+  }
+}
+
+/* Whether a pivot is no more than the round-off of its column: of rows that depend on each other some pivot is zero but for that. Entries
+   that are not numbers are not singular: the step in which they come about fails by itself. */
+static PetscBool HasNoPivot(const DenseFactor *factor)
+{
+  for (PetscInt j = 0; j < factor->n; j++)
+    if (PetscAbsScalar(factor->values[j * factor->n + j]) <= ROUND_OFF * factor->largest[j]) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* Replaces the matrix by its LU factors; `singular`: it has none */
@@ -22,11 +44,12 @@ PetscErrorCode DenseFactorCompute(DenseFactor *factor, PetscBool *singular)
 
   PetscFunctionBegin;
   PetscCall(PetscBLASIntCast(factor->n, &n));
+  FindLargest(factor);
   if (n == 1) info = factor->values[0] == 0 || PetscIsInfOrNanScalar(factor->values[0]);
   else if (n) PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, factor->values, &n, factor->pivots, &info));
   PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrf info %d", (int)info);
   PetscCall(PetscLogFlops(DenseFactorFlops(factor->n)));
-  *singular        = (PetscBool)(info > 0);
+  *singular        = (PetscBool)(info > 0 || HasNoPivot(factor));
   factor->factored = (PetscBool) !*singular;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -65,7 +88,7 @@ PetscErrorCode DenseFactorVisit(DenseFactor *factor, PetscInt most, Checkpoint c
 PetscErrorCode DenseFactorDestroy(DenseFactor *factor)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree2(factor->values, factor->pivots));
+  PetscCall(PetscFree3(factor->values, factor->pivots, factor->largest));
   factor->n = factor->room = 0;
   factor->factored         = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -9,6 +9,7 @@ typedef struct {
   PetscBool     factored;
   PetscScalar  *values;
   PetscBLASInt *pivots;
+  PetscReal    *largest; /* work space: of each column */
 } DenseFactor;
 
 PETSC_INTERN PetscErrorCode DenseFactorResize(DenseFactor *, PetscInt, PetscInt);

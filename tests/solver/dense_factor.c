@@ -70,6 +70,27 @@ static void tells_a_singular_matrix(void **state)
   ok(DenseFactorDestroy(&factor));
 }
 
+/* Two rows of the same node and direction, whose entries differ by round-off in one place, in whatever unit */
+static void tells_a_matrix_that_is_singular_but_for_round_off(void **state)
+{
+  static const PetscReal units[] = {1e-30, 1, 1e30};
+  DenseFactor            factor  = {0};
+
+  (void)state;
+  for (size_t k = 0; k < 3; k++) {
+    PetscBool singular;
+
+    for (PetscInt apart = 0; apart < 2; apart++) {
+      ok(DenseFactorResize(&factor, 2, MOST));
+      for (PetscInt e = 0; e < 4; e++) factor.values[e] = 0.1 * units[k];
+      factor.values[3] *= 1 + (apart ? 1e-12 : PETSC_MACHINE_EPSILON);
+      ok(DenseFactorCompute(&factor, &singular));
+      assert_int_equal(singular, !apart);
+    }
+  }
+  ok(DenseFactorDestroy(&factor));
+}
+
 static void a_part_of_a_larger_matrix_is_multiplied_with(void **state)
 {
   const PetscScalar A[] = {1, 2, 100, 3, 4, 100}, x[] = {10, -1};
@@ -87,6 +108,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solves_whatever_its_order),
       cmocka_unit_test(tells_a_singular_matrix),
+      cmocka_unit_test(tells_a_matrix_that_is_singular_but_for_round_off),
       cmocka_unit_test(a_part_of_a_larger_matrix_is_multiplied_with),
   };
 
