@@ -45,36 +45,31 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether an option asks for what PETSc alone does with a box: divide it as a graph, leave it whole, make it periodic, ... */
-static PetscErrorCode HasOptionOfGraph(const char prefix[], PetscBool *has)
+/* The option, if any, that asks for what PETSc alone does with a box: divide it as a graph, leave it whole, make it periodic, ... */
+static PetscErrorCode FindOptionOfGraph(const char prefix[], const char **option)
 {
-  const char *const options[] = {"-petscpartitioner_type",   "-dm_distribute",       "-dm_distribute_overlap", "-dm_plex_box_bd",
-                                 "-dm_plex_separate_marker", "-dm_plex_interpolate", "-dm_plex_cell",          "-dm_plex_reorder"};
+  static const char *const options[] = {"-petscpartitioner_type",   "-dm_distribute",       "-dm_distribute_overlap", "-dm_plex_box_bd",
+                                        "-dm_plex_separate_marker", "-dm_plex_interpolate", "-dm_plex_cell",          "-dm_plex_reorder"};
+  PetscBool                has       = PETSC_FALSE;
 
   PetscFunctionBegin;
-  *has = PETSC_FALSE;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !*has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], has));
+  *option = NULL;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !has; i++) {
+    PetscCall(PetscOptionsHasName(NULL, prefix, options[i], &has));
+    if (has) *option = options[i];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether each rank makes its own brick of the box */
-static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *bricks)
+/* Reads the number of bricks along each axis */
+static PetscErrorCode ReadBricks(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *set)
 {
-  const char *const divisions[] = {"bricks", "graph"};
-  PetscInt          n = 3, division = 0, product = 1;
-  PetscBool         set, graph = PETSC_FALSE;
-  PetscMPIInt       size;
+  PetscInt    n = 3, product = 1;
+  PetscMPIInt size;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 2, &division, &set));
-  if (!set) {
-    PetscCall(HasOptionOfGraph(prefix, &graph));
-    if (!graph) PetscCall(MeshBricksBalance(comm, box, bricks));
-    graph = (PetscBool)(graph || !*bricks);
-  }
-  *bricks = (PetscBool)(!graph && !division);
-  PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-mesh_bricks", box->bricks, &n, &set));
-  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-mesh_bricks", box->bricks, &n, set));
+  if (!*set) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Comm_size(comm, &size));
   for (PetscInt d = 0; d < n; d++) {
     PetscCheck(box->bricks[d] > 0 && box->bricks[d] <= size, comm, PETSC_ERR_USER_INPUT,
@@ -86,8 +81,26 @@ static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], MeshBox *
              "-%smesh_bricks gives %" PetscInt_FMT " bricks along %" PetscInt_FMT " axes: give one number for each of %" PetscInt_FMT
              " axes, with the number of ranks, %d, as their product",
              prefix, product, n, box->dim, size);
-  PetscCheck(!division, comm, PETSC_ERR_USER_INPUT, "-%smesh_bricks needs -%smesh_division bricks", prefix, prefix);
-  *bricks = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether each rank makes its own brick of the box */
+static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *bricks)
+{
+  const char *const divisions[] = {"bricks", "graph"};
+  const char       *option;
+  PetscInt          division = 0;
+  PetscBool         given, set;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 2, &division, &set));
+  PetscCall(ReadBricks(comm, prefix, box, &given));
+  PetscCall(FindOptionOfGraph(prefix, &option));
+  PetscCheck(!given || !division, comm, PETSC_ERR_USER_INPUT, "-%smesh_bricks needs -%smesh_division bricks", prefix, prefix);
+  PetscCheck(!option || !(given || (set && !division)), comm, PETSC_ERR_USER_INPUT,
+             "-%s%s needs -%smesh_division graph, without -%smesh_bricks", prefix, option ? option + 1 : "", prefix, prefix);
+  *bricks = (PetscBool)(!option && !division);
+  if (*bricks && !set && !given) PetscCall(MeshBricksBalance(comm, box, bricks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -391,7 +391,9 @@ static void refused_options(void **state)
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_ball_part third|full, half", "%s -ball_part third", ball);
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_ball_part quarter|disc", "-dm_plex_shape ball -ball_part quarter");
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_ball_divisions 3|even|-a_ball_part half", "%s -ball_part half -ball_divisions 3", ball);
-  mesh_refused(PETSC_ERR_USER_INPUT, "'box'|-a_dm_plex_shape ball|too many", "%s -ball_divisions 2000", ball);
+  /* 24 n^3 corners of cells are more than indices of 32, or of 64 bits can count */
+  mesh_refused(PETSC_ERR_USER_INPUT, "'box'|-a_dm_plex_shape ball|too many", "%s -ball_divisions %s", ball,
+               PetscDefined(USE_64BIT_INDICES) ? "2000000" : "2000");
   mesh_refused(PETSC_ERR_USER_INPUT, "'box'|not convex|more divisions", "%s -ball_divisions 2 -ball_grading 1e4", ball);
 }
 
