@@ -44,7 +44,7 @@ PETSC_INTERN PetscErrorCode InterfaceDirectDestroy(InterfaceDirect *);
 PETSC_INTERN void           InterfaceDirectForget(InterfaceDirect);
 PETSC_INTERN PetscErrorCode InterfaceDirectSolve(InterfaceOperator, const PetscScalar[], PetscScalar[], PetscBool *);
 
-PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceDirect, Checkpoint);
+PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceOperator, Checkpoint);
 
 /* Whether a row of this rank is solved for at present */
 static inline PetscBool InterfaceIsIn(InterfaceOperator op, PetscInt i)
