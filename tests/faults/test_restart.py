@@ -29,6 +29,8 @@ VARIANTS = {
     "nonlinear": NONLINEAR,
     "nonlinear, explicit": NONLINEAR + EXPLICIT,
     "nonlinear, both explicit": NONLINEAR + EXPLICIT + EXPLICIT.replace("left", "right"),
+    "sparse factors": BLOCKS + EXPLICIT + EXPLICIT.replace("left", "right") + "-schwarz_dense_limit 0",
+    "nonlinear, sparse factors": NONLINEAR + EXPLICIT + EXPLICIT.replace("left", "right") + "-schwarz_dense_limit 0",
     "nonlinear, cut steps": NONLINEAR + "-time_step 4e-5",
     "nonlinear, multipliers": NONLINEAR + "-contact_type lagrange",
     "nonlinear, balance": NONLINEAR + "-contact_balance true",

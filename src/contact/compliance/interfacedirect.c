@@ -305,16 +305,26 @@ PetscErrorCode InterfaceDirectSolve(InterfaceOperator op, const PetscScalar x[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* State for a checkpoint, `direct` may be NULL: the factors are made again when they are needed */
-PetscErrorCode InterfaceDirectVisit(InterfaceDirect d, Checkpoint checkpoint)
+/* State for a checkpoint: the factors are made again when they are needed. The bodies have been loaded before. */
+PetscErrorCode InterfaceDirectVisit(InterfaceOperator op, Checkpoint checkpoint)
 {
-  PetscInt solutions = d ? d->solutions : 0;
+  InterfaceDirect d         = op->direct;
+  PetscInt        solutions = 0;
+  PetscBool       changed, other;
 
   PetscFunctionBegin;
+  if (d && d->noted) { /* what has changed since the last solution shows now, and not after the checkpoint */
+    PetscCall(NoteState(op, &changed, &other));
+    if (changed) InterfaceDirectForget(d);
+    if (other) PetscCall(DestroyMatrices(d));
+  }
+  if (d) solutions = d->solutions;
   PetscCall(CheckpointVisitInts(checkpoint, "solutions", 1, &solutions));
   if (!d || !CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   InterfaceDirectForget(d);
+  PetscCall(NoteState(op, &changed, &other));
+  if (other) PetscCall(DestroyMatrices(d));
   d->solutions = solutions;
-  d->noted     = PETSC_FALSE;
+  d->noted     = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,7 +45,7 @@ PETSC_INTERN PetscErrorCode InterfaceDirectDestroy(InterfaceDirect *);
 PETSC_INTERN void           InterfaceDirectForget(InterfaceDirect);
 PETSC_INTERN PetscErrorCode InterfaceDirectSolve(InterfaceOperator, const PetscScalar[], PetscScalar[], PetscBool *);
 
-PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceDirect, Checkpoint);
+PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceOperator, Checkpoint);
 
 /* Whether S has sparse factors: it has no other levels than the first where all bodies answer by massless layers */
 static inline PetscBool InterfaceIsDirect(InterfaceOperator op)

@@ -312,6 +312,6 @@ PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoin
     PetscCall(CheckpointVisitReals(checkpoint, "map", size, op->matrices[m]));
   }
   PetscCall(DenseFactorVisit(&op->factor, op->contact->rows.n_all, checkpoint));
-  PetscCall(InterfaceDirectVisit(op->direct, checkpoint));
+  PetscCall(InterfaceDirectVisit(op, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

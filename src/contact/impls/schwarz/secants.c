@@ -90,6 +90,8 @@ static PetscErrorCode Fit(Secants *secants, Vec F, PetscInt *used, PetscInt whic
       PetscCall(VecDot(secants->basis[n], secants->basis[i], &upper[i][n]));
       PetscCall(VecAXPY(secants->basis[n], -upper[i][n], secants->basis[i]));
     }
+    /* a norm that PETSc has kept since the vector was scaled is another one, to the last bit, than that of a vector from a checkpoint */
+    PetscCall(PetscObjectStateIncrease((PetscObject)secants->basis[n]));
     PetscCall(VecNorm(secants->basis[n], NORM_2, &left));
     if (left < INDEPENDENT) continue;
     PetscCall(VecScale(secants->basis[n], 1 / left));
