@@ -41,7 +41,7 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
                "-%sdm_plex_box_lower, -%sdm_plex_box_upper: along axis %" PetscInt_FMT " the box ends at %g, not beyond its start at %g",
                prefix, prefix, d + 1, (double)box->upper[d], (double)box->lower[d]);
   }
-  if (box->dim > 1) PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &box->simplex, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &box->simplex, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -27,6 +27,7 @@ typedef struct {
   PetscReal   worst;       /* what they may leave of it all the same where round-off keeps them from `tolerance`, relative */
   PetscInt    dense_limit; /* rows, times levels, up to which matrices are dense */
   PetscInt    few;         /* up to which they are so from the start */
+  PetscReal   at_once;     /* the same where they cost no more than so many products */
   PetscBool   warm;        /* conjugate gradients begin with what the solution is before */
   PetscBool   direct;      /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
 } InterfaceSettings;

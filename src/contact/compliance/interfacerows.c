@@ -1,11 +1,6 @@
 /* The rows of S, and whether its matrices are dense on them. */
 #include "interfaceimpl.h"
 
-/* Dense matrices that cost no more than so many products with S are made at once. Two cubes that come into contact with all 961 and 625
-   nodes of a face each take 55 products a controller step where conjugate gradients do without, most of them in sweeps that prescribe
-   displacements, and their dense matrices cost 75. */
-#define AT_ONCE 100
-
 /* Room for n listed rows */
 PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
 {
@@ -72,7 +67,7 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
   }
   if (substeps) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CountFlops(op, &op->product_flops, &op->dense_flops));
-  op->dense = (PetscBool)(op->dense_flops <= AT_ONCE * op->product_flops || op->spent >= op->dense_flops);
+  op->dense = (PetscBool)(op->dense_flops <= op->settings.at_once * op->product_flops || op->spent >= op->dense_flops);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
