@@ -23,7 +23,10 @@
   Notes:
   Without friction they should. Where few nodes are in contact the centre of pressure hangs on where the nodes lie, which spins bodies that
   hit each other off-centre: discs of 64 edges by up to 0.05 of the ratio of speed and radius, balls by 0.1, and by 4e-4 and 2e-3 at most
-  with this option. It costs no energy to speak of: discs lose 1e-5 of it, as without.
+  with this option. It costs no energy to speak of: discs lose 1e-5 of it, as without. The run takes a fifth longer.
+
+  Where two nodes bear all it helps less, since normals of rows are half way between those of both sides up to 10 degrees alone: balls of 40
+  edges spin by 0.003 at 2 m/s, but by 0.008 at 0.4 m/s and 0.023 at 0.04 m/s.
 
   In two dimensions there is one condition for each pair, in three there are two. They are unknowns of the outer iteration beside those of
   the rows. In three dimensions the bends of both surfaces count and nodes have the normals of round surfaces, see `SurfaceSetRound()`.
