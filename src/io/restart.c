@@ -87,10 +87,12 @@ PetscErrorCode OutputSetRestartState(Output output, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says of which bodies the solvers do not repeat themselves to the last bit, so that the run does not either */
+/* Says of which bodies, or of contact, the solvers do not repeat themselves to the last bit, so that the run does not either */
 static PetscErrorCode TellSolvers(Output output)
 {
   const Body *bodies;
+  Contact     contact;
+  PetscBool   contact_repeats;
   PetscInt    n;
 
   PetscFunctionBegin;
@@ -106,6 +108,12 @@ static PetscErrorCode TellSolvers(Output output)
                              "impakt: the solver of body '%s' need not repeat itself to the last bit: the run goes on to round-off\n",
                              name));
   }
+  PetscCall(ControllerGetContact(output->controller, &contact));
+  PetscCall(ContactRepeatsBits(contact, &contact_repeats));
+  if (!contact_repeats)
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
+                           "impakt: the factors of contact that ranks make together need not repeat to the last bit: the run goes on to "
+                           "round-off\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

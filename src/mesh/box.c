@@ -195,8 +195,8 @@ static PetscErrorCode DivideBox(void *ctx)
     for (PetscInt d = 0; d < 3; d++) to[d] = end[d];
     from[side / 2] = side % 2 ? box->faces[side / 2] : 0;
     to[side / 2]   = from[side / 2] + 1;
-    /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): boxes of one dimension are made elsewhere */
     PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, dim - 1, MeshBoxSideNumber(dim, side), &group));
+    /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): boxes of one dimension are made elsewhere */
     PetscCall(MeshFileAddRun(file, shapes[dim - 2], 1, &group));
     PetscCall(DivideRange(file, dim - 1, axes, from, to, stride));
   }

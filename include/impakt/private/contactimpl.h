@@ -342,9 +342,10 @@ struct _p_Contact {
   ContactAttempt    attempt;
   ContactFloating   floating;
   ContactWork       work;
-  PetscBool         surfaces_known; /* ContactSetUpSurfaces() has been called */
-  PetscBool         setup;          /* ContactSetUp() has been called */
-  void             *data;           /* what the method keeps */
+  PetscBool parallel_factors; /* the interface has factors that several ranks make together, perhaps not twice the same to the last bit */
+  PetscBool surfaces_known;   /* ContactSetUpSurfaces() has been called */
+  PetscBool setup;            /* ContactSetUp() has been called */
+  void     *data;             /* what the method keeps */
 };
 
 /* What acts on the body with the rows and on its partner, in the user's order: 1, or -1 where that is turned round */

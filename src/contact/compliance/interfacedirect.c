@@ -57,6 +57,7 @@ PetscErrorCode InterfaceDirectCreate(InterfaceOperator op, InterfaceDirect *dire
   if (all && d->n) {
     PetscCall(PetscCalloc5(d->n, &d->K, d->n, &d->C, d->n, &d->Ct, 2 * d->n, &d->states, d->n, &d->rows));
     *direct = d;
+    if (contact->ranks.size > 1 && contact->rows.n_all > op->settings.few) contact->parallel_factors = PETSC_TRUE;
   } else PetscCall(InterfaceDirectDestroy(&d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

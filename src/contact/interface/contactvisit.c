@@ -162,6 +162,15 @@ PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactRepeatsBits - whether the solvers of the interface find the same to the last bit in another run; those of bodies tell themselves
+ */
+PetscErrorCode ContactRepeatsBits(Contact contact, PetscBool *repeats)
+{
+  PetscFunctionBegin;
+  *repeats = (PetscBool)!contact->parallel_factors;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactVisitShared - what all ranks have of the state of contact and of its bodies, to or from a checkpoint */
 PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
 {
