@@ -268,6 +268,7 @@ static PetscErrorCode LabelSides(const MeshBox *box, const PetscInt places[], DM
   for (PetscInt p = 0; p < end; p++) {
     if (p >= cstart && p < cend) continue;
     for (PetscInt side = 0; side < 2 * box->dim; side++) {
+      /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): places are those of all points that there are */
       if (places[3 * p + side / 2] != (side % 2 ? 2 * box->faces[side / 2] : 0)) continue;
       PetscCall(DMLabelSetValue(marker, p, 1));
       if (p >= fstart && p < fend) PetscCall(DMLabelSetValue(sets, p, MeshBoxSideNumber(box->dim, side)));
