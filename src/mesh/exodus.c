@@ -1,139 +1,6 @@
 /* Exodus II files (.g, .e, .exo, .ex2) by the NetCDF library: blocks, side sets, node sets. Names of variables, element types
    and the numbers of sides are those of Schoof and Yarberry, "EXODUS II: A Finite Element Data Model", SAND92-2137. */
-#include "meshimpl.h"
-#include <netcdf.h>
-
-#define NetCDFCall(call, ...)                                                                                                              \
-  do {                                                                                                                                     \
-    const int status_ = (call);                                                                                                            \
-    char      what_[256];                                                                                                                  \
-    if (PetscUnlikely(status_)) {                                                                                                          \
-      PetscCall(PetscSNPrintf(what_, sizeof(what_), __VA_ARGS__));                                                                         \
-      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s", what_, nc_strerror(status_));                                               \
-    }                                                                                                                                      \
-  } while (0)
-
-/* A block, and where its elements are in the file */
-typedef struct {
-  PetscInt       number, n, first; /* number of elements, and of the first of them, from 0, in the order of the file */
-  PetscInt       first_node;       /* where their nodes begin in `element_nodes`; -1: they are not of this body */
-  DMPolytopeType shape;
-  PetscBool      shell; /* sides 1 and 2 are the faces of the element */
-} Block;
-
-typedef struct {
-  MeshFile *file;
-  int       id; /* the file's, to the NetCDF library */
-  PetscInt  dim, n_elements, n_blocks;
-  Block    *blocks;
-  int      *values[2]; /* of variables that have been read, so that they are freed after an error too */
-  double   *reals;
-} Exodus;
-
-/* A dimension of the NetCDF file; 0 if the file does not have it */
-static PetscErrorCode GetDimension(const Exodus *exodus, const char name[], PetscInt *length)
-{
-  int    dimension, status = nc_inq_dimid(exodus->id, name, &dimension);
-  size_t n = 0;
-
-  PetscFunctionBegin;
-  *length = 0;
-  if (status == NC_EBADDIM) PetscFunctionReturn(PETSC_SUCCESS);
-  NetCDFCall(status, "dimension '%s'", name);
-  NetCDFCall(nc_inq_dimlen(exodus->id, dimension, &n), "dimension '%s'", name);
-  PetscCheck(n < PETSC_INT_MAX / 8, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "dimension '%s' is %zu, too many", name, n);
-  *length = (PetscInt)n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A dimension whose name ends with the number of a set or block */
-static PetscErrorCode GetDimensionOf(const Exodus *exodus, const char name[], PetscInt number, PetscInt *length)
-{
-  char full[64];
-
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "%s%" PetscInt_FMT, name, number));
-  PetscCall(GetDimension(exodus, full, length));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Finds a variable that the file must have, with n values */
-static PetscErrorCode FindVariable(const Exodus *exodus, const char name[], PetscInt n, int *variable)
-{
-  int    rank, dimensions[NC_MAX_VAR_DIMS], status = nc_inq_varid(exodus->id, name, variable);
-  double total = 1;
-
-  PetscFunctionBegin;
-  PetscCheck(status != NC_ENOTVAR, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "it has no variable '%s'", name);
-  NetCDFCall(status, "variable '%s'", name);
-  NetCDFCall(nc_inq_varndims(exodus->id, *variable, &rank), "variable '%s'", name);
-  NetCDFCall(nc_inq_vardimid(exodus->id, *variable, dimensions), "variable '%s'", name);
-  for (int d = 0; d < rank; d++) {
-    size_t length;
-
-    NetCDFCall(nc_inq_dimlen(exodus->id, dimensions[d], &length), "variable '%s'", name);
-    total *= (double)length;
-  }
-  PetscCheck(total == (double)n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "variable '%s' has %.0f values, where %" PetscInt_FMT " are expected", name, total, n);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Reads the n values of a variable whose name ends with a number, into one of the two arrays that the reader keeps */
-static PetscErrorCode ReadInts(Exodus *exodus, const char name[], PetscInt number, PetscInt n, PetscInt place, const int *values[])
-{
-  char full[64];
-  int  variable;
-
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "%s%" PetscInt_FMT, name, number));
-  PetscCall(FindVariable(exodus, full, n, &variable));
-  PetscCall(PetscFree(exodus->values[place]));
-  PetscCall(PetscMalloc1(n, &exodus->values[place]));
-  NetCDFCall(nc_get_var_int(exodus->id, variable, exodus->values[place]), "variable '%s'", full);
-  *values = exodus->values[place];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The number of the i-th block or set, from a variable such as eb_prop1; i + 1 if the file has no such variable */
-static PetscErrorCode ReadNumber(const Exodus *exodus, const char kind[], PetscInt i, PetscInt *number)
-{
-  char   full[64];
-  int    variable, value;
-  size_t at = (size_t)i;
-
-  PetscFunctionBegin;
-  *number = i + 1;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "%s_prop1", kind));
-  if (nc_inq_varid(exodus->id, full, &variable)) PetscFunctionReturn(PETSC_SUCCESS);
-  NetCDFCall(nc_get_var1_int(exodus->id, variable, &at, &value), "variable '%s'", full);
-  PetscCheck(value >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "variable '%s' has the number %d, which is negative", full, value);
-  *number = value;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The name of the i-th block or set; empty if it has none */
-static PetscErrorCode ReadName(const Exodus *exodus, const char kind[], PetscInt i, char name[MESH_NAME_LENGTH])
-{
-  char   full[64];
-  int    variable, rank, dimensions[NC_MAX_VAR_DIMS];
-  size_t start[2] = {(size_t)i, 0}, count[2] = {1, MESH_NAME_LENGTH - 1}, n, length;
-
-  PetscFunctionBegin;
-  name[0] = 0;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "%s_names", kind));
-  if (nc_inq_varid(exodus->id, full, &variable)) PetscFunctionReturn(PETSC_SUCCESS);
-  NetCDFCall(nc_inq_varndims(exodus->id, variable, &rank), "variable '%s'", full);
-  PetscCheck(rank == 2, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "variable '%s' has %d dimensions, where 2 are expected", full, rank);
-  NetCDFCall(nc_inq_vardimid(exodus->id, variable, dimensions), "variable '%s'", full);
-  NetCDFCall(nc_inq_dimlen(exodus->id, dimensions[1], &n), "variable '%s'", full);
-  count[1] = PetscMin(count[1], n);
-  PetscCall(PetscMemzero(name, MESH_NAME_LENGTH));
-  NetCDFCall(nc_get_vara_text(exodus->id, variable, start, count, name), "variable '%s'", full);
-  PetscCall(PetscStrlen(name, &length));
-  while (length && name[length - 1] == ' ') name[--length] = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include "exodusimpl.h"
 
 /* Reads coordinates, from the variable coord, or from coordx, coordy and coordz */
 static PetscErrorCode ReadNodes(Exodus *exodus)
@@ -149,12 +16,12 @@ static PetscErrorCode ReadNodes(Exodus *exodus)
   PetscCall(PetscCalloc1(3 * n, &file->coordinates));
   PetscCall(PetscMalloc1(together ? n * dim : n, &exodus->reals));
   if (together) {
-    PetscCall(FindVariable(exodus, "coord", n * dim, &variable));
+    PetscCall(ExodusFindVariable(exodus, "coord", n * dim, &variable));
     NetCDFCall(nc_get_var_double(exodus->id, variable, exodus->reals), "variable 'coord'");
   }
   for (PetscInt d = 0; d < dim; d++) {
     if (!together) {
-      PetscCall(FindVariable(exodus, names[d], n, &variable));
+      PetscCall(ExodusFindVariable(exodus, names[d], n, &variable));
       NetCDFCall(nc_get_var_double(exodus->id, variable, exodus->reals), "variable '%s'", names[d]);
     }
     for (PetscInt i = 0; i < n; i++) file->coordinates[3 * i + d] = exodus->reals[together ? d * n + i : i];
@@ -235,18 +102,18 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
   PetscFunctionBegin;
   block->first      = exodus->n_elements;
   block->first_node = -1;
-  PetscCall(ReadNumber(exodus, "eb", i, &block->number));
-  PetscCall(ReadName(exodus, "eb", i, name));
-  PetscCall(GetDimensionOf(exodus, "num_el_in_blk", i + 1, &block->n));
+  PetscCall(ExodusReadNumber(exodus, "eb", i, &block->number));
+  PetscCall(ExodusReadName(exodus, "eb", i, name));
+  PetscCall(ExodusGetDimensionOf(exodus, "num_el_in_blk", i + 1, &block->n));
   exodus->n_elements += block->n;
   PetscCall(MeshFileAddGroup(file, MESH_BLOCK, exodus->dim, block->number, &group));
   PetscCall(PetscStrncpy(file->groups[group].name, name, MESH_NAME_LENGTH));
   PetscCall(MeshFileWants(file, block->number, name, &wanted));
   if (!block->n || !wanted) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetDimensionOf(exodus, "num_nod_per_el", i + 1, &corners));
+  PetscCall(ExodusGetDimensionOf(exodus, "num_nod_per_el", i + 1, &corners));
   PetscCall(ReadType(exodus, i, type));
   PetscCall(FindShape(exodus, type, corners, block));
-  PetscCall(ReadInts(exodus, "connect", i + 1, block->n * corners, 0, &connected));
+  PetscCall(ExodusReadInts(exodus, "connect", i + 1, block->n * corners, 0, &connected));
   PetscCall(MeshFileAddRun(file, block->shape, 1, &group));
   block->first_node = file->n_element_nodes;
   for (PetscInt e = 0; e < block->n; e++) {
@@ -302,14 +169,14 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
   const int                  *elements, *sides;
 
   PetscFunctionBegin;
-  PetscCall(ReadNumber(exodus, "ss", i, &number));
-  PetscCall(ReadName(exodus, "ss", i, name));
+  PetscCall(ExodusReadNumber(exodus, "ss", i, &number));
+  PetscCall(ExodusReadName(exodus, "ss", i, name));
   PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, exodus->dim - 1, number, &group));
   PetscCall(PetscStrncpy(file->groups[group].name, name, MESH_NAME_LENGTH));
-  PetscCall(GetDimensionOf(exodus, "num_side_ss", i + 1, &n));
+  PetscCall(ExodusGetDimensionOf(exodus, "num_side_ss", i + 1, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ReadInts(exodus, "elem_ss", i + 1, n, 0, &elements));
-  PetscCall(ReadInts(exodus, "side_ss", i + 1, n, 1, &sides));
+  PetscCall(ExodusReadInts(exodus, "elem_ss", i + 1, n, 0, &elements));
+  PetscCall(ExodusReadInts(exodus, "side_ss", i + 1, n, 1, &sides));
   for (PetscInt s = 0; s < n; s++) {
     const int       element = elements[s], side = sides[s];
     const int      *corners;
@@ -343,13 +210,13 @@ static PetscErrorCode ReadNodeSet(Exodus *exodus, PetscInt i)
   const int *nodes;
 
   PetscFunctionBegin;
-  PetscCall(ReadNumber(exodus, "ns", i, &number));
-  PetscCall(ReadName(exodus, "ns", i, name));
+  PetscCall(ExodusReadNumber(exodus, "ns", i, &number));
+  PetscCall(ExodusReadName(exodus, "ns", i, name));
   PetscCall(MeshFileAddGroup(file, MESH_NODE_SET, 0, number, &group));
   PetscCall(PetscStrncpy(file->groups[group].name, name, MESH_NAME_LENGTH));
-  PetscCall(GetDimensionOf(exodus, "num_nod_ns", i + 1, &n));
+  PetscCall(ExodusGetDimensionOf(exodus, "num_nod_ns", i + 1, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ReadInts(exodus, "node_ns", i + 1, n, 0, &nodes));
+  PetscCall(ExodusReadInts(exodus, "node_ns", i + 1, n, 0, &nodes));
   PetscCall(MeshFileAddRun(file, DM_POLYTOPE_POINT, 1, &group));
   for (PetscInt k = 0; k < n; k++) {
     PetscInt *node;
@@ -367,21 +234,21 @@ static PetscErrorCode ReadAll(Exodus *exodus)
   PetscInt n;
 
   PetscFunctionBegin;
-  PetscCall(GetDimension(exodus, "num_dim", &exodus->dim));
-  PetscCall(GetDimension(exodus, "num_nodes", &exodus->file->n_nodes));
-  PetscCall(GetDimension(exodus, "num_el_blk", &exodus->n_blocks));
+  PetscCall(ExodusGetDimension(exodus, "num_dim", &exodus->dim));
+  PetscCall(ExodusGetDimension(exodus, "num_nodes", &exodus->file->n_nodes));
+  PetscCall(ExodusGetDimension(exodus, "num_el_blk", &exodus->n_blocks));
   PetscCheck(exodus->dim >= 1 && exodus->dim <= 3 && exodus->file->n_nodes && exodus->n_blocks, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "it is no Exodus II file with a mesh: num_dim is %" PetscInt_FMT ", num_nodes %" PetscInt_FMT ", num_el_blk %" PetscInt_FMT,
              exodus->dim, exodus->file->n_nodes, exodus->n_blocks);
   PetscCall(ReadNodes(exodus));
   PetscCall(PetscCalloc1(exodus->n_blocks, &exodus->blocks));
   for (PetscInt i = 0; i < exodus->n_blocks; i++) PetscCall(ReadBlock(exodus, i));
-  PetscCall(GetDimension(exodus, "num_elem", &n));
+  PetscCall(ExodusGetDimension(exodus, "num_elem", &n));
   PetscCheck(n == exodus->n_elements, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "num_elem is %" PetscInt_FMT ", but its blocks have %" PetscInt_FMT " elements", n, exodus->n_elements);
-  PetscCall(GetDimension(exodus, "num_side_sets", &n));
+  PetscCall(ExodusGetDimension(exodus, "num_side_sets", &n));
   for (PetscInt i = 0; i < n; i++) PetscCall(ReadSideSet(exodus, i));
-  PetscCall(GetDimension(exodus, "num_node_sets", &n));
+  PetscCall(ExodusGetDimension(exodus, "num_node_sets", &n));
   for (PetscInt i = 0; i < n; i++) PetscCall(ReadNodeSet(exodus, i));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
