@@ -237,16 +237,18 @@ PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  /* DMPLEX has no setter for this default: it is put among the options, whoever makes the box, so that a run has the same options on any
+     number of ranks */
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
+  if (!set && box.is_box && box.dim > 1) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
+    PetscCall(PetscOptionsSetValue(NULL, option, "0"));
+    PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set)); /* it has been looked at */
+  }
   if (box.is_box) PetscCall(ReadDivision(comm, prefix, &box, &bricks));
   if (bricks) {
     PetscCall(MeshCreateBricks(comm, &box, dm));
   } else {
-    /* DMPLEX has no setter for this default: it is put among the options */
-    PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
-    if (!set && box.is_box && box.dim > 1) {
-      PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
-      PetscCall(PetscOptionsSetValue(NULL, option, "0"));
-    }
     PetscCall(DMCreate(comm, dm));
     PetscCall(DMSetType(*dm, DMPLEX));
   }

@@ -3,6 +3,7 @@
    acceleration these are the waveforms at its rows, what its solvers hold, where their matrices were linearised, and the compliance that is
    known, level by level of cut steps. The rows themselves are loaded before, by those who own their matrices.
 */
+#include <petscsf.h>
 #include <body/rows/complianceimpl.h>
 #include "bodyvisit.h"
 #include <string.h>
@@ -176,14 +177,36 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyRepeatsBits - whether the solvers of a body find the same to the last bit in another run; Not Collective */
+/* Whether a node of a body lies on three ranks or more: PETSc adds what two other ranks have for a matrix as it comes */
+static PetscErrorCode SumsAsItComes(Body body, PetscBool *does)
+{
+  PetscSF         sf;
+  const PetscInt *degrees;
+  PetscInt        start, end;
+
+  PetscFunctionBegin;
+  *does = PETSC_FALSE;
+  if (body->rows.size < 3) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DMGetPointSF(body->mesh.dm, &sf));
+  PetscCall(DMPlexGetDepthStratum(body->mesh.dm, 0, &start, &end));
+  PetscCall(PetscSFComputeDegreeBegin(sf, &degrees));
+  PetscCall(PetscSFComputeDegreeEnd(sf, &degrees));
+  for (PetscInt p = start; p < end && !*does; p++) *does = (PetscBool)(degrees[p] > 1);
+  PetscCall(BodyAnyRank(body, does));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyRepeatsBits - whether the matrices of a body and their solvers find the same to the last bit in another run; Collective */
 PetscErrorCode BodyRepeatsBits(Body body, PetscBool *repeats)
 {
   const ConstrainedSolver solvers[] = {body->solver, body->mass.solver};
+  PetscBool               sums;
 
   PetscFunctionBegin;
   *repeats = PETSC_TRUE;
   for (int k = 0; k < 2 && *repeats; k++)
     if (solvers[k]) PetscCall(ConstrainedSolverRepeats(solvers[k], repeats));
+  PetscCall(SumsAsItComes(body, &sums));
+  if (sums) *repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
