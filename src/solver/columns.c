@@ -28,34 +28,29 @@ static PetscErrorCode ExtendByOne(ConstrainedSolver s, PetscInt j)
 
 /* How many right-hand sides are solved for together: those of MUMPS; PETSc's own factors solve for one after the other, whatever they are
    asked for */
-static PetscErrorCode GetBlock(ConstrainedSolver s, PetscInt *block)
+PetscErrorCode ConstrainedSolverChooseBlock(ConstrainedSolver s)
 {
   PetscInt      size;
   PetscBool     factors = PETSC_FALSE, mumps = PETSC_FALSE;
   MatSolverType package;
 
   PetscFunctionBegin;
-  *block = 1;
+  s->block = 1;
   if (s->direct) PetscCall(PetscObjectTypeCompareAny((PetscObject)s->direct, &factors, PCLU, PCCHOLESKY, ""));
   if (!factors || s->global <= FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCFactorGetMatSolverType(s->direct, &package));
   PetscCall(PetscStrcmp(package, MATSOLVERMUMPS, &mumps));
   if (!mumps) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetSize(s->rhs, &size));
-  *block = PetscMax(1, PetscMin(MAX_BLOCK, MAX_BLOCK_NUMBERS / size));
+  s->block = PetscMax(1, PetscMin(MAX_BLOCK, MAX_BLOCK_NUMBERS / size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Operations that it takes to make `n` rows known, in operations of solutions for one right-hand side each, which take longer than those
    of blocks; counted, so that a run repeats */
-PetscErrorCode ConstrainedSolverGetExtendFlops(ConstrainedSolver s, PetscInt n, PetscLogDouble *flops)
+PetscLogDouble ConstrainedSolverGetExtendFlops(ConstrainedSolver s, PetscInt n)
 {
-  PetscInt block;
-
-  PetscFunctionBegin;
-  PetscCall(GetBlock(s, &block));
-  *flops = n * s->solve_flops / PetscMax(1, PetscMin(PetscMin(block, n), BLOCK_GAIN));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return n * s->solve_flops / PetscMax(1, PetscMin(PetscMin(s->block, n), BLOCK_GAIN));
 }
 
 /* rhs = B^T e for n rows */
@@ -142,12 +137,9 @@ static PetscErrorCode ExtendByBlock(ConstrainedSolver s, PetscInt n, const Petsc
 /* Makes rows known to the compliance, at its first level; `rows`: of any rank, the same on every rank, none of them known. Collective. */
 PetscErrorCode ConstrainedSolverExtend(ConstrainedSolver s, PetscInt n, const PetscInt rows[])
 {
-  PetscInt block;
-
   PetscFunctionBegin;
-  PetscCall(GetBlock(s, &block));
-  for (PetscInt k = 0; k < n; k += block) {
-    const PetscInt width = PetscMin(block, n - k);
+  for (PetscInt k = 0; k < n; k += s->block) {
+    const PetscInt width = PetscMin(s->block, n - k);
 
     if (width == 1) PetscCall(ExtendByOne(s, rows[k]));
     else PetscCall(ExtendByBlock(s, width, rows + k));

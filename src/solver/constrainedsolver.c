@@ -67,6 +67,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
       PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
   PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));
   PetscCall(ChooseColumns(s));
+  PetscCall(ConstrainedSolverChooseBlock(s));
   s->room = s->keeps ? s->global : FEW_ROWS;
   PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;

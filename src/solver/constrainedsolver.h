@@ -22,6 +22,6 @@ PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverExtend(ConstrainedSolver, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCorrect(ConstrainedSolver, const PetscScalar[], const PetscScalar[], Vec);
 PETSC_INTERN PetscLogDouble     ConstrainedSolverGetFlops(ConstrainedSolver);
-PETSC_INTERN PetscErrorCode     ConstrainedSolverGetExtendFlops(ConstrainedSolver, PetscInt, PetscLogDouble *);
+PETSC_INTERN PetscLogDouble     ConstrainedSolverGetExtendFlops(ConstrainedSolver, PetscInt);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverVisit(ConstrainedSolver, Checkpoint);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverRepeats(ConstrainedSolver, PetscBool *);

@@ -30,6 +30,7 @@ struct _n_ConstrainedSolver {
   KSP            iterative;
   Vec            force_vec, gap_vec, product;
   PetscLogDouble solve_flops, spent; /* of one solution with A; of all iterations so far */
+  PetscInt       block;              /* rows that become known together, by one solution for so many right-hand sides */
   /* corrections by stored columns: their changes, all rows on every rank */
   PetscBool    keeps; /* columns are kept of all rows that become known */
   PetscScalar *changes, *coefficients;
@@ -40,6 +41,7 @@ struct _n_ConstrainedSolver {
 #define FEW_ROWS 16
 
 PETSC_INTERN PetscErrorCode ConstrainedSolverChoose(KSP, Mat, PetscInt);
+PETSC_INTERN PetscErrorCode ConstrainedSolverChooseBlock(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver, KSP, Vec);
 PETSC_INTERN PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver, PetscInt);

@@ -306,7 +306,7 @@ PetscErrorCode BodyGetComplianceFlops(Body body, PetscInt n, const PetscInt rows
   *apply = *extend = 0;
   if (!body->solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyCountUnknown(body, n, rows, &unknown));
-  *apply = ConstrainedSolverGetFlops(body->solver);
-  PetscCall(ConstrainedSolverGetExtendFlops(body->solver, unknown, extend));
+  *apply  = ConstrainedSolverGetFlops(body->solver);
+  *extend = ConstrainedSolverGetExtendFlops(body->solver, unknown);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
