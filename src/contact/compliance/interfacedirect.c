@@ -26,7 +26,6 @@ struct _n_InterfaceDirect {
   Mat      *K, *C, *Ct, D, matrix; /* copies, since a matrix that is joined with others counts as changed, and would be factored again */
   PetscObjectState *states;        /* of K_b and B_b, as they are in the matrix */
   PetscObjectId    *rows;          /* B_b */
-  PetscBool         noted;         /* these are there */
   PetscInt          solutions;     /* by conjugate gradients, for the rows as they are */
   PetscBool         filled;        /* the matrix is that of these rows, and factored */
   PetscBool         fails;         /* it has no good factors */
@@ -97,14 +96,14 @@ void InterfaceDirectForget(InterfaceDirect d)
   d->filled    = PETSC_FALSE;
 }
 
-/* Notes the layers and rows as they are; whether any has changed since the last call, and whether rows are other objects, with entries
-   elsewhere perhaps */
-static PetscErrorCode NoteState(InterfaceOperator op, PetscBool *changed, PetscBool *other)
+/* Notes the layers and rows as they are. Where any has changed since the last call what is there of them is forgotten, and where rows are
+   other objects, with entries elsewhere perhaps, the matrices go. */
+static PetscErrorCode TakeState(InterfaceOperator op)
 {
-  InterfaceDirect d = op->direct;
+  InterfaceDirect d       = op->direct;
+  PetscBool       changed = PETSC_FALSE, other = PETSC_FALSE;
 
   PetscFunctionBegin;
-  *changed = *other = PETSC_FALSE;
   for (PetscInt k = 0; k < d->n; k++) {
     Mat              matrices[2];
     PetscObjectId    id;
@@ -113,13 +112,15 @@ static PetscErrorCode NoteState(InterfaceOperator op, PetscBool *changed, PetscB
     PetscCall(BodyGetLayerMatrices(op->contact->bodies[d->bodies[k]], &matrices[0], &matrices[1]));
     for (PetscInt m = 0; m < 2; m++) {
       PetscCall(PetscObjectStateGet((PetscObject)matrices[m], &state));
-      if (state != d->states[2 * k + m]) *changed = PETSC_TRUE;
+      if (state != d->states[2 * k + m]) changed = PETSC_TRUE;
       d->states[2 * k + m] = state;
     }
     PetscCall(PetscObjectGetId((PetscObject)matrices[1], &id));
-    if (id != d->rows[k]) *changed = *other = PETSC_TRUE;
+    if (id != d->rows[k]) changed = other = PETSC_TRUE;
     d->rows[k] = id;
   }
+  if (changed) InterfaceDirectForget(d);
+  if (other) PetscCall(DestroyMatrices(d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,15 +282,12 @@ PetscErrorCode InterfaceDirectSolve(InterfaceOperator op, const PetscScalar x[],
 {
   InterfaceDirect    d = op->direct;
   const PetscScalar *solution;
-  PetscBool          changed, other, fresh;
+  PetscBool          fresh;
 
   PetscFunctionBegin;
   *solved = PETSC_FALSE;
   if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
-  PetscCall(NoteState(op, &changed, &other));
-  if (d->noted && changed) InterfaceDirectForget(d);
-  if (other) PetscCall(DestroyMatrices(d));
-  d->noted = PETSC_TRUE;
+  PetscCall(TakeState(op));
   if (d->solutions < SOLUTIONS_OF_FACTORS) {
     d->solutions++;
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -311,21 +309,15 @@ PetscErrorCode InterfaceDirectVisit(InterfaceOperator op, Checkpoint checkpoint)
 {
   InterfaceDirect d         = op->direct;
   PetscInt        solutions = 0;
-  PetscBool       changed, other;
 
   PetscFunctionBegin;
-  if (d && d->noted) { /* what has changed since the last solution shows now, and not after the checkpoint */
-    PetscCall(NoteState(op, &changed, &other));
-    if (changed) InterfaceDirectForget(d);
-    if (other) PetscCall(DestroyMatrices(d));
+  if (d) { /* what has changed since the last solution shows now, and not after the checkpoint */
+    PetscCall(TakeState(op));
+    solutions = d->solutions;
   }
-  if (d) solutions = d->solutions;
   PetscCall(CheckpointVisitInts(checkpoint, "solutions", 1, &solutions));
   if (!d || !CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   InterfaceDirectForget(d);
-  PetscCall(NoteState(op, &changed, &other));
-  if (other) PetscCall(DestroyMatrices(d));
   d->solutions = solutions;
-  d->noted     = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
