@@ -16,3 +16,17 @@ PETSC_INTERN PetscErrorCode TablesGetTable(Tables, PetscInt, const char *[], Pet
 PETSC_INTERN PetscErrorCode TablesGet(Tables, const char[], PetscInt, PetscInt *, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode TablesFind(Tables, const char[], const PetscReal[], PetscInt *);
 PETSC_INTERN PetscErrorCode TablesLookFor(Tables, const char[], const PetscReal[], PetscInt *);
+
+/* Copies numbers to a packed row or back, and goes on behind them */
+static inline void TablesCopyReals(PetscBool back, PetscInt n, PetscReal own[], PetscReal **packed)
+{
+  for (PetscInt i = 0; i < n; i++) *(back ? &own[i] : &(*packed)[i]) = back ? (*packed)[i] : own[i];
+  *packed += n;
+}
+
+static inline void TablesCopyBool(PetscBool back, PetscBool *own, PetscReal **packed)
+{
+  if (back) *own = (PetscBool)(**packed != 0);
+  else **packed = *own ? 1 : 0;
+  ++*packed;
+}

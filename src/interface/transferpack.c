@@ -9,57 +9,43 @@
 #define N_SHARE   8  /* key of its row, position of the partner's node, weight and goal */
 #define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
 
-/* Copies numbers to a packed row or back, and goes on behind them */
-static void Copy(PetscBool back, PetscInt n, PetscReal own[], PetscReal **packed)
-{
-  for (PetscInt i = 0; i < n; i++) *(back ? &own[i] : &(*packed)[i]) = back ? (*packed)[i] : own[i];
-  *packed += n;
-}
-
-static void CopyBool(PetscBool back, PetscBool *own, PetscReal **packed)
-{
-  if (back) *own = (PetscBool)(**packed != 0);
-  else **packed = *own ? 1 : 0;
-  ++*packed;
-}
-
 /* One node of the first side; `packed` behind its key */
 static void CopyRow(Transfer transfer, PetscInt i, PetscBool back, PetscReal *packed)
 {
   RowSet        *rows = &transfer->rows;
   const PetscInt dim  = transfer->dim;
 
-  CopyBool(back, &rows->opposite[i], &packed);
-  CopyBool(back, &rows->beyond[i], &packed);
-  Copy(back, 1, &rows->gap[i], &packed);
-  Copy(back, 1, &rows->area[i], &packed);
-  Copy(back, 1, &rows->bow[i], &packed);
-  Copy(back, 1, &rows->rest[i], &packed);
-  Copy(back, dim, rows->normals + dim * i, &packed);
+  TablesCopyBool(back, &rows->opposite[i], &packed);
+  TablesCopyBool(back, &rows->beyond[i], &packed);
+  TablesCopyReals(back, 1, &rows->gap[i], &packed);
+  TablesCopyReals(back, 1, &rows->area[i], &packed);
+  TablesCopyReals(back, 1, &rows->bow[i], &packed);
+  TablesCopyReals(back, 1, &rows->rest[i], &packed);
+  TablesCopyReals(back, dim, rows->normals + dim * i, &packed);
   packed += 3 - dim;
-  Copy(back, 3, transfer->built_x[0] + 3 * i, &packed);
-  Copy(back, 3, transfer->built_slip + 3 * i, &packed);
-  Copy(back, 1, &transfer->slip[i], &packed);
-  CopyBool(back, &transfer->keep[i], &packed);
-  CopyBool(back, &transfer->followed[i], &packed);
-  CopyBool(back, &transfer->goes_on[i], &packed);
+  TablesCopyReals(back, 3, transfer->built_x[0] + 3 * i, &packed);
+  TablesCopyReals(back, 3, transfer->built_slip + 3 * i, &packed);
+  TablesCopyReals(back, 1, &transfer->slip[i], &packed);
+  TablesCopyBool(back, &transfer->keep[i], &packed);
+  TablesCopyBool(back, &transfer->followed[i], &packed);
+  TablesCopyBool(back, &transfer->goes_on[i], &packed);
   if (transfer->balance.n) { /* what turns do to gaps is found anew in each step */
-    Copy(back, 3, transfer->balance.across + 3 * i, &packed);
-    Copy(back, 1, &transfer->balance.gap[i], &packed);
-    Copy(back, 1, &transfer->balance.turned[i], &packed);
+    TablesCopyReals(back, 3, transfer->balance.across + 3 * i, &packed);
+    TablesCopyReals(back, 1, &transfer->balance.gap[i], &packed);
+    TablesCopyReals(back, 1, &transfer->balance.turned[i], &packed);
   } else packed += 5;
   if (!transfer->neumann) return;
-  Copy(back, 3, transfer->follow.x[0] + 3 * i, &packed);
-  Copy(back, 3, transfer->follow.moved + 3 * i, &packed);
-  Copy(back, 3, transfer->follow.slip + 3 * i, &packed);
-  CopyBool(back, &transfer->follow.known[i], &packed);
+  TablesCopyReals(back, 3, transfer->follow.x[0] + 3 * i, &packed);
+  TablesCopyReals(back, 3, transfer->follow.moved + 3 * i, &packed);
+  TablesCopyReals(back, 3, transfer->follow.slip + 3 * i, &packed);
+  TablesCopyBool(back, &transfer->follow.known[i], &packed);
 }
 
 static void CopyPartner(Transfer transfer, PetscInt i, PetscBool back, PetscReal *packed)
 {
-  Copy(back, 3, transfer->built_x[1] + 3 * i, &packed);
-  Copy(back, 3, transfer->follow.x[1] + 3 * i, &packed);
-  Copy(back, 3, transfer->follow.partner_moved + 3 * i, &packed);
+  TablesCopyReals(back, 3, transfer->built_x[1] + 3 * i, &packed);
+  TablesCopyReals(back, 3, transfer->follow.x[1] + 3 * i, &packed);
+  TablesCopyReals(back, 3, transfer->follow.partner_moved + 3 * i, &packed);
 }
 
 /* The three tables of a pair */

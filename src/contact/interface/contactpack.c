@@ -10,44 +10,31 @@
 /* Numbers of a row */
 enum { N_ROW = 24 };
 
-static void CopyReal(PetscBool back, PetscReal *own, PetscReal **packed)
-{
-  *(back ? own : *packed) = back ? **packed : *own;
-  ++*packed;
-}
-
-static void CopyBool(PetscBool back, PetscBool *own, PetscReal **packed)
-{
-  if (back) *own = (PetscBool)(**packed != 0);
-  else **packed = *own ? 1 : 0;
-  ++*packed;
-}
-
 static void CopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *packed)
 {
   ContactState *const states[] = {&contact->start, &contact->end};
 
-  for (PetscInt d = 0; d < 3; d++) CopyReal(back, &contact->rows.normal[3 * i + d], &packed);
-  CopyReal(back, &contact->rows.initial_gap[i], &packed);
-  CopyReal(back, &contact->rows.area[i], &packed);
-  CopyReal(back, &contact->rows.gap_shift[i], &packed);
-  CopyReal(back, &contact->held.merged_gap[i], &packed);
-  CopyBool(back, &contact->rows.opposite[i], &packed);
-  CopyBool(back, &contact->rows.tied[i], &packed);
-  CopyBool(back, &contact->rows.changed[i], &packed);
-  CopyBool(back, &contact->rows.followed[i], &packed);
-  CopyBool(back, &contact->held.dropped[i], &packed);
-  CopyBool(back, &contact->held.heir[i], &packed);
-  CopyBool(back, &contact->ties.holds[i], &packed);
-  CopyReal(back, &contact->ties.distance[i], &packed);
+  TablesCopyReals(back, 3, contact->rows.normal + 3 * i, &packed);
+  TablesCopyReals(back, 1, &contact->rows.initial_gap[i], &packed);
+  TablesCopyReals(back, 1, &contact->rows.area[i], &packed);
+  TablesCopyReals(back, 1, &contact->rows.gap_shift[i], &packed);
+  TablesCopyReals(back, 1, &contact->held.merged_gap[i], &packed);
+  TablesCopyBool(back, &contact->rows.opposite[i], &packed);
+  TablesCopyBool(back, &contact->rows.tied[i], &packed);
+  TablesCopyBool(back, &contact->rows.changed[i], &packed);
+  TablesCopyBool(back, &contact->rows.followed[i], &packed);
+  TablesCopyBool(back, &contact->held.dropped[i], &packed);
+  TablesCopyBool(back, &contact->held.heir[i], &packed);
+  TablesCopyBool(back, &contact->ties.holds[i], &packed);
+  TablesCopyReals(back, 1, &contact->ties.distance[i], &packed);
   for (PetscInt k = 0; k < 2; k++) {
-    CopyReal(back, &states[k]->force[i], &packed);
-    CopyReal(back, &states[k]->gap[i], &packed);
-    CopyBool(back, &states[k]->active[i], &packed);
+    TablesCopyReals(back, 1, &states[k]->force[i], &packed);
+    TablesCopyReals(back, 1, &states[k]->gap[i], &packed);
+    TablesCopyBool(back, &states[k]->active[i], &packed);
   }
-  CopyReal(back, &contact->energy.last_force[i], &packed);
-  CopyReal(back, &contact->energy.accepted_force[i], &packed);
-  CopyReal(back, &contact->energy.last_stored[i], &packed);
+  TablesCopyReals(back, 1, &contact->energy.last_force[i], &packed);
+  TablesCopyReals(back, 1, &contact->energy.accepted_force[i], &packed);
+  TablesCopyReals(back, 1, &contact->energy.last_stored[i], &packed);
 }
 
 /* All rows of a pair to a table, a line for each node, or back */
