@@ -9,7 +9,7 @@ typedef struct {
 /* Reads and checks DMPLEX's options for boxes. Defaults are DMPLEX's, but that cells are quadrilaterals and hexahedra. */
 static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
 {
-  char      shape[64];
+  char      shape[64], option[128];
   PetscInt  n;
   PetscBool set;
 
@@ -40,6 +40,13 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
     PetscCheck(box->upper[d] > box->lower[d], comm, PETSC_ERR_USER_INPUT,
                "-%sdm_plex_box_lower, -%sdm_plex_box_upper: along axis %" PetscInt_FMT " the box ends at %g, not beyond its start at %g",
                prefix, prefix, d + 1, (double)box->upper[d], (double)box->lower[d]);
+  }
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
+  /* DMPLEX has no setter for this default: it is put among the options, whoever makes the box, so that a run has the same options on any
+     number of ranks */
+  if (!set && box->dim > 1) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
+    PetscCall(PetscOptionsSetValue(NULL, option, "0"));
   }
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &box->simplex, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -228,22 +235,13 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const MeshBox *box, const 
 PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   MeshBox   box;
-  char      option[128];
-  PetscBool set, bricks = PETSC_FALSE;
+  PetscBool bricks = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ReadBox(comm, prefix, &box));
   if (box.is_box && box.dim > 1 && box.simplex) {
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
     PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  /* DMPLEX has no setter for this default: it is put among the options, whoever makes the box, so that a run has the same options on any
-     number of ranks */
-  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
-  if (!set && box.is_box && box.dim > 1) {
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
-    PetscCall(PetscOptionsSetValue(NULL, option, "0"));
-    PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set)); /* it has been looked at */
   }
   if (box.is_box) PetscCall(ReadDivision(comm, prefix, &box, &bricks));
   if (bricks) {

@@ -277,6 +277,15 @@ static PetscErrorCode LabelSides(const MeshBox *box, const PetscInt places[], DM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of a rank that has no cell, where there are more ranks than cells */
+static PetscErrorCode MakeNoPoints(DM dm)
+{
+  PetscFunctionBegin;
+  PetscCall(DMPlexSetChart(dm, 0, 0));
+  PetscCall(DMSetUp(dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A box of which each rank makes its own brick */
 PetscErrorCode MeshCreateBricks(MPI_Comm comm, const MeshBox *box, DM *dm)
 {
@@ -297,9 +306,7 @@ PetscErrorCode MeshCreateBricks(MPI_Comm comm, const MeshBox *box, DM *dm)
   PetscCall(DMSetType(*dm, DMPLEX));
   PetscCall(DMSetDimension(*dm, box->dim));
   if (CountCells(&brick) > 0) PetscCall(MakePoints(box, &brick, *dm, &places));
-  else { /* more ranks than cells */ PetscCall(DMPlexSetChart(*dm, 0, 0));
-    PetscCall(DMSetUp(*dm));
-  }
+  else PetscCall(MakeNoPoints(*dm));
   PetscCall(DMPlexSymmetrize(*dm));
   PetscCall(DMPlexStratify(*dm));
   PetscCall(ShareSides(box, &brick, places, *dm));

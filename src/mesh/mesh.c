@@ -102,12 +102,14 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
 . -<body>_dm_plex_box_lower x,y,z                     - its lower corner [m]
 . -<body>_dm_plex_box_upper x,y,z                     - its upper corner [m]
 . -<body>_dm_plex_simplex (true|false)                - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
-. -<body>_mesh_division (bricks|graph)                - who makes a box: each rank its own brick, or the first rank all, to be divided as a
-graph . -<body>_mesh_bricks n,n,n                           - bricks of a box along each axis, their product the number of ranks .
--<body>_dm_plex_shape ball                          - a disc or a ball instead, in blocks around a central one . -<body>_ball_radius r - its
-radius [m], default 1 . -<body>_ball_centre x,y,z                           - its centre [m], default the origin . -<body>_ball_divisions n
-- elements along an edge of the central block, default 4 . -<body>_ball_layers m                               - elements around it, from
-its faces to the sphere, default n/2 . -<body>_ball_grading g                              - largest by smallest size of elements, default 1
+. -<body>_mesh_division (bricks|graph)                - each rank makes its own brick of a box, or the first one all of it, as a graph
+. -<body>_mesh_bricks n,n,n                           - bricks of a box along each axis, their product the number of ranks
+. -<body>_dm_plex_shape ball                          - a disc or a ball instead, in blocks around a central one
+. -<body>_ball_radius r                               - its radius [m], default 1
+. -<body>_ball_centre x,y,z                           - its centre [m], default the origin
+. -<body>_ball_divisions n                            - elements along an edge of the central block, default 4
+. -<body>_ball_layers m                               - elements around it, from its faces to the sphere, default n/2
+. -<body>_ball_grading g                              - largest by smallest size of elements, default 1
 . -<body>_ball_pole x,y,z                             - direction from the centre to where they are small, default down the last axis
 . -<body>_ball_part (full|half|quarter)               - all of it, x >= centre, or in 3-D also y >= centre
 . -<body>_scale s                                     - factor for all coordinates, 0.001 for a file in millimetres
@@ -127,9 +129,9 @@ its faces to the sphere, default n/2 . -<body>_ball_grading g                   
   pole, and sqrt(g) h opposite to it. If that is not small beside the radius, the ball is a coarse polyhedron there.
 
   A box of bars, quadrilaterals or hexahedra is cut in two across its longest edge, again and again, until each rank has a brick, which it
-makes itself. If the largest brick would have more than 1.1 times the mean number of elements, or an option asks for what PETSc alone does
-  (`-<body>_petscpartitioner_type`, `-<body>_dm_distribute`, `-<body>_dm_plex_box_bd`, ...), the first rank makes the box, and PETSc divides
-it.
+  makes itself. If the largest brick would have more than 1.1 times the mean number of elements, or an option asks for what PETSc alone
+  does (`-<body>_petscpartitioner_type`, `-<body>_dm_distribute`, `-<body>_dm_plex_box_bd`, ...), the first rank makes the box, and PETSc
+  divides it.
 
   The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that belong to no element of the
   body are left out. The file is read by the first rank.
