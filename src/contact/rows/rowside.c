@@ -33,10 +33,10 @@ static PetscErrorCode CheckSide(Contact contact, ContactRowSide side)
   The body that has the rows takes displacements, its partner tractions, whatever their order in `ContactAddPair()`. Names, forces, moments
   and normals of the pair stay in that order.
 
-  The finer surface is the one whose nodes are closer together by more than a thousandth where the two may touch; else the first body has
-the rows. That distance is the mean over those faces of each surface, in the reference positions, that lie within the box around the other
-  one; along an axis on which the boxes are apart all do. It is the same on any number of ranks. In one dimension the first body has the
-  rows. A pair for which that would bring the bodies into a circle, each waiting for the reaction of the one before, has them on its first
+  The finer surface is the one whose nodes are closer together by more than a thousandth where the two may touch; else the first body
+  has the rows. That distance is the mean over those faces of each surface, in the reference positions, that lie within the box around the
+  other one; along an axis on which the boxes are apart all do. It is the same on any number of ranks. In one dimension the first body has
+the rows. A pair for which that would bring the bodies into a circle, each waiting for the reaction of the one before, has them on its first
   body too. `ContactView()` says which body has the rows, if it is the second.
 
   A pair with an obstacle has its rows on the body.
@@ -104,8 +104,7 @@ PetscErrorCode ContactSetPairRowSide(Contact contact, PetscInt pair, ContactRowS
   PetscValidLogicalCollectiveInt(contact, pair, 2);
   PetscValidLogicalCollectiveEnum(contact, side, 3);
   PetscCheck(!contact->surfaces_known, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
-  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  ContactCheckPair(contact, pair);
   PetscCall(CheckSide(contact, side));
   p = &contact->pairs[pair];
   PetscCheck(!p->obstacle || side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -136,8 +135,7 @@ PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *b
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(body, 3);
-  PetscCheck(pair >= 0 && pair < contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, contact->n_pairs);
+  ContactCheckPair(contact, pair);
   *body = contact->pairs[pair].turned ? 1 : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
