@@ -18,5 +18,5 @@ PETSC_EXTERN PetscErrorCode TraceGetSizes(Trace, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode TraceZero(Trace);
 PETSC_EXTERN PetscErrorCode TraceGetLevel(Trace, PetscInt, PetscScalar **);
 PETSC_EXTERN PetscErrorCode TraceInterpolate(Trace, PetscReal, PetscInt, PetscInt, PetscScalar[]);
-PETSC_EXTERN PetscErrorCode TraceResampleConstant(Trace, PetscInt, PetscInt, PetscScalar, Trace);
-PETSC_EXTERN PetscErrorCode TraceResample(Trace, PetscInt, PetscInt, PetscScalar, Trace);
+PETSC_EXTERN PetscErrorCode TraceResampleConstant(Trace, PetscInt, PetscInt, PetscScalar, Trace, PetscInt);
+PETSC_EXTERN PetscErrorCode TraceResample(Trace, PetscInt, PetscInt, PetscScalar, Trace, PetscInt);

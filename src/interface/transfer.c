@@ -229,10 +229,10 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
 
   Input Parameters:
 + transfer   - the `Transfer`, updated once at least
-. row_begin  - global number of the first row of this rank
+. begin      - global number of the first row of this rank in the matrix of the first side, and in that of the second
 . components - 1: the normal gap, a row for each node; the space dimension: all components of sum_j P_ij u_j - u_i, as many rows for each
-. dirichlet  - gets the normal of the node, or the unit vectors, at its displacements
-- neumann    - gets the same times the weights, at the displacements of the nodes opposite; `NULL` for obstacles
+- rows       - the first gets the normal of the node, or the unit vectors, at its displacements; the second the same times the weights, at
+               the displacements of the nodes opposite: `NULL` for obstacles
 
   Level: developer
 
@@ -245,7 +245,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
 
 .seealso: `Transfer`
 @*/
-PetscErrorCode TransferSetValues(Transfer transfer, PetscInt row_begin, PetscInt components, Mat dirichlet, Mat neumann)
+PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const Mat rows[2])
 {
   const RowSet  *set = &transfer->rows;
   const PetscInt dim = transfer->dim;
@@ -257,16 +257,16 @@ PetscErrorCode TransferSetValues(Transfer transfer, PetscInt row_begin, PetscInt
              "A row has 1 or %" PetscInt_FMT " components, not %" PetscInt_FMT, dim, components);
   for (PetscInt i = 0; i < transfer->n; i++)
     for (PetscInt c = 0; c < components; c++) {
-      const PetscInt row = row_begin + i * components + c;
+      const PetscInt row = i * components + c;
 
       for (PetscInt d = 0; d < dim; d++) {
         const PetscReal direction = components == 1 ? set->normals[dim * i + d] : 1;
 
         if (components > 1 && c != d) continue;
-        PetscCall(MatSetValue(dirichlet, row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
-        if (!neumann || !set->opposite[i]) continue;
+        PetscCall(MatSetValue(rows[0], begin[0] + row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
+        if (!rows[1] || !set->opposite[i]) continue;
         for (PetscInt j = set->offsets[i]; j < set->offsets[i + 1]; j++)
-          PetscCall(MatSetValue(neumann, row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));
+          PetscCall(MatSetValue(rows[1], begin[1] + row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));
       }
     }
   PetscFunctionReturn(PETSC_SUCCESS);

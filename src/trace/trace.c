@@ -128,6 +128,25 @@ PetscErrorCode TraceGetLevel(Trace trace, PetscInt level, PetscScalar **values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode CheckRows(Trace trace, PetscInt begin, PetscInt n)
+{
+  PetscFunctionBegin;
+  PetscCheck(n >= 0 && begin >= 0 && begin + n <= trace->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "%" PetscInt_FMT " rows from number %" PetscInt_FMT " on of a trace with %" PetscInt_FMT " rows", n, begin, trace->size);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Interpolate(Trace trace, PetscReal time, PetscInt begin, PetscInt n, PetscScalar values[])
+{
+  const PetscReal    position = time * trace->levels;
+  const PetscInt     level    = (PetscInt)PetscMin(PetscMax(PetscFloorReal(position), 0), trace->levels - 1);
+  const PetscReal    weight   = position - level;
+  const PetscScalar *lower = trace->values + level * trace->size + begin, *upper = lower + trace->size;
+
+  /* at both ends of an interval the result is the value there, bit for bit */
+  for (PetscInt i = 0; i < n; i++) values[i] = weight == 1 ? upper[i] : lower[i] + weight * (upper[i] - lower[i]);
+}
+
 /*@
   TraceInterpolate - the values of some rows at any time of the controller step
 
@@ -137,26 +156,21 @@ PetscErrorCode TraceGetLevel(Trace trace, PetscInt level, PetscScalar **values)
 + trace - the waveform
 . time  - 0 (start of the controller step) to 1 (its end)
 . begin - first row
-- end   - one past the last row
+- n     - number of rows
 
   Output Parameter:
-. values - array of `size` numbers, of which `begin` to `end` - 1 are set
+. values - `n` numbers
 
   Level: developer
 
 .seealso: `Trace`, `TraceResample()`
 @*/
-PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, PetscInt end, PetscScalar values[])
+PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, PetscInt n, PetscScalar values[])
 {
-  const PetscReal    position = time * trace->levels;
-  const PetscInt     level    = (PetscInt)PetscMin(PetscMax(PetscFloorReal(position), 0), trace->levels - 1);
-  const PetscReal    weight   = position - level;
-  const PetscScalar *lower = trace->values + level * trace->size, *upper = lower + trace->size;
-
   PetscFunctionBegin;
   PetscAssertPointer(trace, 1);
-  /* at both ends of an interval the result is the value there, bit for bit */
-  for (PetscInt i = begin; i < end; i++) values[i] = weight == 1 ? upper[i] : lower[i] + weight * (upper[i] - lower[i]);
+  PetscCall(CheckRows(trace, begin, n));
+  Interpolate(trace, time, begin, n, values);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,31 +180,32 @@ PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, Pet
   Not Collective
 
   Input Parameters:
-+ from  - the waveform to evaluate
-. begin - first row
-. end   - one past the last row
-. scale - factor on the values
-- to    - waveform of the same size, whose rows `begin` to `end` - 1 are set at all its levels
++ from     - the waveform to evaluate
+. begin    - first row of it
+. n        - number of rows
+. scale    - factor on the values
+. to       - waveform whose rows `to_begin` to `to_begin` + `n` - 1 are set at all its levels
+- to_begin - first row of that
 
   Level: developer
 
 .seealso: `Trace`, `TraceInterpolate()`
 @*/
-PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
+PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt n, PetscScalar scale, Trace to, PetscInt to_begin)
 {
   PetscFunctionBegin;
-  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows",
-             from->size, to->size);
+  PetscCall(CheckRows(from, begin, n));
+  PetscCall(CheckRows(to, to_begin, n));
   for (PetscInt level = 0; level <= to->levels; level++) {
-    PetscScalar *values = to->values + level * to->size;
+    PetscScalar *values = to->values + level * to->size + to_begin;
 
     if (from->levels == to->levels) {
-      const PetscScalar *source = from->values + level * from->size;
+      const PetscScalar *source = from->values + level * from->size + begin;
 
-      for (PetscInt i = begin; i < end; i++) values[i] = source[i];
-    } else PetscCall(TraceInterpolate(from, (PetscReal)level / to->levels, begin, end, values));
+      for (PetscInt i = 0; i < n; i++) values[i] = source[i];
+    } else Interpolate(from, (PetscReal)level / to->levels, begin, n, values);
     if (scale != 1)
-      for (PetscInt i = begin; i < end; i++) values[i] *= scale;
+      for (PetscInt i = 0; i < n; i++) values[i] *= scale;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -201,27 +216,28 @@ PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt end, PetscScal
   Not Collective
 
   Input Parameters:
-+ from  - the waveform to evaluate
-. begin - first row
-. end   - one past the last row
-. scale - factor on the values
-- to    - waveform of the same size, whose rows `begin` to `end` - 1 are set at all its levels
++ from     - the waveform to evaluate
+. begin    - first row of it
+. n        - number of rows
+. scale    - factor on the values
+. to       - waveform whose rows `to_begin` to `to_begin` + `n` - 1 are set at all its levels
+- to_begin - first row of that
 
   Level: developer
 
 .seealso: `Trace`, `TraceResample()`
 @*/
-PetscErrorCode TraceResampleConstant(Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
+PetscErrorCode TraceResampleConstant(Trace from, PetscInt begin, PetscInt n, PetscScalar scale, Trace to, PetscInt to_begin)
 {
   PetscFunctionBegin;
-  PetscCheck(from->size == to->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "Traces of %" PetscInt_FMT " and %" PetscInt_FMT " rows",
-             from->size, to->size);
+  PetscCall(CheckRows(from, begin, n));
+  PetscCall(CheckRows(to, to_begin, n));
   for (PetscInt level = 0; level <= to->levels; level++) {
     /* the level of `from` that is at this time, or the next one after it */
-    const PetscScalar *source = from->values + ((level * from->levels + to->levels - 1) / to->levels) * from->size;
-    PetscScalar       *values = to->values + level * to->size;
+    const PetscScalar *source = from->values + ((level * from->levels + to->levels - 1) / to->levels) * from->size + begin;
+    PetscScalar       *values = to->values + level * to->size + to_begin;
 
-    for (PetscInt i = begin; i < end; i++) values[i] = scale * source[i];
+    for (PetscInt i = 0; i < n; i++) values[i] = scale * source[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -129,7 +129,7 @@ static inline PetscBool interface_update(Interface *interface, PetscReal near, P
     ok(MatSetType(interface->matrix[side], MATAIJ));
     ok(MatSetUp(interface->matrix[side]));
   }
-  ok(TransferSetValues(interface->transfer, interface->begin, components, interface->matrix[0], interface->matrix[1]));
+  ok(TransferSetValues(interface->transfer, (const PetscInt[]){interface->begin, interface->begin}, components, interface->matrix));
   for (PetscInt side = 0; side < 2; side++) {
     ok(MatAssemblyBegin(interface->matrix[side], MAT_FINAL_ASSEMBLY));
     ok(MatAssemblyEnd(interface->matrix[side], MAT_FINAL_ASSEMBLY));

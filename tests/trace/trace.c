@@ -52,7 +52,7 @@ static void may_be_empty(void **state)
   ok(TraceCreate(0, 3, &trace));
   ok(TraceCreate(0, 2, &other));
   ok(TraceInterpolate(trace, 0.5, 0, 0, &none));
-  ok(TraceResample(trace, 0, 0, 2, other));
+  ok(TraceResample(trace, 0, 0, 2, other, 0));
   assert_true(none == 5);
   ok(TraceDestroy(&trace));
   ok(TraceDestroy(&other));
@@ -98,7 +98,7 @@ static void is_linear_between_levels(void **state)
   ok(TraceInterpolate(trace, 0.1, 0, 2, got));
   near(got[0], 3.4, 4e-15); /* 0.1 is not a binary number: a few units in the last place */
   got[0] = -1;
-  ok(TraceInterpolate(trace, 0.5, 1, 2, got)); /* the second row only */
+  ok(TraceInterpolate(trace, 0.5, 1, 1, got + 1)); /* the second row only */
   assert_true(got[0] == -1 && got[1] == 15);
   ok(TraceDestroy(&trace));
 }
@@ -112,7 +112,7 @@ static void refines(void **state)
 
   (void)state;
   ok(TraceCreate(2, 4, &fine));
-  ok(TraceResample(coarse, 0, 2, -2, fine));
+  ok(TraceResample(coarse, 0, 2, -2, fine, 0));
   for (PetscInt k = 0; k <= 4; k++) {
     ok(TraceGetLevel(fine, k, &level));
     assert_true(level[0] == -2 * expected[k] && level[1] == -2 * (expected[k] + 10));
@@ -132,7 +132,7 @@ static void coarsens(void **state)
   ok(TraceCreate(2, 2, &coarse));
   ok(TraceGetLevel(coarse, 1, &level));
   level[1] = 77;
-  ok(TraceResample(fine, 0, 1, 1, coarse)); /* the first row only */
+  ok(TraceResample(fine, 0, 1, 1, coarse, 0)); /* the first row only */
   for (PetscInt k = 0; k <= 2; k++) {
     ok(TraceGetLevel(coarse, k, &level));
     assert_true(level[0] == expected[k]);
@@ -152,8 +152,8 @@ static void refines_and_coarsens_to_the_same(void **state)
   (void)state;
   ok(TraceCreate(2, 21, &fine));
   ok(TraceCreate(2, 3, &back));
-  ok(TraceResample(trace, 0, 2, 1, fine));
-  ok(TraceResample(fine, 0, 2, 1, back));
+  ok(TraceResample(trace, 0, 2, 1, fine, 0));
+  ok(TraceResample(fine, 0, 2, 1, back, 0));
   for (PetscInt k = 0; k <= 3; k++) {
     ok(TraceGetLevel(back, k, &level));
     near(level[0], values[k], 1e-15); /* 1/3 is not a binary number, so the times are off by units in the last place */
@@ -161,6 +161,26 @@ static void refines_and_coarsens_to_the_same(void **state)
   ok(TraceDestroy(&trace));
   ok(TraceDestroy(&fine));
   ok(TraceDestroy(&back));
+}
+
+/* Rows have other numbers in the one trace than in the other: 0, 4, 2 of its second row become the first of three */
+static void numbers_rows_anew(void **state)
+{
+  const PetscReal values[] = {0, 4, 2};
+  Trace           trace    = make_trace(2, values), other;
+  PetscScalar    *level;
+
+  (void)state;
+  ok(TraceCreate(3, 1, &other));
+  ok(TraceResample(trace, 1, 1, 1, other, 0));
+  ok(TraceResampleConstant(trace, 0, 2, 1, other, 1));
+  for (PetscInt k = 0; k <= 1; k++) {
+    ok(TraceGetLevel(other, k, &level));
+    assert_true(level[0] == values[2 * k] + 10);
+    assert_true(level[1] == values[2 * k] && level[2] == values[2 * k] + 10);
+  }
+  ok(TraceDestroy(&trace));
+  ok(TraceDestroy(&other));
 }
 
 /* A value holds over the interval that it ends: 0, 3, 5 on five intervals is 0, 3, 3, 5, 5, 5, since the third one ends after the
@@ -174,13 +194,13 @@ static void holds_values(void **state)
   (void)state;
   ok(TraceCreate(2, 5, &fine));
   ok(TraceCreate(2, 2, &back));
-  ok(TraceResampleConstant(coarse, 0, 1, -2, fine));
+  ok(TraceResampleConstant(coarse, 0, 1, -2, fine, 0));
   for (PetscInt k = 0; k <= 5; k++) {
     ok(TraceGetLevel(fine, k, &level));
     assert_true(level[0] == -2 * expected[k]);
     assert_true(level[1] == 0); /* the first row only */
   }
-  ok(TraceResampleConstant(coarse, 0, 2, 1, back));
+  ok(TraceResampleConstant(coarse, 0, 2, 1, back, 0));
   for (PetscInt k = 0; k <= 2; k++) {
     ok(TraceGetLevel(back, k, &level));
     assert_true(level[0] == values[k]);
@@ -193,6 +213,7 @@ static void holds_values(void **state)
 static void refuses_what_makes_no_sense(void **state)
 {
   const PetscReal values[] = {0, 1};
+  PetscScalar     none;
   Trace           trace, other;
 
   (void)state;
@@ -200,8 +221,9 @@ static void refuses_what_makes_no_sense(void **state)
   refused(PETSC_ERR_ARG_OUTOFRANGE, "at least one interval|-3", TraceCreate(2, -3, &trace));
   trace = make_trace(1, values);
   ok(TraceCreate(3, 1, &other));
-  refused(PETSC_ERR_ARG_SIZ, "2 and 3 rows", TraceResample(trace, 0, 2, 1, other));
-  refused(PETSC_ERR_ARG_SIZ, "2 and 3 rows", TraceResampleConstant(trace, 0, 2, 1, other));
+  refused(PETSC_ERR_ARG_SIZ, "3 rows from number 0 on of a trace with 2 rows", TraceResample(trace, 0, 3, 1, other, 0));
+  refused(PETSC_ERR_ARG_SIZ, "2 rows from number 2 on of a trace with 3 rows", TraceResampleConstant(trace, 0, 2, 1, other, 2));
+  refused(PETSC_ERR_ARG_SIZ, "1 rows from number -1 on of a trace with 2 rows", TraceInterpolate(trace, 0, -1, 1, &none));
   ok(TraceDestroy(&trace));
   ok(TraceDestroy(&other));
 }
@@ -216,6 +238,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(refines),
       cmocka_unit_test(coarsens),
       cmocka_unit_test(refines_and_coarsens_to_the_same),
+      cmocka_unit_test(numbers_rows_anew),
       cmocka_unit_test(holds_values),
       cmocka_unit_test(refuses_what_makes_no_sense),
   };

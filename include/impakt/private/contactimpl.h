@@ -43,10 +43,12 @@ typedef struct {
   Transfer       transfer;    /* between the surfaces */
   PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
   PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
+  PetscInt       shift[2];    /* row i of this rank has the number i - shift[side] among those of the body on that side */
   PetscReal      normal[3];   /* mean outward normal of the body that has the rows */
   PetscBool      bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
   PetscBool      keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool      by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
+  PetscInt       intervals;   /* of the controller step, between whose ends its force is linear */
 } ContactPair;
 
 /* Default tolerances on lengths, in parts of the size of the smallest body: see ContactGetLengthScale(). That of the outer iterations is
@@ -133,6 +135,16 @@ typedef struct {
   PetscInt64 patterns[2]; /* that count for `interfaces` and `spares`, when they were filled; -1: they are made anew */
 } ContactRows;
 
+/* The rows of a body: those of the pairs that it is in */
+typedef struct {
+  PetscInt   n;     /* of this rank */
+  PetscInt   begin; /* the first of them has this number among those of the body on all ranks */
+  PetscInt   n_all; /* of all ranks */
+  PetscInt  *rows;  /* their numbers among the rows of this rank, ascending */
+  PetscInt  *all;   /* of those of all ranks: their numbers among the rows of all ranks, ascending */
+  PetscReal *area;  /* as that of rows; the body borrows it */
+} ContactBodyRows;
+
 /* Turns of gaps with which forces have the same sum along the normals of both sides, see src/contact/rows/balance.c */
 typedef struct {
   PetscInt   n;         /* of all pairs */
@@ -188,6 +200,7 @@ typedef struct {
 /* What every rank knows of the rows of all ranks */
 typedef struct {
   PetscMPIInt  size;        /* number of ranks */
+  PetscMPIInt  rank;        /* this one */
   PetscMPIInt *counts;      /* per rank: number of rows */
   PetscMPIInt *offsets;     /* per rank: number of its first row */
   PetscInt    *row_pair;    /* per row of all ranks: number of its pair */
@@ -292,16 +305,17 @@ typedef struct {
   PetscReal        time;               /* at which the step begins [s] */
 } ContactFloating;
 
-/* Work space */
+/* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
   PetscReal     *speeds;     /* per body */
+  PetscBool     *flags;      /* to a body */
   PetscReal     *last_gap;   /* per row */
   PetscBool     *moved;      /* per row */
   PetscReal     *last_force; /* per row */
-  PetscReal     *handover;   /* two numbers per row */
-  PetscInt      *intervals;  /* per row */
-  BodyCondition *conditions; /* per row */
-  PetscBool     *stabilized; /* per row */
+  PetscReal     *handover;   /* two numbers to a body per row */
+  PetscInt      *intervals;  /* to a body */
+  PetscReal     *rest;       /* to a body */
+  BodyCondition *conditions; /* to a body */
 } ContactWork;
 
 struct _p_Contact {
@@ -323,7 +337,8 @@ struct _p_Contact {
   PetscBool         prescribes; /* the method prescribes displacements on Dirichlet sides */
   PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
   BodyTraces       *traces;     /* per body; the last ones are those of all obstacles, which do not move */
-  Mat              *interfaces; /* per body: its part of all rows */
+  ContactBodyRows  *body_rows;  /* per body */
+  Mat              *interfaces; /* per body: its rows */
   Mat              *spares;     /* the same of other steps, to be filled next */
   ContactNodes      nodes;
   ContactRows       rows;
@@ -352,6 +367,12 @@ struct _p_Contact {
 static inline PetscInt ContactPairSign(const ContactPair *pair)
 {
   return pair->turned ? -1 : 1;
+}
+
+/* Direction in which the force of a row acts on a body of its pair: the second is pushed along the rows, the first against them */
+static inline PetscInt ContactSign(const ContactPair *pair, PetscInt body)
+{
+  return (pair->body[1] == body) - (pair->body[0] == body);
 }
 
 /* For setters */
@@ -417,7 +438,7 @@ PETSC_INTERN PetscErrorCode ContactAcceptTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
-PETSC_INTERN PetscErrorCode ContactTurnMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactTurnMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
@@ -428,10 +449,17 @@ PETSC_INTERN PetscErrorCode ContactCreateSurfaces(Contact, ContactPair *, PetscR
 PETSC_INTERN PetscErrorCode ContactChooseRowSide(Contact, ContactPair *);
 PETSC_INTERN void           ContactTurnPair(ContactPair *);
 PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
+PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyBodyRows(Contact);
+PETSC_INTERN PetscErrorCode ContactCopyAreas(Contact);
+PETSC_INTERN PetscErrorCode ContactUpdateBodies(Contact, const PetscBool[]);
+PETSC_INTERN PetscErrorCode ContactCreateRowVec(Contact, Vec *);
+PETSC_INTERN PetscErrorCode ContactCreateRowMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactAddBodyMatrix(Contact, PetscInt, Mat, Mat);
 PETSC_INTERN PetscErrorCode ContactMarkNodes(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
-PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);

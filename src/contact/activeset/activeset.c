@@ -2,22 +2,24 @@
 #include <contact/compliance/interfaceoperator.h>
 #include <math.h>
 
-/* What the rows mean to a body */
+/* What its rows mean to a body */
 void ContactGetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
 {
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
-    const PetscBool    takes = (PetscBool)(pair->body[0] == b || pair->body[1] == b);
+  const ContactBodyRows *of = &contact->body_rows[b];
 
-    rows[i] = BODY_FREE;
-    if (!takes || conditions == CONDITIONS_FREE) continue;
-    if (conditions == CONDITIONS_FORCES) rows[i] = BODY_FORCED;
-    if (ContactRowFades(contact, i)) rows[i] = BODY_FORCED;
+  for (PetscInt k = 0; k < of->n; k++) {
+    const PetscInt     i    = of->rows[k];
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+
+    rows[k] = BODY_FREE;
+    if (conditions == CONDITIONS_FREE) continue;
+    if (conditions == CONDITIONS_FORCES) rows[k] = BODY_FORCED;
+    if (ContactRowFades(contact, i)) rows[k] = BODY_FORCED;
     if (!contact->end.active[i]) continue;
-    if (conditions == CONDITIONS_ACTIVE_FORCES) rows[i] = BODY_FORCED;
+    if (conditions == CONDITIONS_ACTIVE_FORCES) rows[k] = BODY_FORCED;
     if (conditions == CONDITIONS_SCHWARZ)
-      rows[i] = pair->body[pair->dirichlet] == b && !contact->rows.by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
-    if (conditions == CONDITIONS_ROBIN) rows[i] = BODY_ROBIN;
+      rows[k] = pair->body[pair->dirichlet] == b && !contact->rows.by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
+    if (conditions == CONDITIONS_ROBIN) rows[k] = BODY_ROBIN;
   }
 }
 
@@ -69,7 +71,7 @@ PetscErrorCode ContactComputeGaps(Contact contact)
       PetscCall(TraceGetLevel(traces->displacement, levels, &end[side]));
     }
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i] - end[0][i];
+      contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i - pair->shift[1]] - end[0][i - pair->shift[0]];
       if (contact->turns.n) contact->end.gap[i] += contact->turns.turned[i];
     }
   }

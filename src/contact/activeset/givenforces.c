@@ -4,20 +4,20 @@
 /* The force on the rows of a body at each of its substeps; it pushes Neumann sides along the rows and Dirichlet sides against them */
 static PetscErrorCode LoadRows(Contact contact, PetscInt b, const PetscReal end[])
 {
-  Trace        trace = contact->traces[b].force_in;
-  PetscScalar *force;
-  PetscInt     levels;
+  const ContactBodyRows *of    = &contact->body_rows[b];
+  Trace                  trace = contact->traces[b].force_in;
+  PetscScalar           *force;
+  PetscInt               levels;
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(trace, NULL, &levels));
   for (PetscInt level = 0; level <= levels; level++) {
     PetscCall(TraceGetLevel(trace, level, &force));
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
-      const PetscInt     sign  = (pair->body[1] == b) - (pair->body[0] == b);
-      const PetscReal    start = contact->start.force[i];
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt  i     = of->rows[k];
+      const PetscReal start = contact->start.force[i];
 
-      if (sign) force[i] = sign * (start + (end[i] - start) * level / levels);
+      force[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (start + (end[i] - start) * level / levels);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

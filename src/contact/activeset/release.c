@@ -60,22 +60,24 @@ static PetscErrorCode ReleasedSums(Contact contact, PetscInt i, PetscInt levels,
 /* Where substeps of the two bodies differ so that a force at the times of one is not that at the times of the other */
 static PetscErrorCode BalanceReleased(Contact contact, PetscInt b)
 {
-  Trace        trace = contact->traces[b].force_in;
-  PetscInt     levels;
-  PetscScalar *force;
+  const ContactBodyRows *of    = &contact->body_rows[b];
+  Trace                  trace = contact->traces[b].force_in;
+  PetscInt               levels;
+  PetscScalar           *force;
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(trace, NULL, &levels));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
+  for (PetscInt k = 0; k < of->n; k++) {
+    const PetscInt     i    = of->rows[k];
     const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
     PetscReal          sum = 0, wanted = 0;
 
-    if (!pair->by_force || !ContactRowFades(contact, i) || (pair->body[0] != b && pair->body[1] != b)) continue;
+    if (!pair->by_force || !ContactRowFades(contact, i)) continue;
     PetscCall(ReleasedSums(contact, i, levels, &sum, &wanted));
     for (PetscInt level = 1; level < levels; level++) {
       PetscCall(TraceGetLevel(trace, level, &force));
-      if (sum > 0) force[i] *= wanted / sum;
-      else if (level == 1) force[i] = (pair->body[1] == b ? 1 : -1) * wanted;
+      if (sum > 0) force[k] *= wanted / sum;
+      else if (level == 1) force[k] = ContactSign(pair, b) * wanted;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -84,19 +86,20 @@ static PetscErrorCode BalanceReleased(Contact contact, PetscInt b)
 /* Forces of rows that are let go, over the substeps of a body */
 PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
 {
-  Trace        trace = contact->traces[b].force_in;
-  PetscScalar *force;
-  PetscInt     levels;
+  const ContactBodyRows *of    = &contact->body_rows[b];
+  Trace                  trace = contact->traces[b].force_in;
+  PetscScalar           *force;
+  PetscInt               levels;
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(trace, NULL, &levels));
   for (PetscInt level = 0; level <= levels && contact->release.fades; level++) {
     PetscCall(TraceGetLevel(trace, level, &force));
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt i = of->rows[k];
 
       if (ContactRowFades(contact, i))
-        force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * ReleasedForce(contact, i, (PetscReal)level / levels);
+        force[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * ReleasedForce(contact, i, (PetscReal)level / levels);
     }
   }
   PetscCall(BalanceReleased(contact, b));
@@ -134,7 +137,7 @@ PetscErrorCode ContactReleaseRow(Contact contact, PetscInt i, PetscBool waveform
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(reaction, k, &values));
-    force[k] = k > 1 && force[k - 1] == 0 ? 0 : part * PetscMax(sign * PetscRealPart(values[i]), 0);
+    force[k] = k > 1 && force[k - 1] == 0 ? 0 : part * PetscMax(sign * PetscRealPart(values[i - pair->shift[pair->dirichlet]]), 0);
     if (force[k] > 0) contact->release.intervals[i] = n;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -13,7 +13,9 @@ static PetscErrorCode SetBodyForces(Contact contact, PetscInt b, Trace force)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt side = 0; side < 2; side++)
-      if (pair->body[side] == b) PetscCall(TraceResample(force, pair->begin, pair->end, side ? 1 : -1, contact->traces[b].force_in));
+      if (pair->body[side] == b)
+        PetscCall(TraceResample(force, pair->begin, pair->end - pair->begin, side ? 1 : -1, contact->traces[b].force_in,
+                                pair->begin - pair->shift[side]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,7 +31,12 @@ struct _n_InterfaceDirect {
   PetscBool         fails;         /* it has no good factors */
   PC                factors;
   Vec               rhs, solution;
-  PetscInt          offset; /* of this rank's rows in these */
+  PetscInt          offset;    /* of this rank's rows in these */
+  PetscInt          first_row; /* number of the first of them in the matrix */
+  PetscInt         *shift;     /* per layer and rank: a dof of the layer on that rank, and this, are its number in the matrix */
+  PetscInt          room;      /* of the following */
+  PetscInt         *numbers;   /* work space */
+  PetscScalar      *values;    /* work space */
 };
 
 /* NULL where a body answers otherwise */
@@ -54,7 +59,7 @@ PetscErrorCode InterfaceDirectCreate(InterfaceOperator op, InterfaceDirect *dire
     if (!K) all = PETSC_FALSE;
   }
   if (all && d->n) {
-    PetscCall(PetscCalloc5(d->n, &d->K, d->n, &d->C, d->n, &d->Ct, 2 * d->n, &d->states, d->n, &d->rows));
+    PetscCall(PetscCalloc3(2 * d->n, &d->states, d->n, &d->rows, d->n * contact->ranks.size, &d->shift));
     *direct = d;
     if (contact->ranks.size > 1 && contact->rows.n_all > op->settings.few) contact->parallel_factors = PETSC_TRUE;
   } else PetscCall(InterfaceDirectDestroy(&d));
@@ -64,12 +69,6 @@ PetscErrorCode InterfaceDirectCreate(InterfaceOperator op, InterfaceDirect *dire
 static PetscErrorCode DestroyMatrices(InterfaceDirect d)
 {
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < d->n && d->C; k++) {
-    PetscCall(MatDestroy(&d->K[k]));
-    PetscCall(MatDestroy(&d->C[k]));
-    PetscCall(MatDestroy(&d->Ct[k]));
-  }
-  PetscCall(MatDestroy(&d->D));
   PetscCall(MatDestroy(&d->matrix));
   PetscCall(PCDestroy(&d->factors));
   PetscCall(VecDestroy(&d->rhs));
@@ -83,7 +82,8 @@ PetscErrorCode InterfaceDirectDestroy(InterfaceDirect *direct)
   if (!*direct) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DestroyMatrices(*direct));
   PetscCall(PetscFree((*direct)->bodies));
-  PetscCall(PetscFree5((*direct)->K, (*direct)->C, (*direct)->Ct, (*direct)->states, (*direct)->rows));
+  PetscCall(PetscFree3((*direct)->states, (*direct)->rows, (*direct)->shift));
+  PetscCall(PetscFree2((*direct)->numbers, (*direct)->values));
   PetscCall(PetscFree(*direct));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -124,89 +124,142 @@ static PetscErrorCode TakeState(InterfaceOperator op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Signs of body b on the rows that are in, in this rank's part of a vector of rows */
-static PetscErrorCode SetSigns(InterfaceOperator op, PetscInt b, Vec signs)
+/* The matrix without entries. On each rank the dofs of all layers come one after the other, then the rows. */
+static PetscErrorCode CreateMatrix(InterfaceOperator op)
 {
-  PetscScalar *sign;
+  InterfaceDirect   d     = op->direct;
+  const Contact     c     = op->contact;
+  const PetscMPIInt ranks = c->ranks.size;
+  PetscInt         *next, begin = 0;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(signs, &sign));
-  for (PetscInt i = 0; i < op->contact->rows.n; i++)
-    sign[i] = InterfaceIsIn(op, i) ? InterfaceSideIn(INTERFACE_GAP, &op->contact->pairs[op->contact->rows.pair[i]], b) : 0;
-  PetscCall(VecRestoreArrayWrite(signs, &sign));
+  PetscCall(PetscMalloc1(ranks, &next));
+  for (PetscMPIInt r = 0; r < ranks; r++) {
+    for (PetscInt k = 0; k < d->n; k++) {
+      const PetscInt *ranges;
+      Mat             K;
+
+      PetscCall(BodyGetLayerMatrices(c->bodies[d->bodies[k]], &K, NULL));
+      PetscCall(MatGetOwnershipRanges(K, &ranges));
+      d->shift[k * ranks + r] = begin - ranges[r];
+      begin += ranges[r + 1] - ranges[r];
+    }
+    next[r] = begin;
+    begin += c->ranks.counts[r];
+  }
+  d->first_row = next[c->ranks.rank];
+  begin        = c->ranks.rank ? next[c->ranks.rank - 1] + c->ranks.counts[c->ranks.rank - 1] : 0;
+  d->offset    = d->first_row - begin;
+  PetscCall(PetscFree(next));
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)c), &d->matrix));
+  PetscCall(MatSetSizes(d->matrix, d->offset + c->rows.n, d->offset + c->rows.n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(d->matrix, MATAIJ));
+  PetscCall(MatSetUp(d->matrix));
+  PetscCall(MatSetOption(d->matrix, MAT_SYMMETRIC, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K_b, C_b and its transpose for each layer, -D; in place where they are there */
-static PetscErrorCode FillBlocks(InterfaceOperator op)
+/* What dofs of layer k are in the matrix */
+static PetscErrorCode NumberDofs(InterfaceOperator op, PetscInt k, Mat K, PetscInt n, const PetscInt dofs[])
 {
-  InterfaceDirect d    = op->direct;
-  const MatReuse  keep = d->matrix ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX;
-  const Contact   c    = op->contact;
+  InterfaceDirect   d    = op->direct;
+  const PetscMPIInt mine = op->contact->ranks.rank;
+  const PetscInt   *ranges;
+  PetscLayout       layout;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRanges(K, &ranges));
+  PetscCall(MatGetLayouts(K, &layout, NULL));
+  if (n > d->room) {
+    PetscCall(PetscFree2(d->numbers, d->values));
+    d->room = 2 * n;
+    PetscCall(PetscMalloc2(d->room, &d->numbers, d->room, &d->values));
+  }
+  for (PetscInt j = 0; j < n; j++) {
+    PetscMPIInt rank = mine;
+
+    if (dofs[j] < ranges[mine] || dofs[j] >= ranges[mine + 1]) PetscCall(PetscLayoutFindOwner(layout, dofs[j], &rank));
+    d->numbers[j] = dofs[j] + d->shift[k * op->contact->ranks.size + rank];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K_b of layer k */
+static PetscErrorCode FillLayer(InterfaceOperator op, PetscInt k, Mat K)
+{
+  InterfaceDirect d = op->direct;
+  PetscInt        begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(K, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt     number = row + d->shift[k * op->contact->ranks.size + op->contact->ranks.rank];
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(K, row, &n, &columns, &values));
+    PetscCall(NumberDofs(op, k, K, n, columns));
+    PetscCall(MatSetValues(d->matrix, 1, &number, n, d->numbers, values, INSERT_VALUES));
+    PetscCall(MatRestoreRow(K, row, &n, &columns, &values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* C_b of layer k, and its transpose: zeros in the rows that are not in */
+static PetscErrorCode FillRows(InterfaceOperator op, PetscInt k, Mat K, Mat B)
+{
+  InterfaceDirect        d  = op->direct;
+  const Contact          c  = op->contact;
+  const PetscInt         b  = d->bodies[k];
+  const ContactBodyRows *of = &c->body_rows[b];
+
+  PetscFunctionBegin;
+  for (PetscInt l = 0; l < of->n; l++) {
+    const PetscInt     i = of->rows[l], number = d->first_row + i;
+    const PetscInt     sign = InterfaceIsIn(op, i) ? InterfaceSideIn(INTERFACE_GAP, &c->pairs[c->rows.pair[i]], b) : 0;
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(B, of->begin + l, &n, &columns, &values));
+    PetscCall(NumberDofs(op, k, K, n, columns));
+    for (PetscInt j = 0; j < n; j++) d->values[j] = sign * values[j];
+    PetscCall(MatSetValues(d->matrix, 1, &number, n, d->numbers, d->values, INSERT_VALUES));
+    PetscCall(MatSetValues(d->matrix, n, d->numbers, 1, &number, d->values, INSERT_VALUES));
+    PetscCall(MatRestoreRow(B, of->begin + l, &n, &columns, &values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All entries, in place where they are there */
+static PetscErrorCode FillMatrix(InterfaceOperator op)
+{
+  InterfaceDirect d = op->direct;
+  const Contact   c = op->contact;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < d->n; k++) {
     Mat K, B;
 
     PetscCall(BodyGetLayerMatrices(c->bodies[d->bodies[k]], &K, &B));
-    if (d->matrix) {
-      PetscCall(MatCopy(K, d->K[k], SAME_NONZERO_PATTERN));
-      PetscCall(MatCopy(B, d->C[k], SAME_NONZERO_PATTERN));
-    } else {
-      PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &d->K[k]));
-      PetscCall(MatDuplicate(B, MAT_COPY_VALUES, &d->C[k]));
-    }
-    PetscCall(SetSigns(op, d->bodies[k], op->work[0]));
-    PetscCall(MatDiagonalScale(d->C[k], op->work[0], NULL));
-    PetscCall(MatTranspose(d->C[k], keep, &d->Ct[k]));
+    PetscCall(FillLayer(op, k, K));
+    PetscCall(FillRows(op, k, K, B));
   }
-  if (!d->matrix) {
-    PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)c), c->rows.n, c->rows.n, c->rows.n_all, c->rows.n_all, 1, NULL, 0, NULL, &d->D));
-    PetscCall(MatSetOption(d->D, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  }
-  for (PetscInt i = 0; i < c->rows.n; i++) {
-    const PetscInt row = c->rows.begin + i;
-
-    PetscCall(MatSetValue(d->D, row, row, InterfaceIsIn(op, i) ? -op->diagonal[i] : -1, INSERT_VALUES));
-  }
-  PetscCall(MatAssemblyBegin(d->D, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(d->D, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All blocks as one matrix */
-static PetscErrorCode JoinBlocks(InterfaceOperator op)
-{
-  InterfaceDirect d = op->direct;
-  const PetscInt  n = d->n + 1;
-  Mat            *blocks, nest;
-
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n * n, &blocks));
-  for (PetscInt k = 0; k < d->n; k++) {
-    blocks[k * n + k]    = d->K[k];
-    blocks[k * n + d->n] = d->Ct[k];
-    blocks[d->n * n + k] = d->C[k];
-  }
-  blocks[d->n * n + d->n] = d->D;
-  PetscCall(MatCreateNest(PetscObjectComm((PetscObject)op->contact), n, NULL, n, NULL, blocks, &nest));
-  PetscCall(MatConvert(nest, MATAIJ, d->matrix ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &d->matrix));
-  PetscCall(MatSetOption(d->matrix, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(MatDestroy(&nest));
-  PetscCall(PetscFree(blocks));
+  for (PetscInt i = 0; i < c->rows.n; i++)
+    PetscCall(MatSetValue(d->matrix, d->first_row + i, d->first_row + i, InterfaceIsIn(op, i) ? -op->diagonal[i] : -1, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(d->matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(d->matrix, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode CreateFactors(InterfaceOperator op)
 {
   InterfaceDirect d = op->direct;
-  PetscInt        local;
   Mat             F;
 
   PetscFunctionBegin;
   PetscCall(MatCreateVecs(d->matrix, &d->solution, &d->rhs));
-  PetscCall(VecGetLocalSize(d->rhs, &local));
-  d->offset = local - op->contact->rows.n;
   PetscCall(PCCreate(PetscObjectComm((PetscObject)op->contact), &d->factors));
   PetscCall(PCSetOperators(d->factors, d->matrix, d->matrix));
   PetscCall(PCSetType(d->factors, PCCHOLESKY));
@@ -265,8 +318,8 @@ static PetscErrorCode Factor(InterfaceOperator op)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(CONTACT_Factor, op->contact, 0, 0, 0));
-  PetscCall(FillBlocks(op));
-  PetscCall(JoinBlocks(op));
+  if (!d->matrix) PetscCall(CreateMatrix(op));
+  PetscCall(FillMatrix(op));
   if (!d->factors) PetscCall(CreateFactors(op));
   PetscCall(PCSetUp(d->factors));
   PetscCall(PCGetFailedReason(d->factors, &reason));

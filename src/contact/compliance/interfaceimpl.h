@@ -15,7 +15,8 @@ struct _n_InterfaceOperator {
   PetscInt          levels; /* matrices for forces at as many times in the controller step, as a convolution */
   /* listed rows of all ranks, on every rank, in ascending order: first those that are solved for, then those that are known beside them */
   PetscInt  n, n_known, room;
-  PetscInt *rows, *body_rows;
+  PetscInt *rows;
+  PetscInt *body_rows, *body_places; /* work space: those that concern a body, by its own numbers; their places in the list */
   /* dense: each map's matrices, n x n by columns for each level, where they have been assembled */
   PetscBool    dense;
   PetscScalar *matrices[INTERFACE_MAPS];
@@ -31,11 +32,13 @@ struct _n_InterfaceOperator {
   InterfaceDirect direct;   /* sparse factors; NULL: the bodies do not answer by massless layers alone, or factors are not wanted */
   /* conjugate gradients */
   KSP            iterative;
-  Vec            unknown, rhs, work[2];
+  Vec            unknown, rhs;
+  Vec           *on_bodies;                         /* per body two, of its rows; NULL where it does not feel forces */
   PetscLogDouble product_flops, spent, dense_flops; /* of one product; of all iterations so far; of dense matrices that are put off, or 0 */
 };
 
 PETSC_INTERN PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator, PetscInt);
+PETSC_INTERN PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator, PetscInt, PetscInt, PetscInt, PetscInt *);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);

@@ -6,10 +6,14 @@
 
 PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator op)
 {
+  const Contact contact = op->contact;
+
   PetscFunctionBegin;
-  PetscCall(MatCreateVecs(op->contact->interfaces[0], NULL, &op->unknown));
+  PetscCall(ContactCreateRowVec(contact, &op->unknown));
   PetscCall(VecDuplicate(op->unknown, &op->rhs));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDuplicate(op->unknown, &op->work[k]));
+  PetscCall(PetscCalloc1(2 * contact->n_bodies, &op->on_bodies));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    for (PetscInt k = 0; k < 2 && op->feels[b]; k++) PetscCall(MatCreateVecs(contact->interfaces[b], NULL, &op->on_bodies[2 * b + k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -19,35 +23,44 @@ PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator op)
   PetscCall(KSPDestroy(&op->iterative));
   PetscCall(VecDestroy(&op->unknown));
   PetscCall(VecDestroy(&op->rhs));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDestroy(&op->work[k]));
+  for (PetscInt k = 0; op->on_bodies && k < 2 * op->contact->n_bodies; k++) PetscCall(VecDestroy(&op->on_bodies[k]));
+  PetscCall(PetscFree(op->on_bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What one body adds to y = M x on the rows that are solved for */
 static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt b, Vec x, Vec y)
 {
-  const Contact      contact = op->contact;
-  const PetscScalar *in, *moved;
-  PetscScalar       *force, *out;
+  const Contact          contact = op->contact;
+  const ContactBodyRows *of      = &contact->body_rows[b];
+  const Vec              forces = op->on_bodies[2 * b], displacements = op->on_bodies[2 * b + 1];
+  const PetscScalar     *in, *moved;
+  PetscScalar           *force, *out;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(x, &in));
-  PetscCall(VecGetArrayWrite(op->work[0], &force));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    force[i] = op->marks[i] == INTERFACE_SOLVED ? InterfaceSideIn(map, &contact->pairs[contact->rows.pair[i]], b) * in[i] : 0;
-  PetscCall(VecRestoreArrayWrite(op->work[0], &force));
+  PetscCall(VecGetArrayWrite(forces, &force));
+  for (PetscInt k = 0; k < of->n; k++) {
+    const PetscInt i = of->rows[k];
+
+    force[k] = op->marks[i] == INTERFACE_SOLVED ? InterfaceSideIn(map, &contact->pairs[contact->rows.pair[i]], b) * in[i] : 0;
+  }
+  PetscCall(VecRestoreArrayWrite(forces, &force));
   PetscCall(VecRestoreArrayRead(x, &in));
-  PetscCall(BodyApplyCompliance(contact->bodies[b], op->work[0], op->work[1]));
-  PetscCall(VecGetArrayRead(op->work[1], &moved));
+  PetscCall(BodyApplyCompliance(contact->bodies[b], forces, displacements));
+  PetscCall(VecGetArrayRead(displacements, &moved));
   PetscCall(VecGetArray(y, &out));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (op->marks[i] == INTERFACE_SOLVED) out[i] += InterfaceSideOut(map, &contact->pairs[contact->rows.pair[i]], b) * moved[i];
+  for (PetscInt k = 0; k < of->n; k++) {
+    const PetscInt i = of->rows[k];
+
+    if (op->marks[i] == INTERFACE_SOLVED) out[i] += InterfaceSideOut(map, &contact->pairs[contact->rows.pair[i]], b) * moved[k];
+  }
   PetscCall(VecRestoreArray(y, &out));
-  PetscCall(VecRestoreArrayRead(op->work[1], &moved));
+  PetscCall(VecRestoreArrayRead(displacements, &moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = M x on the rows that are solved for, zero on the others; x counts on the former alone, and is not `work` of the operator */
+/* y = M x on the rows that are solved for, zero on the others; x counts on the former alone */
 PetscErrorCode InterfaceOperatorApply(InterfaceOperator op, InterfaceMap map, Vec x, Vec y)
 {
   PetscFunctionBegin;

@@ -25,7 +25,7 @@ PetscErrorCode InterfaceOperatorDestroy(InterfaceOperator *operator)
   if (!op) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&op->matrix));
   PetscCall(PetscFree3(op->marks, op->diagonal, op->feels));
-  PetscCall(PetscFree5(op->rows, op->body_rows, op->places, op->listed[0], op->listed[1]));
+  PetscCall(PetscFree6(op->rows, op->body_rows, op->body_places, op->places, op->listed[0], op->listed[1]));
   for (PetscInt m = 0; m < INTERFACE_MAPS; m++) PetscCall(PetscFree(op->matrices[m]));
   PetscCall(DenseFactorDestroy(&op->factor));
   PetscCall(InterfaceOperatorDestroyIterative(op));
@@ -61,18 +61,21 @@ static PetscErrorCode AddBody(InterfaceOperator op, InterfaceMap map, PetscInt b
   const Contact      contact = op->contact;
   const PetscScalar *W;
   const PetscInt    *place;
-  PetscInt           leading;
+  PetscInt           leading, n = 0;
 
   PetscFunctionBegin;
   PetscCall(BodyGetCompliance(contact->bodies[b], level, &place, &leading, &W));
-  for (PetscInt j = 0; j < op->n; j++) {
-    const PetscInt sign_j = InterfaceSideIn(map, &contact->pairs[contact->ranks.row_pair[op->rows[j]]], b);
+  PetscCall(InterfaceOperatorListBodyRows(op, b, 0, op->n, &n));
+  for (PetscInt l = 0; l < n; l++) {
+    const PetscInt     j      = op->body_places[l];
+    const PetscInt     sign_j = InterfaceSideIn(map, &contact->pairs[contact->ranks.row_pair[op->rows[j]]], b);
+    const PetscScalar *column = W + place[op->body_rows[l]] * leading;
 
-    if (!sign_j) continue;
-    for (PetscInt i = 0; i < op->n; i++) {
+    for (PetscInt k = 0; k < n && sign_j; k++) {
+      const PetscInt i      = op->body_places[k];
       const PetscInt sign_i = InterfaceSideOut(map, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], b);
 
-      if (sign_i) matrix[j * op->n + i] += sign_i * sign_j * W[place[op->rows[j]] * leading + place[op->rows[i]]];
+      if (sign_i) matrix[j * op->n + i] += sign_i * sign_j * column[place[op->body_rows[k]]];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -6,24 +6,40 @@ PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
 {
   PetscFunctionBegin;
   if (n <= op->room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(op->rows, op->body_rows, op->places, op->listed[0], op->listed[1]));
+  PetscCall(PetscFree6(op->rows, op->body_rows, op->body_places, op->places, op->listed[0], op->listed[1]));
   op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->rows.n_all));
-  PetscCall(PetscMalloc5(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->places, op->room, &op->listed[0], op->room,
-                         &op->listed[1]));
+  PetscCall(PetscMalloc6(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->body_places, op->room, &op->places, op->room,
+                         &op->listed[0], op->room, &op->listed[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The listed rows that concern a body, if it answers to forces on them, into body_rows */
-static PetscInt ListBodyRows(InterfaceOperator op, PetscInt b)
+/* Adds those of the listed rows from `begin` to `end` - 1 that concern a body to the `n` that body_rows has: their numbers among the rows
+   of the body, and into body_places their places in the list. Each part of the list ascends. */
+PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator op, PetscInt b, PetscInt begin, PetscInt end, PetscInt *n)
 {
-  PetscInt n = 0;
+  const ContactBodyRows *of = &op->contact->body_rows[b];
 
-  for (PetscInt i = 0; i < op->n_known && op->feels[b]; i++) {
-    const ContactPair *pair = &op->contact->pairs[op->contact->ranks.row_pair[op->rows[i]]];
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < of->n_all; k++) {
+    PetscInt place;
 
-    if (pair->body[0] == b || pair->body[1] == b) op->body_rows[n++] = op->rows[i];
+    PetscCall(PetscFindInt(of->all[k], end - begin, op->rows + begin, &place));
+    if (place < 0) continue;
+    op->body_rows[*n]       = k;
+    op->body_places[(*n)++] = begin + place;
   }
-  return n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of those that are solved for, then of those that are known, if the body answers to forces on them */
+static PetscErrorCode ListKnownRows(InterfaceOperator op, PetscInt b, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = 0;
+  if (!op->feels[b]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(InterfaceOperatorListBodyRows(op, b, 0, op->n, n));
+  PetscCall(InterfaceOperatorListBodyRows(op, b, op->n, op->n_known, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Operations that one product with S takes, and those that it takes to have a dense matrix, its columns and its factors, in its place */
@@ -33,9 +49,10 @@ static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, 
   *product = 0;
   *dense   = DenseFactorFlops(op->n);
   for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
-    const PetscInt n = ListBodyRows(op, b);
     PetscLogDouble apply, extend;
+    PetscInt       n;
 
+    PetscCall(ListKnownRows(op, b, &n));
     PetscCall(BodyGetComplianceFlops(op->contact->bodies[b], n, op->body_rows, &apply, &extend));
     if (op->feels[b]) *product += apply;
     *dense += extend;
@@ -99,8 +116,9 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   PetscCall(ChooseDense(op));
   if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscInt n = ListBodyRows(op, b);
+    PetscInt n;
 
+    PetscCall(ListKnownRows(op, b, &n));
     PetscCall(BodyExtendCompliance(contact->bodies[b], n, op->body_rows));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

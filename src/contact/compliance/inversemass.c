@@ -8,16 +8,20 @@
 #define WORST          1e-10
 #define MAX_ITERATIONS 2000
 
-/* Direction in which the force of a row acts on body b: Neumann sides are pushed along the rows, Dirichlet sides against them */
-static PetscInt Sign(const ContactPair *pair, PetscInt b)
-{
-  return (pair->body[1] == b) - (pair->body[0] == b);
-}
-
 /* The forces on the rows of a body, as it takes them */
 void InverseMassGetBodyForces(Contact contact, PetscInt b, const PetscScalar force[], PetscScalar on_body[])
 {
-  for (PetscInt i = 0; i < contact->rows.n; i++) on_body[i] = Sign(&contact->pairs[contact->rows.pair[i]], b) * force[i];
+  const ContactBodyRows *of = &contact->body_rows[b];
+
+  for (PetscInt k = 0; k < of->n; k++) on_body[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * force[of->rows[k]];
+}
+
+/* Adds what the rows of a body move by to the gaps */
+void InverseMassAddBodyRows(Contact contact, PetscInt b, const PetscScalar moved[], PetscScalar gaps[])
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+
+  for (PetscInt k = 0; k < of->n; k++) gaps[of->rows[k]] += ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * moved[k];
 }
 
 typedef struct {
@@ -38,14 +42,16 @@ static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
   PetscCall(VecGetArray(y, &sum));
   for (PetscInt i = 0; i < ctx->contact->rows.n; i++) sum[i] = ctx->owner->takes_part[i] ? 0 : force[i];
   for (PetscInt b = 0; b < ctx->contact->n_bodies; b++) {
+    const ContactBodyRows *of  = &ctx->contact->body_rows[b];
     PetscScalar *const on_body = ctx->owner->work[0], *const moved = ctx->owner->work[1];
 
     InverseMassGetBodyForces(ctx->contact, b, force, on_body);
-    for (PetscInt i = 0; i < ctx->contact->rows.n; i++)
-      if (!ctx->owner->takes_part[i]) on_body[i] = 0;
+    for (PetscInt k = 0; k < of->n; k++)
+      if (!ctx->owner->takes_part[of->rows[k]]) on_body[k] = 0;
     PetscCall(BodyMultiplyInverseMass(ctx->contact->bodies[b], on_body, moved));
-    for (PetscInt i = 0; i < ctx->contact->rows.n; i++)
-      if (ctx->owner->takes_part[i]) sum[i] += Sign(&ctx->contact->pairs[ctx->contact->rows.pair[i]], b) * moved[i];
+    for (PetscInt k = 0; k < of->n; k++)
+      if (!ctx->owner->takes_part[of->rows[k]]) moved[k] = 0;
+    InverseMassAddBodyRows(ctx->contact, b, moved, sum);
   }
   PetscCall(VecRestoreArray(y, &sum));
   PetscCall(VecRestoreArrayRead(x, &force));
@@ -79,24 +85,19 @@ static PetscErrorCode CreateShell(Contact contact, InverseMass *inverse, Mat *sh
 }
 
 /* C entry by entry */
-static PetscErrorCode Assemble(Contact contact, PetscErrorCode (*compute)(Body, Mat *), InverseMass *inverse, Mat *C)
+static PetscErrorCode Assemble(Contact contact, PetscErrorCode (*compute)(Body, Mat *), Mat *C)
 {
   PetscFunctionBegin;
-  *C = NULL;
+  PetscCall(ContactCreateRowMatrix(contact, C));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscScalar *signs;
-    Mat          part;
+    Mat part;
 
     PetscCall((*compute)(contact->bodies[b], &part));
-    PetscCall(VecGetArrayWrite(inverse->rhs, &signs));
-    for (PetscInt i = 0; i < contact->rows.n; i++) signs[i] = Sign(&contact->pairs[contact->rows.pair[i]], b);
-    PetscCall(VecRestoreArrayWrite(inverse->rhs, &signs));
-    PetscCall(MatDiagonalScale(part, inverse->rhs, inverse->rhs));
-    if (*C) {
-      PetscCall(MatAXPY(*C, 1, part, DIFFERENT_NONZERO_PATTERN));
-      PetscCall(MatDestroy(&part));
-    } else *C = part;
+    PetscCall(ContactAddBodyMatrix(contact, b, part, *C));
+    PetscCall(MatDestroy(&part));
   }
+  PetscCall(MatAssemblyBegin(*C, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*C, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,14 +140,14 @@ PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseM
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
-  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &inverse->rhs));
+  PetscCall(ContactCreateRowVec(contact, &inverse->rhs));
   PetscCall(VecDuplicate(inverse->rhs, &inverse->solution));
-  PetscCall(Assemble(contact, BodyComputeInverseLumpedMass, inverse, &lumped));
+  PetscCall(Assemble(contact, BodyComputeInverseLumpedMass, &lumped));
   PetscCall(FindRows(contact, lumped, inverse));
   PetscCall(LeaveOutOthers(contact, inverse, lumped));
   if (type == INVERSE_MASS_ONCE) PetscCall(CreateShell(contact, inverse, &C));
   else if (type == INVERSE_MASS_ASSEMBLED) {
-    PetscCall(Assemble(contact, BodyComputeInverseMass, inverse, &C));
+    PetscCall(Assemble(contact, BodyComputeInverseMass, &C));
     PetscCall(LeaveOutOthers(contact, inverse, C));
   } else {
     C = lumped;

@@ -34,12 +34,15 @@ static PetscErrorCode MakeStep(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+    const ContactBodyRows *of = &contact->body_rows[b];
 
-      energy->now[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * (energy->start_force[i] - energy->last_force[i]);
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt i = of->rows[k];
+
+      energy->now[k]        = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (energy->start_force[i] - energy->last_force[i]);
+      contact->work.rest[k] = energy->rest[i];
     }
-    PetscCall(BodySetStartForce(contact->bodies[b], energy->now, energy->rest));
+    PetscCall(BodySetStartForce(contact->bodies[b], energy->now, contact->work.rest));
   }
   PetscCall(PetscArraycpy(contact->start.force, energy->start_force, contact->rows.n));
   energy->again = energy->changed = PETSC_TRUE;

@@ -16,36 +16,35 @@ PetscReal ContactStoresNothing(Contact contact, PetscInt row, PetscReal gap)
 /* Adds the work on body b to that of the pairs */
 static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
 {
-  ContactEnergy    *energy = &contact->energy;
-  const BodyTraces *traces = &contact->traces[b];
-  PetscReal        *last = energy->last, *now = energy->now;
-  const PetscBool  *by_mean;
-  PetscScalar      *first;
-  PetscInt          substeps;
+  const ContactBodyRows *of     = &contact->body_rows[b];
+  ContactEnergy         *energy = &contact->energy;
+  const BodyTraces      *traces = &contact->traces[b];
+  PetscReal             *last = energy->last, *now = energy->now;
+  const PetscBool       *by_mean;
+  PetscScalar           *first;
+  PetscInt               substeps;
 
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
   PetscCall(BodyGetMeanForces(contact->bodies[b], &by_mean));
   PetscCall(TraceGetLevel(traces->displacement, 0, &first));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-
-    last[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * energy->last_force[i];
-  }
+  for (PetscInt k = 0; k < of->n; k++)
+    last[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * energy->last_force[of->rows[k]];
   for (PetscInt level = 1; level <= substeps; level++) {
     PetscScalar *before, *after;
 
     PetscCall(TraceGetLevel(traces->displacement, level - 1, &before));
     PetscCall(TraceGetLevel(traces->displacement, level, &after));
     PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      if (by_mean && by_mean[i]) { /* one force in all substeps */
-        if (level == substeps)
-          energy->pair_sums[2 * contact->rows.pair[i]] += 0.5 * (last[i] + now[i]) * PetscRealPart(after[i] - first[i]);
+    for (PetscInt k = 0; k < of->n; k++) {
+      PetscReal *sum = &energy->pair_sums[2 * contact->rows.pair[of->rows[k]]];
+
+      if (by_mean && by_mean[k]) { /* one force in all substeps */
+        if (level == substeps) *sum += 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - first[k]);
         continue;
       }
-      energy->pair_sums[2 * contact->rows.pair[i]] += 0.5 * (last[i] + now[i]) * PetscRealPart(after[i] - before[i]);
-      last[i] = now[i];
+      *sum += 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - before[k]);
+      last[k] = now[k];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

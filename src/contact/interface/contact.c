@@ -36,6 +36,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCall(
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
+  PetscCallMPI(MPI_Comm_rank(comm, &(*contact)->ranks.rank));
   (*contact)->options.facing         = PETSC_TRUE;
   (*contact)->options.shared_times   = PETSC_TRUE;
   (*contact)->options.balanced_start = PETSC_TRUE;
@@ -345,7 +346,6 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
   PetscCall(PetscFree(c->spares));
-  PetscCall(PetscFree(c->work.stabilized));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));

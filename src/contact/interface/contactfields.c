@@ -19,7 +19,7 @@ typedef enum {
 
 struct _n_ContactFields {
   Contact   contact;  /* borrowed */
-  Vec       rows;     /* one number for each row */
+  Vec      *rows;     /* per body: one number for each row of it */
   Vec      *nodes;    /* per body: N_CARRIED vectors of its displacements' layout */
   PetscReal smallest; /* smaller areas are round-off [m^2] */
 };
@@ -52,11 +52,11 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
   PetscCall(PetscNew(&f));
   *fields    = f;
   f->contact = contact;
-  PetscCall(VecCreateMPI(comm, contact->rows.n, PETSC_DETERMINE, &f->rows));
-  PetscCall(PetscCalloc1(N_CARRIED * contact->n_bodies, &f->nodes));
+  PetscCall(PetscCalloc2(contact->n_bodies, &f->rows, N_CARRIED * contact->n_bodies, &f->nodes));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec positions;
 
+    PetscCall(VecCreateMPI(comm, contact->body_rows[b].n, PETSC_DETERMINE, &f->rows[b]));
     PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
     for (PetscInt k = 0; k < N_CARRIED; k++) PetscCall(VecDuplicate(positions, &f->nodes[N_CARRIED * b + k]));
   }
@@ -94,22 +94,23 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
   PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(fields->rows, &values));
+  PetscCall(VecGetArrayWrite(fields->rows[b], &values));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const PetscInt     sign = (pair->body[1] == b) - (pair->body[0] == b);
+    const PetscInt     sign = ContactSign(pair, b);
     TransferRows       rows;
 
+    if (!sign) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
       const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0;
 
-      values[i] = sign ? sign * RowValue(contact, i, along, kind) : 0;
+      values[i - pair->shift[sign > 0 ? 1 : 0]] = sign * RowValue(contact, i, along, kind);
     }
   }
-  PetscCall(VecRestoreArrayWrite(fields->rows, &values));
-  PetscCall(MatMultTranspose(contact->interfaces[b], fields->rows, fields->nodes[N_CARRIED * b + kind]));
+  PetscCall(VecRestoreArrayWrite(fields->rows[b], &values));
+  PetscCall(MatMultTranspose(contact->interfaces[b], fields->rows[b], fields->nodes[N_CARRIED * b + kind]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -195,8 +196,8 @@ PetscErrorCode ContactFieldsDestroy(ContactFields *fields)
   PetscFunctionBegin;
   if (!*fields) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < N_CARRIED * (*fields)->contact->n_bodies; k++) PetscCall(VecDestroy(&(*fields)->nodes[k]));
-  PetscCall(PetscFree((*fields)->nodes));
-  PetscCall(VecDestroy(&(*fields)->rows));
+  for (PetscInt b = 0; b < (*fields)->contact->n_bodies; b++) PetscCall(VecDestroy(&(*fields)->rows[b]));
+  PetscCall(PetscFree2((*fields)->rows, (*fields)->nodes));
   PetscCall(PetscFree(*fields));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

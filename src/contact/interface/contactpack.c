@@ -105,10 +105,8 @@ static PetscErrorCode UnpackRows(Contact contact, Tables tables)
   contact->rows.patterns[0] = contact->rows.patterns[1] = -1;
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.moved));
-    PetscCall(BodyTakeRows(contact->bodies[b]));
-  }
+  PetscCall(ContactUpdateBodies(contact, contact->work.moved));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeRows(contact->bodies[b]));
   contact->rows.filled = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

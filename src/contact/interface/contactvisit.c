@@ -76,8 +76,7 @@ static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(CheckpointVisitMat(checkpoint, "rows of a body", &contact->interfaces[b]));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.moved));
+  PetscCall(ContactUpdateBodies(contact, contact->work.moved));
   contact->rows.filled      = PETSC_FALSE;
   contact->rows.patterns[0] = contact->rows.patterns[1] = -1; /* matrices of later steps are made anew */
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -31,7 +31,6 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
                ((PetscObject)contact)->type_name);
   contact->energy.unlimited = "a stabilization changes accelerations or forces between steps";
   if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(ImpaktCite(CITE_CONTACT_STABILIZED));
-  PetscCall(PetscCalloc1(contact->rows.n, &contact->work.stabilized));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,12 +74,10 @@ PetscErrorCode ContactStabilize(Contact contact)
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+    const ContactBodyRows *of = &contact->body_rows[b];
 
-      contact->work.stabilized[i] = (PetscBool)(contact->end.active[i] && (pair->body[0] == b || pair->body[1] == b));
-    }
-    PetscCall(BodyClearAcceleration(contact->bodies[b], contact->work.stabilized));
+    for (PetscInt k = 0; k < of->n; k++) contact->work.flags[k] = contact->end.active[of->rows[k]];
+    PetscCall(BodyClearAcceleration(contact->bodies[b], contact->work.flags));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

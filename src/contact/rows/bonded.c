@@ -34,28 +34,29 @@ void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscRe
   }
 }
 
-/* Replaces the rows of a matrix, which are along the axes, by those along the directions of the rows */
-PetscErrorCode ContactTurnMatrix(Contact contact, Mat *rows)
+/* Replaces the rows of the matrix of a body, which are along the axes, by those along the directions of the rows */
+PetscErrorCode ContactTurnMatrix(Contact contact, PetscInt b)
 {
-  Mat turn, turned;
+  const ContactBodyRows *of = &contact->body_rows[b];
+  Mat                    turn, turned;
 
   PetscFunctionBegin;
   if (contact->options.law != CONTACT_LAW_BONDED || contact->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)contact), contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all,
-                         contact->dim, NULL, 0, NULL, &turn));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
+  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)contact), of->n, of->n, of->n_all, of->n_all, contact->dim, NULL, 0, NULL, &turn));
+  for (PetscInt k = 0; k < of->n; k++) {
+    const PetscInt     i    = of->rows[k];
     const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-    const PetscInt     node = pair->begin + (i - pair->begin) / pair->components * pair->components;
+    const PetscInt     node = k - (i - pair->begin) % pair->components;
 
     for (PetscInt d = 0; d < contact->dim; d++)
-      PetscCall(MatSetValue(turn, contact->rows.begin + i, contact->rows.begin + node + d, contact->rows.normal[3 * i + d], INSERT_VALUES));
+      PetscCall(MatSetValue(turn, of->begin + k, of->begin + node + d, contact->rows.normal[3 * i + d], INSERT_VALUES));
   }
   PetscCall(MatAssemblyBegin(turn, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(turn, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatMatMult(turn, *rows, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &turned));
+  PetscCall(MatMatMult(turn, contact->interfaces[b], MAT_INITIAL_MATRIX, PETSC_DETERMINE, &turned));
   PetscCall(MatDestroy(&turn));
-  PetscCall(MatDestroy(rows));
-  *rows = turned;
+  PetscCall(MatDestroy(&contact->interfaces[b]));
+  contact->interfaces[b] = turned;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -68,7 +69,7 @@ static PetscErrorCode BondNode(Contact contact, const ContactPair *pair, PetscIn
   for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].displacement, 0, &start[side]));
   for (PetscInt i = first; i < first + pair->components; i++) {
     contact->rows.tied[i] = contact->rows.opposite[i] = PETSC_TRUE;
-    contact->rows.initial_gap[i]                      = PetscRealPart(start[0][i] - start[1][i]);
+    contact->rows.initial_gap[i]                      = PetscRealPart(start[0][i - pair->shift[0]] - start[1][i - pair->shift[1]]);
     contact->start.gap[i] = contact->end.gap[i] = 0;
     contact->start.active[i]                    = PETSC_TRUE;
     if (i > first) contact->start.force[i] = 0;

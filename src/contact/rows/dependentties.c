@@ -14,28 +14,20 @@
 /* More rows at joints than this are not looked at: a matrix of 32 MB */
 #define MAX_ROWS 2000
 
-/* G; NULL without bodies */
+/* G */
 static PetscErrorCode CreateGram(Contact contact, Mat *gram)
 {
   PetscFunctionBegin;
-  *gram = NULL;
+  PetscCall(ContactCreateRowMatrix(contact, gram));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscScalar *values;
-    Mat          part;
-    Vec          signs;
+    Mat part;
 
     PetscCall(MatMatTransposeMult(contact->interfaces[b], contact->interfaces[b], MAT_INITIAL_MATRIX, PETSC_DETERMINE, &part));
-    PetscCall(MatCreateVecs(part, &signs, NULL));
-    PetscCall(VecGetArrayWrite(signs, &values));
-    for (PetscInt i = 0; i < contact->rows.n; i++) values[i] = contact->pairs[contact->rows.pair[i]].body[1] == b ? 1 : -1;
-    PetscCall(VecRestoreArrayWrite(signs, &values));
-    PetscCall(MatDiagonalScale(part, signs, signs));
-    PetscCall(VecDestroy(&signs));
-    if (*gram) {
-      PetscCall(MatAXPY(*gram, 1, part, DIFFERENT_NONZERO_PATTERN));
-      PetscCall(MatDestroy(&part));
-    } else *gram = part;
+    PetscCall(ContactAddBodyMatrix(contact, b, part, *gram));
+    PetscCall(MatDestroy(&part));
   }
+  PetscCall(MatAssemblyBegin(*gram, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*gram, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -240,16 +240,22 @@ PetscErrorCode ContactMergeDroppedRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Replaces the rows of the transfers in a matrix by the merged ones */
-PetscErrorCode ContactMergeMatrix(Contact contact, Mat *rows)
+/* Replaces the rows of the transfers in the matrix of a body by the merged ones. Heirs are rows of the same pair. */
+PetscErrorCode ContactMergeMatrix(Contact contact, PetscInt b)
 {
-  Mat merged;
+  const ContactBodyRows *of = &contact->body_rows[b];
+  Mat                    merger, merged;
+  IS                     rows;
 
   PetscFunctionBegin;
   if (!contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMatMult(contact->held.merger, *rows, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &merged));
-  PetscCall(MatDestroy(rows));
-  *rows = merged;
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)contact), of->n, of->all + of->begin, PETSC_USE_POINTER, &rows));
+  PetscCall(MatCreateSubMatrix(contact->held.merger, rows, rows, MAT_INITIAL_MATRIX, &merger));
+  PetscCall(MatMatMult(merger, contact->interfaces[b], MAT_INITIAL_MATRIX, PETSC_DETERMINE, &merged));
+  PetscCall(ISDestroy(&rows));
+  PetscCall(MatDestroy(&merger));
+  PetscCall(MatDestroy(&contact->interfaces[b]));
+  contact->interfaces[b] = merged;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -45,8 +45,8 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc2(n, &contact->ties.holds, n, &contact->ties.distance));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
-  PetscCall(PetscCalloc5(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
-                         &contact->rows.followed, n, &contact->work.moved));
+  PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
+                         &contact->rows.followed, n, &contact->work.moved, n, &contact->work.flags, n, &contact->work.rest));
   PetscCall(ContactSetUpSavedRows(contact));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
@@ -55,6 +55,7 @@ static PetscErrorCode AllocateRows(Contact contact)
     for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) contact->rows.pair[i] = p;
   PetscCallMPI(MPI_Allgatherv(contact->rows.pair, mine, MPIU_INT, contact->ranks.row_pair, contact->ranks.counts, contact->ranks.offsets,
                               MPIU_INT, comm));
+  PetscCall(ContactNumberBodyRows(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,7 +154,7 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscCall(VecGetLocalSize(positions, &n));
   PetscCall(MatDestroy(&contact->interfaces[b]));
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
-  PetscCall(MatSetSizes(contact->interfaces[b], contact->rows.n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetSizes(contact->interfaces[b], contact->body_rows[b].n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
   PetscCall(MatSetUp(contact->interfaces[b]));
   PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
@@ -195,16 +196,21 @@ PetscErrorCode ContactFillMatrices(Contact contact)
     else PetscCall(CreateMatrix(contact, b));
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+    const ContactPair *pair     = &contact->pairs[p];
+    PetscInt           begin[2] = {0, 0};
+    Mat                rows[2]  = {NULL, NULL};
 
-    PetscCall(TransferSetValues(pair->transfer, contact->rows.begin + pair->begin, pair->components, contact->interfaces[pair->body[0]],
-                                pair->obstacle ? NULL : contact->interfaces[pair->body[1]]));
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+      begin[side] = contact->body_rows[pair->body[side]].begin + pair->begin - pair->shift[side];
+      rows[side]  = contact->interfaces[pair->body[side]];
+    }
+    PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
-    PetscCall(ContactTurnMatrix(contact, &contact->interfaces[b]));
-    PetscCall(ContactMergeMatrix(contact, &contact->interfaces[b]));
+    PetscCall(ContactTurnMatrix(contact, b));
+    PetscCall(ContactMergeMatrix(contact, b));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -290,8 +296,9 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->ranks.offsets));
   PetscCall(PetscFree6(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
                        contact->held.merged_gap));
-  PetscCall(
-      PetscFree5(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed, contact->work.moved));
+  PetscCall(PetscFree7(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,
+                       contact->work.moved, contact->work.flags, contact->work.rest));
+  PetscCall(ContactDestroyBodyRows(contact));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(PetscFree2(contact->ties.holds, contact->ties.distance));
   PetscCall(ContactDestroySavedRows(contact));

@@ -37,7 +37,8 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
 
     PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
     PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-    contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + neumann[i] - dirichlet[i];
+    contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + neumann[i - pair->shift[1]] -
+                                                  dirichlet[i - pair->shift[0]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -194,9 +195,9 @@ static void DropShifts(Contact contact)
 
 /* Intervals of the controller step between which the force of a pair is linear: at their ends its Dirichlet side tells its reaction, or the
    force is an unknown at the times that both sides have. Methods that do not prescribe displacements know the force at the end alone. */
-static PetscErrorCode CountIntervals(Contact contact, const ContactPair *pair, PetscInt *intervals)
+static PetscErrorCode CountIntervals(Contact contact, ContactPair *pair)
 {
-  PetscInt substeps[2];
+  PetscInt substeps[2], *intervals = &pair->intervals;
 
   PetscFunctionBegin;
   *intervals = 1;
@@ -223,20 +224,19 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscInt           n;
-
-    PetscCall(CountIntervals(contact, pair, &n));
-    fewest = PetscMin(fewest, n);
-    for (PetscInt i = pair->begin; i < pair->end; i++) intervals[i] = n;
+    PetscCall(CountIntervals(contact, &contact->pairs[p]));
+    fewest = PetscMin(fewest, contact->pairs[p].intervals);
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-      const PetscInt     sign = (pair->body[1] == b) - (pair->body[0] == b);
+    const ContactBodyRows *of = &contact->body_rows[b];
 
-      old[i] = sign * before[i];
-      now[i] = sign * contact->start.force[i];
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt     i    = of->rows[k];
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+
+      old[k]       = ContactSign(pair, b) * before[i];
+      now[k]       = ContactSign(pair, b) * contact->start.force[i];
+      intervals[k] = pair->intervals;
     }
     PetscCall(BodyHandOver(contact->bodies[b], old, now, intervals, fewest));
   }
@@ -311,8 +311,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++)
     contact->work.moved[i] = (PetscBool)(contact->rows.changed[i] || contact->rows.followed[i]);
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.moved));
+  PetscCall(ContactUpdateBodies(contact, contact->work.moved));
   PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactDropShared(contact));

@@ -182,7 +182,8 @@ PetscErrorCode ContactSetUpSharedNodes(Contact contact, PetscBool arranges)
     if (!pair->obstacle) PetscCall(BodyFeelsEndForce(contact->bodies[pair->body[1]], &shared->answers[p]));
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.by_force[i] = contact->pairs[contact->rows.pair[i]].by_force;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRowWeights(contact->bodies[b], contact->rows.area));
+  PetscCall(ContactCopyAreas(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRowWeights(contact->bodies[b], contact->body_rows[b].area));
   shared->arranges = arranges;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,12 +35,6 @@ typedef struct {
   Vec          rhs, solution;
 } StartBalance;
 
-/* Direction in which the force of a row acts on body b: Neumann sides are pushed along the rows, Dirichlet sides against them */
-static PetscInt Sign(const ContactPair *pair, PetscInt b)
-{
-  return (pair->body[1] == b) - (pair->body[0] == b);
-}
-
 /* change = S force on this rank's rows [m] */
 static PetscErrorCode MultiplyLayers(StartBalance *start, const PetscScalar force[], PetscScalar change[])
 {
@@ -51,7 +45,7 @@ static PetscErrorCode MultiplyLayers(StartBalance *start, const PetscScalar forc
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     InverseMassGetBodyForces(contact, b, force, start->on_body);
     PetscCall(BodyMultiplyLayerCompliance(contact->bodies[b], start->on_body, start->moved));
-    for (PetscInt i = 0; i < contact->rows.n; i++) change[i] += Sign(&contact->pairs[contact->rows.pair[i]], b) * start->moved[i];
+    InverseMassAddBodyRows(contact, b, start->moved, change);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -143,8 +137,12 @@ static PetscErrorCode Relax(StartBalance *start)
 
     PetscCall(BodyRelaxLayer(contact->bodies[b], start->moved, &change));
     start->change = PetscMax(start->change, change);
-    for (PetscInt i = 0; i < contact->rows.n; i++)
-      if (start->takes_part[i]) start->relaxed[i] += Sign(&contact->pairs[contact->rows.pair[i]], b) * PetscRealPart(start->moved[i]);
+    for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
+      const PetscInt i = contact->body_rows[b].rows[k];
+
+      if (start->takes_part[i])
+        start->relaxed[i] += ContactSign(&contact->pairs[contact->rows.pair[i]], b) * PetscRealPart(start->moved[k]);
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -178,9 +176,11 @@ static PetscErrorCode FindRows(StartBalance *start)
   PetscCall(PetscCalloc3(contact->rows.n, &massless, contact->rows.n, &mass, contact->rows.n, &any_mass));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodyMarkRows(contact->bodies[b], massless, mass));
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      start->takes_part[i] = (PetscBool)(start->takes_part[i] || massless[i]);
-      any_mass[i]          = (PetscBool)(any_mass[i] || mass[i]);
+    for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
+      const PetscInt i = contact->body_rows[b].rows[k];
+
+      start->takes_part[i] = (PetscBool)(start->takes_part[i] || massless[k]);
+      any_mass[i]          = (PetscBool)(any_mass[i] || mass[k]);
     }
   }
   for (PetscInt i = 0; i < contact->rows.n; i++)
@@ -210,7 +210,7 @@ static PetscErrorCode Create(Contact contact, StartBalance *start)
   for (PetscInt i = 0; i < n; i++) start->springs[i] = SpringCompliance(contact, i);
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &start->rounds));
   start->rounds.known = start->takes_part;
-  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &start->rhs));
+  PetscCall(ContactCreateRowVec(contact, &start->rhs));
   PetscCall(VecDuplicate(start->rhs, &start->solution));
   PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, start, &start->S));
   PetscCall(MatShellSetOperation(start->S, MATOP_MULT, (void (*)(void))MultiplyActive));

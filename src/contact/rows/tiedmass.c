@@ -108,10 +108,12 @@ PetscErrorCode ContactSetMeanForces(Contact contact)
   if (!contact->ties.by_mean) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(contact->rows.n, &by_mean));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+    const ContactBodyRows *of = &contact->body_rows[b];
 
-      by_mean[i] = (PetscBool)(contact->rows.tied[i] && !pair->keeps_mass && (pair->body[0] == b || pair->body[1] == b));
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt i = of->rows[k];
+
+      by_mean[k] = (PetscBool)(contact->rows.tied[i] && !contact->pairs[contact->rows.pair[i]].keeps_mass);
     }
     PetscCall(BodySetMeanForces(contact->bodies[b], by_mean));
   }
@@ -132,7 +134,7 @@ static PetscErrorCode GetStartRates(Contact contact, PetscInt order, PetscScalar
 
       PetscCall(TraceGetLevel(order == 1 ? traces->velocity : traces->acceleration, 0, &start[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = start[1][i] - start[0][i];
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = start[1][i - pair->shift[1]] - start[0][i - pair->shift[0]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

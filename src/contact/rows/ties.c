@@ -42,8 +42,8 @@ static PetscErrorCode AddDisplacements(Contact contact, const ContactPair *pair,
 {
   MPI_Comm     comm = PetscObjectComm((PetscObject)contact);
   TransferRows rows;
-  Mat          B[2] = {NULL, NULL};
-  PetscInt     begin;
+  Mat          B[2]     = {NULL, NULL};
+  PetscInt     begin[2] = {0, 0};
 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
@@ -58,8 +58,8 @@ static PetscErrorCode AddDisplacements(Contact contact, const ContactPair *pair,
     PetscCall(MatSetType(B[side], MATAIJ));
     PetscCall(MatSetUp(B[side]));
   }
-  PetscCall(MatGetOwnershipRange(B[0], &begin, NULL));
-  PetscCall(TransferSetValues(pair->transfer, begin, 1, B[0], B[1]));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(MatGetOwnershipRange(B[side], &begin[side], NULL));
+  PetscCall(TransferSetValues(pair->transfer, begin, 1, B));
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     const PetscScalar *values;
     Vec                u, moved;
@@ -274,8 +274,7 @@ static PetscErrorCode RebuildTies(Contact contact)
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->rows.changed));
+  PetscCall(ContactUpdateBodies(contact, contact->rows.changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,40 +21,21 @@ PetscErrorCode ComplementarityDestroy(Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Direction in which the force of a row acts on body b: Neumann sides are pushed along the rows, Dirichlet sides against them */
-static PetscInt Sign(const ContactPair *pair, PetscInt b)
-{
-  return (pair->body[1] == b) - (pair->body[0] == b);
-}
-
-/* t C_b t, with the directions t of the rows */
-static PetscErrorCode Orient(Contact contact, PetscInt b, Vec sign, Mat matrix)
-{
-  PetscScalar *signs;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(sign, &signs));
-  for (PetscInt i = 0; i < contact->rows.n; i++) signs[i] = Sign(&contact->pairs[contact->rows.pair[i]], b);
-  PetscCall(VecRestoreArrayWrite(sign, &signs));
-  PetscCall(MatDiagonalScale(matrix, sign, sign));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* C, with the rows as they are: the sum of what `compute` tells of each body */
 PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscErrorCode (*compute)(Body, Mat *), Complementarity *problem)
 {
   PetscFunctionBegin;
   PetscCall(MatDestroy(&problem->compliance));
+  PetscCall(ContactCreateRowMatrix(contact, &problem->compliance));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Mat matrix;
 
     PetscCall((*compute)(contact->bodies[b], &matrix));
-    PetscCall(Orient(contact, b, problem->gap_vec, matrix));
-    if (problem->compliance) {
-      PetscCall(MatAXPY(problem->compliance, 1, matrix, DIFFERENT_NONZERO_PATTERN));
-      PetscCall(MatDestroy(&matrix));
-    } else problem->compliance = matrix;
+    PetscCall(ContactAddBodyMatrix(contact, b, matrix, problem->compliance));
+    PetscCall(MatDestroy(&matrix));
   }
+  PetscCall(MatAssemblyBegin(problem->compliance, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(problem->compliance, MAT_FINAL_ASSEMBLY));
   PetscCall(InterfaceOperatorSetMatrix(problem->S, problem->compliance));
   problem->current = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -93,7 +74,7 @@ PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
   PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->closed, n,
                          &problem->marks));
   PetscCall(RoundsCreate(contact, problem->active, problem->forces, problem->closed, &problem->rounds));
-  PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &problem->force_vec));
+  PetscCall(ContactCreateRowVec(contact, &problem->force_vec));
   PetscCall(VecDuplicate(problem->force_vec, &problem->gap_vec));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &problem->S));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -158,8 +139,11 @@ PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Comple
 /* The forces on the rows of a body, as it takes them */
 PetscErrorCode ComplementarityGetBodyForces(Contact contact, PetscInt b, const Complementarity *problem, PetscScalar forces[])
 {
+  const ContactBodyRows *of = &contact->body_rows[b];
+
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) forces[i] = Sign(&contact->pairs[contact->rows.pair[i]], b) * problem->forces[i];
+  for (PetscInt k = 0; k < of->n; k++)
+    forces[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * problem->forces[of->rows[k]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,14 +13,15 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar x[], co
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const PetscInt row = contact->rows.begin + i;
-    PetscReal      mismatch;
-    PetscScalar   *start;
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+    const PetscInt     row  = contact->rows.begin + i;
+    PetscReal          mismatch;
+    PetscScalar       *start;
 
     mismatch = x[i] > 0 ? PetscAbsReal(f[i]) : PetscMax(-f[i], -x[i] * lagrange->compliance[row * (contact->rows.n_all + 1)]);
-    PetscCall(TraceGetLevel(contact->traces[contact->pairs[contact->rows.pair[i]].body[0]].displacement, 0, &start));
+    PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &start));
     sums[0] += PetscSqr(PetscMax(mismatch, 0));
-    sums[1] += PetscSqr(start[i]);
+    sums[1] += PetscSqr(start[i - pair->shift[0]]);
     if (PetscIsInfOrNanReal(f[i])) sums[0] = f[i];
   }
   if (contact->ranks.size > 1)

@@ -38,7 +38,7 @@ static PetscErrorCode GetRates(Contact contact, PetscBool at_end, PetscScalar ra
       PetscCall(TraceGetSizes(traces->velocity, NULL, &levels));
       PetscCall(TraceGetLevel(traces->velocity, at_end ? levels : 0, &velocity[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = velocity[1][i] - velocity[0][i];
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = velocity[1][i - pair->shift[1]] - velocity[0][i - pair->shift[0]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

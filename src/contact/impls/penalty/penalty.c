@@ -63,7 +63,8 @@ static PetscReal RoundOff(Contact contact, PetscInt i)
   const PetscScalar *start   = penalty->start[pair->body[0]]; /* displacements */
 
   if (!penalty->pushing[i]) return 0;
-  return 4 * PETSC_MACHINE_EPSILON * penalty->stiffness[i] * (PetscAbsReal(start[i]) + PetscAbsReal(contact->rows.initial_gap[i]));
+  return 4 * PETSC_MACHINE_EPSILON * penalty->stiffness[i] *
+         (PetscAbsReal(start[i - pair->shift[0]]) + PetscAbsReal(contact->rows.initial_gap[i]));
 }
 
 /* Advances all bodies under the forces x, and compares these with what springs and dampers ask for */

@@ -72,9 +72,11 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
     if (!is_explicit || massless) continue;
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     PetscCall(BodyBoundForwardCompliance(contact->bodies[b], bound));
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      compliance[0][i] += bound[i];
-      compliance[1][i] += substeps * substeps * bound[i];
+    for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
+      const PetscInt i = contact->body_rows[b].rows[k];
+
+      compliance[0][i] += bound[k];
+      compliance[1][i] += substeps * substeps * bound[k];
     }
   }
   worst[0] = worst[1] = 0;

@@ -170,9 +170,10 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
 /* An integration under the contact forces of the step before; or what a body that tells it for less would do without contact */
 static PetscErrorCode MakeBase(Contact contact, PetscInt b)
 {
-  const BodyTraces *traces = &contact->traces[b];
-  PetscInt          levels;
-  PetscBool         free_rows;
+  const ContactBodyRows *of     = &contact->body_rows[b];
+  const BodyTraces      *traces = &contact->traces[b];
+  PetscInt               levels;
+  PetscBool              free_rows;
 
   PetscFunctionBegin;
   PetscCall(BodyHasFreeRows(contact->bodies[b], &free_rows));
@@ -185,11 +186,8 @@ static PetscErrorCode MakeBase(Contact contact, PetscInt b)
     PetscScalar *force;
 
     PetscCall(TraceGetLevel(traces->force_in, level, &force));
-    for (PetscInt i = 0; i < contact->rows.n; i++) {
-      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-
-      force[i] = ((pair->body[1] == b) - (pair->body[0] == b)) * contact->start.force[i];
-    }
+    for (PetscInt k = 0; k < of->n; k++)
+      force[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * contact->start.force[of->rows[k]];
   }
   PetscCall(ContactIntegrateBody(contact, b));
   PetscCall(BodySetBase(contact->bodies[b]));
@@ -237,8 +235,8 @@ static PetscErrorCode LoadSolution(Contact contact, PetscInt b)
 
     PetscCall(TraceGetLevel(traces->force_in, level, &force));
     PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
-    for (PetscInt i = 0; i < contact->rows.n; i++)
-      if (contact->work.conditions[i] == BODY_PRESCRIBED || contact->work.conditions[i] == BODY_ROBIN) force[i] = reaction[i];
+    for (PetscInt k = 0; k < contact->body_rows[b].n; k++)
+      if (contact->work.conditions[k] == BODY_PRESCRIBED || contact->work.conditions[k] == BODY_ROBIN) force[k] = reaction[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,9 +18,11 @@ static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *cha
     PetscCall(TraceGetSizes(trace, NULL, &levels));
     PetscCall(TraceGetLevel(trace, levels, &end));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      sums[0] += PetscSqr(end[i] - previous[i]);
-      sums[1] += PetscSqr(end[i]);
-      previous[i] = end[i];
+      const PetscScalar now = end[i - pair->shift[side]];
+
+      sums[0] += PetscSqr(now - previous[i]);
+      sums[1] += PetscSqr(now);
+      previous[i] = now;
     }
   }
   if (contact->ranks.size > 1)
@@ -52,7 +54,7 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   PetscCall(TraceGetSizes(has, NULL, &has_levels));
   PetscCall(TraceGetLevel(given, given_levels, &to));
   PetscCall(TraceGetLevel(has, has_levels, &from));
-  *lag = PetscAbsScalar(to[i] - from[i]) * schwarz->controller_step / has_levels;
+  *lag = PetscAbsScalar(to[i - DirichletShift(pair)] - from[i - NeumannShift(pair)]) * schwarz->controller_step / has_levels;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,7 +76,7 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
     sums[0] += PetscSqr(lag);
     for (PetscInt k = 0; k < schwarz->room[contact->rows.pair[i]]; k++) sums[0] += PetscSqr(scale * f[schwarz->offset[i] + k]);
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].displacement, 0, &start));
-    sums[1] += PetscSqr(start[i]);
+    sums[1] += PetscSqr(start[i - DirichletShift(pair)]);
   }
   for (PetscInt t = 0; schwarz->turns.offset >= 0 && t < contact->turns.n; t++) sums[0] += PetscSqr(f[schwarz->turns.offset + t]);
   if (contact->ranks.size > 1)

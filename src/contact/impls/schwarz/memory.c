@@ -45,7 +45,7 @@ PetscErrorCode SchwarzSetStepLevel(Contact contact, PetscInt level, PetscBool go
   schwarz->controller_step = contact->step;
   if (schwarz->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE) {
     for (PetscInt i = 0; i < contact->rows.n; i++) schwarz->weight[i] *= ratio;
-    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRobin(contact->bodies[b], schwarz->weight));
+    PetscCall(SchwarzSetRobin(contact));
   }
   PetscCall(SchwarzTakeMemory(contact, level, &begins));
   if (begins) {
@@ -76,15 +76,15 @@ PetscErrorCode SchwarzStepBack(Contact contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-    const PetscInt     row  = contact->rows.begin + i;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
 
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-      PetscInt unknown;
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt row = of->begin + k;
+      PetscInt       unknown;
 
-      PetscCall(BodyCountUnknown(contact->bodies[pair->body[side]], 1, &row, &unknown));
-      if (unknown) schwarz->known[i] = PETSC_FALSE;
+      PetscCall(BodyCountUnknown(contact->bodies[b], 1, &row, &unknown));
+      if (unknown) schwarz->known[of->rows[k]] = PETSC_FALSE;
     }
   }
   schwarz->stale = PETSC_TRUE;

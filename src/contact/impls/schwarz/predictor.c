@@ -27,19 +27,20 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   const Schwarz     *schwarz = (const Schwarz *)contact->data;
   const ContactPair *pair    = &contact->pairs[contact->rows.pair[i]];
   const BodyTraces  *neumann = &contact->traces[NeumannBody(pair)], *dirichlet = &contact->traces[DirichletBody(pair)];
+  const PetscInt     k = i - NeumannShift(pair);
   PetscScalar       *u, *v, *other;
 
   PetscFunctionBegin;
   PetscCall(TraceGetLevel(neumann->displacement, 0, &u));
   PetscCall(TraceGetLevel(neumann->velocity, 0, &v));
   PetscCall(TraceGetLevel(dirichlet->velocity, 0, &other));
-  *displacement = u[i];
+  *displacement = u[k];
   if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE) *displacement += time * v[i];
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE) *displacement += time * v[k];
   if (schwarz->predictor == SCHWARZ_PREDICTOR_INELASTIC) {
     const PetscReal m_d = schwarz->mass[pair->dirichlet][i], m_n = schwarz->mass[1 - pair->dirichlet][i];
 
-    *displacement += time * (m_d * other[i] + m_n * v[i]) / (m_d + m_n);
+    *displacement += time * (m_d * other[i - DirichletShift(pair)] + m_n * v[k]) / (m_d + m_n);
   }
   if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) {
     PetscInt levels;
@@ -47,7 +48,7 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
     /* a level of the trace: it has as many as the unknowns, or these are its last one alone */
     PetscCall(TraceGetSizes(neumann->displacement, NULL, &levels));
     PetscCall(TraceGetLevel(neumann->displacement, (PetscInt)PetscFloorReal(part * levels + 0.5), &u));
-    *displacement = u[i];
+    *displacement = u[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,10 +84,10 @@ PetscErrorCode SchwarzPredict(Contact contact)
     }
     /* what has been a Neumann side until now has no reaction yet */
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));
-    reaction[i] = -sign * contact->start.force[i];
+    reaction[i - DirichletShift(pair)] = -sign * contact->start.force[i];
     if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) continue;
     PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
-    reaction[i] = sign * contact->start.force[i];
+    reaction[i - NeumannShift(pair)] = sign * contact->start.force[i];
   }
   PetscCall(VecRestoreArray(schwarz->outer.x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -73,7 +73,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
     TS        ts;
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    PetscCall(TraceCreate(contact->rows.n, substeps, &schwarz->exchange[b]));
+    PetscCall(TraceCreate(contact->body_rows[b].n, substeps, &schwarz->exchange[b]));
     PetscCall(BodyGetTS(contact->bodies[b], &ts));
     PetscCall(TSGetTimeStep(ts, &dt));
     schwarz->controller_step = substeps * dt;
@@ -95,7 +95,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCall(PetscCalloc2(contact->rows.n, &schwarz->known, contact->rows.n, &schwarz->solved_active));
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &schwarz->rounds));
   schwarz->rounds.recheck = schwarz->recheck;
-  PetscCall(PetscCalloc2(contact->rows.n, &schwarz->interpolated, 3 * contact->rows.n, &schwarz->row_work));
+  PetscCall(PetscCalloc1(3 * contact->rows.n, &schwarz->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,7 +201,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(PetscFree2(schwarz->kept_force, schwarz->previous));
   PetscCall(RoundsDestroy(&schwarz->rounds));
   PetscCall(SchwarzDestroyTurns(contact));
-  PetscCall(PetscFree2(schwarz->interpolated, schwarz->row_work));
+  PetscCall(PetscFree(schwarz->row_work));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -87,7 +87,7 @@ typedef struct {
   PetscInt   *offset;         /* per row: its first unknown on this rank */
   PetscInt   *all_offset;     /* per row of all ranks: its first unknown */
   /* what goes back and forth */
-  Trace     *trace;     /* per pair and side: what its unknowns put on the Dirichlet side */
+  Trace     *trace;     /* per pair and side, of its rows: what its unknowns put on the Dirichlet side */
   Trace     *exchange;  /* per body: what it hands to its partners */
   Trace      rate[2];   /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
   PetscBool *kinematic; /* per pair and side: velocity and acceleration of the Dirichlet side follow from its displacement */
@@ -135,10 +135,9 @@ typedef struct {
   PetscReal   growth;           /* of the change over that of the sweep before */
   PetscBool   converged;
   /* work space */
-  PetscScalar *previous;     /* displacements of the rows of both bodies of each pair in the last sweep */
-  PetscScalar *interpolated; /* per row */
-  PetscScalar *row_work;     /* three for each row */
-  PetscReal   *kept_force;   /* of the contact solution, during a free trial after it */
+  PetscScalar *previous;   /* displacements of the rows of both bodies of each pair in the last sweep */
+  PetscScalar *row_work;   /* three for each row */
+  PetscReal   *kept_force; /* of the contact solution, during a free trial after it */
 } Schwarz;
 
 /* The bodies of a pair by what they take in this controller step */
@@ -156,6 +155,16 @@ static inline PetscInt NeumannBody(const ContactPair *pair)
 static inline PetscReal NeumannSign(const ContactPair *pair)
 {
   return pair->dirichlet == 0 ? 1 : -1;
+}
+
+/* Row i of a pair has the number i - DirichletShift() among those of its Dirichlet side */
+static inline PetscInt DirichletShift(const ContactPair *pair)
+{
+  return pair->shift[pair->dirichlet];
+}
+static inline PetscInt NeumannShift(const ContactPair *pair)
+{
+  return pair->shift[1 - pair->dirichlet];
 }
 
 /* Whether the unknown of an active row is the force that holds its Dirichlet side, in units of ContactForceUnit() */
@@ -185,10 +194,10 @@ PETSC_INTERN PetscErrorCode SchwarzTakeActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzUpdateActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzBreakCycle(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
-PETSC_INTERN PetscErrorCode SchwarzResampleForce(const Schwarz *, Trace, PetscInt, PetscInt, PetscScalar, Trace);
 PETSC_INTERN PetscReal      SchwarzOffset(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscErrorCode SchwarzPredict(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpTransmission(Contact);
+PETSC_INTERN PetscErrorCode SchwarzSetRobin(Contact);
 PETSC_INTERN PetscReal      SchwarzResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);

@@ -34,26 +34,26 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
 }
 
 /* The partner can be prescribed only where its rows are nodes of its own: its rows must be orthonormal */
-static PetscErrorCode CheckSwappable(Contact contact, Vec row, Vec displacement)
+static PetscErrorCode CheckSwappable(Contact contact, PetscInt b)
 {
+  const ContactBodyRows *of = &contact->body_rows[b];
+  const Mat              B  = contact->interfaces[b];
+  Vec                    row, displacement, transposed;
+
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < contact->rows.n_all; j++) {
-    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[j]];
-    const Mat          B    = contact->interfaces[pair->body[1]];
+  PetscCall(MatCreateVecs(B, &transposed, &row));
+  PetscCall(VecDuplicate(row, &displacement));
+  for (PetscInt j = 0; j < of->n_all; j++) {
+    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[of->all[j]]];
     PetscReal          off;
 
+    if (pair->body[1] != b) continue;
     PetscCall(VecZeroEntries(row));
-    if (j >= contact->rows.begin && j < contact->rows.begin + contact->rows.n) PetscCall(VecSetValue(row, j, 1, INSERT_VALUES));
+    if (j >= of->begin && j < of->begin + of->n) PetscCall(VecSetValue(row, j, 1, INSERT_VALUES));
     PetscCall(VecAssemblyBegin(row));
     PetscCall(VecAssemblyEnd(row));
-    {
-      Vec transposed;
-
-      PetscCall(MatCreateVecs(B, &transposed, NULL));
-      PetscCall(MatMultTranspose(B, row, transposed));
-      PetscCall(MatMult(B, transposed, displacement));
-      PetscCall(VecDestroy(&transposed));
-    }
+    PetscCall(MatMultTranspose(B, row, transposed));
+    PetscCall(MatMult(B, transposed, displacement));
     PetscCall(VecAXPY(displacement, -1, row));
     PetscCall(VecNorm(displacement, NORM_INFINITY, &off));
     PetscCheck(off < OPPOSITE, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -61,6 +61,9 @@ static PetscErrorCode CheckSwappable(Contact contact, Vec row, Vec displacement)
                "displacements; leave the option out",
                pair->name);
   }
+  PetscCall(VecDestroy(&row));
+  PetscCall(VecDestroy(&displacement));
+  PetscCall(VecDestroy(&transposed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,20 +144,12 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
       PetscInt *levels = &schwarz->side_levels[side][p];
 
       PetscCall(CountLevels(contact, p, side, levels));
-      PetscCall(TraceCreate(contact->rows.n, *levels, &schwarz->trace[2 * p + side]));
+      PetscCall(TraceCreate(contact->pairs[p].end - contact->pairs[p].begin, *levels, &schwarz->trace[2 * p + side]));
       PetscCall(SetUpReactionTraction(contact, p, side));
       schwarz->room[p] = PetscMax(schwarz->room[p], *levels);
     }
   schwarz->levels = schwarz->side_levels[0];
-  if (schwarz->swap) {
-    Vec row, product;
-
-    PetscCall(MatCreateVecs(contact->interfaces[0], NULL, &row));
-    PetscCall(VecDuplicate(row, &product));
-    PetscCall(CheckSwappable(contact, row, product));
-    PetscCall(VecDestroy(&row));
-    PetscCall(VecDestroy(&product));
-  }
+  for (PetscInt b = 0; b < contact->n_bodies && schwarz->swap; b++) PetscCall(CheckSwappable(contact, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -67,7 +67,8 @@ static PetscErrorCode SolveActive(Contact contact)
 
     PetscCall(TraceGetSizes(reaction, NULL, &levels));
     PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++) contact->end.force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i] : 0;
+    for (PetscInt i = pair->begin; i < pair->end; i++)
+      contact->end.force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
   }
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

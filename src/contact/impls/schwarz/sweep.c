@@ -25,16 +25,17 @@ static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
   PetscCall(TraceGetLevel(schwarz->rate[0], 1, &v));
   PetscCall(TraceGetLevel(schwarz->rate[1], 1, &a));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
-    const PetscScalar moved = x[i] - NeumannSign(pair) * SchwarzOffset(contact, i, 1) - u0[i];
+    const PetscInt    k     = i - NeumannShift(pair);
+    const PetscScalar moved = x[i - pair->begin] - NeumannSign(pair) * SchwarzOffset(contact, i, 1) - u0[k];
 
-    v[i] = dv * moved + v_v * v0[i] + v_a * a0[i];
-    a[i] = da * moved + a_v * v0[i] + a_a * a0[i];
+    v[i] = dv * moved + v_v * v0[k] + v_a * a0[k];
+    a[i] = da * moved + a_v * v0[k] + a_a * a0[k];
   }
   PetscCall(TraceGetLevel(schwarz->rate[0], 0, &v));
   PetscCall(TraceGetLevel(schwarz->rate[1], 0, &a));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
-    v[i] = v0[i];
-    a[i] = a0[i];
+    v[i] = v0[i - NeumannShift(pair)];
+    a[i] = a0[i - NeumannShift(pair)];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,7 +50,7 @@ static PetscErrorCode CopyUnknowns(Contact contact, PetscInt p, const PetscScala
   PetscFunctionBegin;
   for (PetscInt level = 1; level <= schwarz->levels[p]; level++) {
     PetscCall(TraceGetLevel(trace, level, &values));
-    for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = x[schwarz->offset[i] + level - 1];
+    for (PetscInt i = pair->begin; i < pair->end; i++) values[i - pair->begin] = x[schwarz->offset[i] + level - 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,17 +63,19 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   const BodyTraces  *to = &contact->traces[DirichletBody(pair)], *from = &contact->traces[NeumannBody(pair)];
   Trace              trace     = schwarz->trace[SideIndex(schwarz, p)];
   const PetscBool    kinematic = schwarz->kinematic[SideIndex(schwarz, p)];
+  const PetscInt     n = pair->end - pair->begin, to_begin = pair->begin - DirichletShift(pair);
+  const PetscInt     rate_begin = kinematic ? pair->begin : pair->begin - NeumannShift(pair);
   PetscScalar       *start, *values;
 
   PetscFunctionBegin;
   PetscCall(TraceGetLevel(to->displacement, 0, &start));
   PetscCall(TraceGetLevel(trace, 0, &values));
-  for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = start[i];
+  for (PetscInt k = 0; k < n; k++) values[k] = start[to_begin + k];
   PetscCall(CopyUnknowns(contact, p, x, trace));
-  PetscCall(TraceResample(trace, pair->begin, pair->end, 1, to->displacement_in));
+  PetscCall(TraceResample(trace, 0, n, 1, to->displacement_in, to_begin));
   if (kinematic) PetscCall(PrescribeKinematics(contact, p));
-  PetscCall(TraceResample(kinematic ? schwarz->rate[0] : from->velocity, pair->begin, pair->end, 1, to->velocity_in));
-  PetscCall(TraceResample(kinematic ? schwarz->rate[1] : from->acceleration, pair->begin, pair->end, 1, to->acceleration_in));
+  PetscCall(TraceResample(kinematic ? schwarz->rate[0] : from->velocity, rate_begin, n, 1, to->velocity_in, to_begin));
+  PetscCall(TraceResample(kinematic ? schwarz->rate[1] : from->acceleration, rate_begin, n, 1, to->acceleration_in, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,14 +91,16 @@ static PetscErrorCode LoadByForce(Contact contact, PetscInt p, const PetscScalar
   PetscFunctionBegin;
   PetscCall(TraceGetLevel(to->reaction, 0, &start));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
+    const PetscInt k = i - pair->begin, to_row = i - DirichletShift(pair);
+
     if (!ByForce(contact, i)) continue;
     PetscCall(TraceGetLevel(trace, 0, &values));
-    values[i] = start[i];
+    values[k] = start[to_row];
     for (PetscInt level = 1; level <= schwarz->levels[p]; level++) {
       PetscCall(TraceGetLevel(trace, level, &values));
-      values[i] = x[schwarz->offset[i] + level - 1] * ContactForceUnit(contact, i);
+      values[k] = x[schwarz->offset[i] + level - 1] * ContactForceUnit(contact, i);
     }
-    PetscCall(TraceResample(trace, i, i + 1, 1, to->force_in));
+    PetscCall(TraceResample(trace, k, 1, 1, to->force_in, to_row));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,8 +108,9 @@ static PetscErrorCode LoadByForce(Contact contact, PetscInt p, const PetscScalar
 /* After the body has been integrated: to its partner, that force is as good as a reaction */
 static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
 {
-  const BodyTraces *traces = &contact->traces[b];
-  PetscInt          levels;
+  const ContactBodyRows *of     = &contact->body_rows[b];
+  const BodyTraces      *traces = &contact->traces[b];
+  PetscInt               levels;
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(traces->reaction, NULL, &levels));
@@ -113,20 +119,24 @@ static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
 
     PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
     PetscCall(TraceGetLevel(traces->force_in, level, &force));
-    for (PetscInt i = 0; i < contact->rows.n; i++)
-      if (ByForce(contact, i) && DirichletBody(&contact->pairs[contact->rows.pair[i]]) == b) reaction[i] = force[i];
+    for (PetscInt k = 0; k < of->n; k++)
+      if (ByForce(contact, of->rows[k]) && DirichletBody(&contact->pairs[contact->rows.pair[of->rows[k]]]) == b) reaction[k] = force[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces over the substeps of a body that makes others than its partner. Held at F' where the partner takes the trapezium of F and F', they
-   bring more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that part of the present force, they give it back as
-   it falls. */
-PetscErrorCode SchwarzResampleForce(const Schwarz *schwarz, Trace from, PetscInt begin, PetscInt end, PetscScalar scale, Trace to)
+/* The reaction holds the Dirichlet side of a pair; the Neumann side gets its opposite, over other substeps perhaps. Held at F' where the
+   partner takes the trapezium of F and F', forces bring more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that
+   part of the present force, they give it back as it falls. */
+static PetscErrorCode HandReactionOn(Contact contact, const ContactPair *pair)
 {
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  const Trace    from = contact->traces[DirichletBody(pair)].reaction, to = contact->traces[NeumannBody(pair)].force_in;
+  const PetscInt begin = pair->begin - DirichletShift(pair), to_begin = pair->begin - NeumannShift(pair), n = pair->end - pair->begin;
+
   PetscFunctionBegin;
-  if (schwarz->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, end, scale, to));
-  else PetscCall(TraceResample(from, begin, end, scale, to));
+  if (schwarz->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, n, -1, to, to_begin));
+  else PetscCall(TraceResample(from, begin, n, -1, to, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,9 +153,10 @@ static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScal
   PetscCall(TraceGetLevel(to->reaction, 0, &force));
   PetscCall(TraceGetLevel(to->displacement, 0, &displacement));
   PetscCall(TraceGetLevel(trace, 0, &values));
-  for (PetscInt i = pair->begin; i < pair->end; i++) values[i] = force[i] + schwarz->weight[i] * displacement[i];
+  for (PetscInt i = pair->begin; i < pair->end; i++)
+    values[i - pair->begin] = force[i - DirichletShift(pair)] + schwarz->weight[i] * displacement[i - DirichletShift(pair)];
   PetscCall(CopyUnknowns(contact, p, x, trace));
-  PetscCall(TraceResample(trace, pair->begin, pair->end, 1, to->force_in));
+  PetscCall(TraceResample(trace, 0, pair->end - pair->begin, 1, to->force_in, pair->begin - DirichletShift(pair)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,10 +176,14 @@ static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
     PetscCall(TraceGetLevel(from->force_in, level, &r));
     PetscCall(TraceGetLevel(from->reaction, level, &f));
     PetscCall(TraceGetLevel(to, level, &values));
-    for (PetscInt i = pair->begin; i < pair->end; i++)
-      values[i] = r[i] - 2 * f[i] - NeumannSign(pair) * schwarz->weight[i] * SchwarzOffset(contact, i, (PetscReal)level / levels);
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscInt k = i - DirichletShift(pair);
+
+      values[k] = r[k] - 2 * f[k] - NeumannSign(pair) * schwarz->weight[i] * SchwarzOffset(contact, i, (PetscReal)level / levels);
+    }
   }
-  PetscCall(TraceResample(to, pair->begin, pair->end, 1, contact->traces[NeumannBody(pair)].force_in));
+  PetscCall(TraceResample(to, pair->begin - DirichletShift(pair), pair->end - pair->begin, 1, contact->traces[NeumannBody(pair)].force_in,
+                          pair->begin - NeumannShift(pair)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,10 +201,7 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
         PetscCall(PrescribePair(contact, p, x));
         if (contact->shared.n || pair->by_force) PetscCall(LoadByForce(contact, p, x));
       }
-      /* the reaction holds the Dirichlet side; the Neumann side gets its opposite */
-      if (NeumannBody(pair) == b)
-        PetscCall(SchwarzResampleForce(schwarz, contact->traces[DirichletBody(pair)].reaction, pair->begin, pair->end, -1,
-                                       contact->traces[b].force_in));
+      if (NeumannBody(pair) == b) PetscCall(HandReactionOn(contact, pair));
     } else {
       if (DirichletBody(pair) == b) PetscCall(LoadDirichlet(contact, p, x));
       if (NeumannBody(pair) == b) PetscCall(LoadNeumann(contact, p));
@@ -214,13 +226,12 @@ static PetscErrorCode GetAnswer(Contact contact, PetscInt i, PetscReal part, con
   PetscCall(TraceGetSizes(from->displacement, NULL, &substeps));
   *answers = (PetscBool)(part == 1 || substeps >= levels);
   if (*answers) {
-    PetscCall(TraceInterpolate(from->displacement, part, i, i + 1, schwarz->interpolated));
-    *position = schwarz->interpolated[i];
+    PetscCall(TraceInterpolate(from->displacement, part, i - DirichletShift(pair), 1, position));
   } else {
     PetscScalar *start;
 
     PetscCall(TraceGetLevel(from->reaction, 0, &start));
-    *position = (1 - part) * start[i] / ContactForceUnit(contact, i) + part * x[schwarz->offset[i] + levels - 1];
+    *position = (1 - part) * start[i - DirichletShift(pair)] / ContactForceUnit(contact, i) + part * x[schwarz->offset[i] + levels - 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -247,12 +258,12 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
     PetscCall(TraceGetLevel(from->force_in, at, &r));
     PetscCall(TraceGetLevel(from->reaction, at, &force));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscInt unknown = schwarz->offset[i] + level - 1;
+      const PetscInt unknown = schwarz->offset[i] + level - 1, k = i - NeumannShift(pair);
       PetscScalar    answer;
 
       if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
-        answer = displacement[i] + sign * SchwarzOffset(contact, i, part);
-      else answer = r[i] - 2 * force[i] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
+        answer = displacement[k] + sign * SchwarzOffset(contact, i, part);
+      else answer = r[k] - 2 * force[k] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
       f[unknown] = contact->end.active[i] ? x[unknown] - answer : 0;
       if (!ByForce(contact, i)) continue;
       /* the gap, or what keeps unknowns without an answer in line */

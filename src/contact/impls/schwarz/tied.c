@@ -22,7 +22,7 @@ static PetscErrorCode GetEndRates(Contact contact, PetscInt order, PetscScalar r
       PetscCall(TraceGetSizes(trace, NULL, &levels));
       PetscCall(TraceGetLevel(trace, levels, &end[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = end[1][i] - end[0][i];
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = end[1][i - pair->shift[1]] - end[0][i - pair->shift[0]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -24,8 +24,8 @@ static PetscErrorCode GetDrift(Contact contact, PetscScalar drift[])
       PetscCall(TraceGetLevel(contact->traces[pair->body[side]].acceleration, 1, &acceleration[side]));
     }
     for (PetscInt i = pair->begin; i < pair->end; i++)
-      drift[i] = contact->end.gap[i] / PetscSqr(dt) + (velocity[1][i] - velocity[0][i]) / dt +
-                 0.5 * (acceleration[1][i] - acceleration[0][i]);
+      drift[i] = contact->end.gap[i] / PetscSqr(dt) + (velocity[1][i - pair->shift[1]] - velocity[0][i - pair->shift[0]]) / dt +
+                 0.5 * (acceleration[1][i - pair->shift[1]] - acceleration[0][i - pair->shift[0]]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,11 +22,13 @@ static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal 
 
   PetscFunctionBegin;
   if (schwarz->impedance > 0) impedance = schwarz->impedance;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
+  for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
+    const PetscInt i = contact->body_rows[b].rows[k];
+
     if (contact->pairs[contact->rows.pair[i]].body[1] != b) continue;
     if (schwarz->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
       schwarz->weight[i] = impedance * contact->rows.area[i] / schwarz->controller_step;
-    else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->rows.area[i] : stiffness[i];
+    else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->rows.area[i] : stiffness[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -50,12 +52,13 @@ static PetscErrorCode SetUpTiedWeights(Contact contact, PetscInt b, const PetscR
   PetscCall(MatCreateVecs(inverse, &diagonal, NULL));
   PetscCall(MatGetDiagonal(inverse, diagonal));
   PetscCall(VecGetArrayRead(diagonal, &flexibility));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
+  for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
+    const PetscInt     i    = contact->body_rows[b].rows[k];
     const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
     if (pair->body[0] != b) continue;
-    schwarz->weight[i] = stiffness[i];
-    if (pair->keeps_mass && PetscRealPart(flexibility[i]) > 0) schwarz->weight[i] += shift / PetscRealPart(flexibility[i]);
+    schwarz->weight[i] = stiffness[k];
+    if (pair->keeps_mass && PetscRealPart(flexibility[k]) > 0) schwarz->weight[i] += shift / PetscRealPart(flexibility[k]);
   }
   PetscCall(VecRestoreArrayRead(diagonal, &flexibility));
   PetscCall(VecDestroy(&diagonal));
@@ -70,10 +73,12 @@ static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal s
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    for (PetscInt side = 0; side < 2; side++)
-      if (contact->pairs[contact->rows.pair[i]].body[side] == b)
-        schwarz->mass[side][i] = schwarz->mode == SCHWARZ_MASS ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[i] : impedance;
+  for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
+    const PetscInt i    = contact->body_rows[b].rows[k];
+    const PetscInt side = contact->pairs[contact->rows.pair[i]].body[1] == b ? 1 : 0;
+
+    schwarz->mass[side][i] = schwarz->mode == SCHWARZ_MASS ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[k] : impedance;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,6 +122,21 @@ static PetscErrorCode FindUnshared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the bodies the weights as their springs */
+PetscErrorCode SchwarzSetRobin(Contact contact)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
+
+    for (PetscInt k = 0; k < of->n; k++) schwarz->row_work[k] = schwarz->weight[of->rows[k]];
+    PetscCall(BodySetRobin(contact->bodies[b], schwarz->row_work));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Masses for the inelastic predictor; weights, and springs of the bodies, for Robin conditions */
 PetscErrorCode SchwarzSetUpTransmission(Contact contact)
 {
@@ -141,7 +161,7 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
     else if (robin) PetscCall(SetUpWeights(contact, b, stiffness, impedance));
   }
   PetscCall(PetscFree(stiffness));
-  for (PetscInt b = 0; b < contact->n_bodies && robin; b++) PetscCall(BodySetRobin(contact->bodies[b], schwarz->weight));
+  if (robin) PetscCall(SchwarzSetRobin(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

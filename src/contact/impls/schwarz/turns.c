@@ -197,7 +197,8 @@ PetscErrorCode SchwarzCompareTurns(Contact contact, PetscScalar f[])
 
     PetscCall(TraceGetSizes(reaction, NULL, &levels));
     PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++) force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i] : 0;
+    for (PetscInt i = pair->begin; i < pair->end; i++)
+      force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
   }
   PetscCall(SumTurns(contact, force, sums));
   for (PetscInt p = 0; p < contact->n_pairs && schwarz->turns.offset >= 0; p++) {

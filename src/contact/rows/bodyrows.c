@@ -1,0 +1,147 @@
+/*
+   The rows of each body. A body has rows for its own pairs alone, with numbers of its own, so that what it stores and does goes with these,
+   not with the rows of all bodies. On every rank they are in the order of the rows of contact; so both numbers ascend together.
+*/
+#include <impakt/private/contactimpl.h>
+
+/* How many rows each body has on all ranks, and which */
+static PetscErrorCode ListRows(Contact contact)
+{
+  ContactBodyRows *of = contact->body_rows;
+
+  PetscFunctionBegin;
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    for (PetscInt row = 0; row < contact->rows.n_all; row++) {
+      const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[row]];
+
+      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+        ContactBodyRows *body = &of[pair->body[side]];
+
+        if (pass) body->all[body->n_all] = row;
+        body->n_all++;
+      }
+    }
+    for (PetscInt b = 0; b < contact->n_bodies && !pass; b++) {
+      PetscCall(PetscMalloc1(of[b].n_all, &of[b].all));
+      of[b].n_all = 0;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which rows each body has. Call when the rows of all ranks and their pairs are known. */
+PetscErrorCode ContactNumberBodyRows(Contact contact)
+{
+  const PetscInt begin = contact->rows.begin, end = begin + contact->rows.n;
+  PetscInt      *next;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(contact->n_bodies, &contact->body_rows));
+  PetscCall(ListRows(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactBodyRows *of = &contact->body_rows[b];
+
+    for (PetscInt k = 0; k < of->n_all; k++) {
+      if (of->all[k] < begin) of->begin++;
+      else if (of->all[k] < end) of->n++;
+    }
+    PetscCall(PetscMalloc2(of->n, &of->rows, of->n, &of->area));
+    for (PetscInt k = 0; k < of->n; k++) of->rows[k] = of->all[of->begin + k] - begin;
+  }
+  PetscCall(PetscCalloc1(contact->n_bodies, &next));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->shift[1] = 0; /* obstacles have the traces of all rows */
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+      pair->shift[side] = pair->begin - next[pair->body[side]];
+      next[pair->body[side]] += pair->end - pair->begin;
+    }
+  }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyBodyRows(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; contact->body_rows && b < contact->n_bodies; b++) {
+    PetscCall(PetscFree2(contact->body_rows[b].rows, contact->body_rows[b].area));
+    PetscCall(PetscFree(contact->body_rows[b].all));
+  }
+  PetscCall(PetscFree(contact->body_rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Areas of the rows, as bodies borrow them */
+PetscErrorCode ContactCopyAreas(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
+
+    for (PetscInt k = 0; k < of->n; k++) of->area[k] = contact->rows.area[of->rows[k]];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the bodies their rows as the matrices have them now; `changed`: which rows of this rank are others than before */
+PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
+{
+  PetscFunctionBegin;
+  PetscCall(ContactCopyAreas(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
+
+    for (PetscInt k = 0; k < of->n; k++) contact->work.flags[k] = changed[of->rows[k]];
+    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.flags));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A number for each row */
+PetscErrorCode ContactCreateRowVec(Contact contact, Vec *vec)
+{
+  PetscFunctionBegin;
+  PetscCall(VecCreate(PetscObjectComm((PetscObject)contact), vec));
+  PetscCall(VecSetSizes(*vec, contact->rows.n, contact->rows.n_all));
+  PetscCall(VecSetType(*vec, VECSTANDARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All rows by all rows, sparse, without entries yet */
+PetscErrorCode ContactCreateRowMatrix(Contact contact, Mat *matrix)
+{
+  PetscFunctionBegin;
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), matrix));
+  PetscCall(MatSetSizes(*matrix, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all));
+  PetscCall(MatSetType(*matrix, MATAIJ));
+  PetscCall(MatSetUp(*matrix));
+  PetscCall(MatSetOption(*matrix, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sum += t part t, with a matrix of all rows of a body by all rows of it, and the directions t in which forces act on it */
+PetscErrorCode ContactAddBodyMatrix(Contact contact, PetscInt b, Mat part, Mat sum)
+{
+  const ContactBodyRows *of      = &contact->body_rows[b];
+  const PetscInt        *pair_of = contact->ranks.row_pair;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < of->n; k++) {
+    const PetscInt     row = of->all[of->begin + k], *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(part, of->begin + k, &n, &columns, &values));
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscInt    column = of->all[columns[j]];
+      const PetscScalar value  = ContactSign(&contact->pairs[pair_of[row]], b) * ContactSign(&contact->pairs[pair_of[column]], b) *
+                                 values[j];
+
+      PetscCall(MatSetValue(sum, row, column, value, ADD_VALUES));
+    }
+    PetscCall(MatRestoreRow(part, of->begin + k, &n, &columns, &values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
