@@ -232,7 +232,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
 . begin      - global number of the first row of this rank in the matrix of the first side, and in that of the second
 . components - 1: the normal gap, a row for each node; the space dimension: all components of sum_j P_ij u_j - u_i, as many rows for each
 - rows       - the first gets the normal of the node, or the unit vectors, at its displacements; the second the same times the weights, at
-               the displacements of the nodes opposite: `NULL` for obstacles
+               the displacements of the nodes opposite. Either may be `NULL`; the second is for obstacles
 
   Level: developer
 
@@ -263,7 +263,7 @@ PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], Pet
         const PetscReal direction = components == 1 ? set->normals[dim * i + d] : 1;
 
         if (components > 1 && c != d) continue;
-        PetscCall(MatSetValue(rows[0], begin[0] + row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
+        if (rows[0]) PetscCall(MatSetValue(rows[0], begin[0] + row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
         if (!rows[1] || !set->opposite[i]) continue;
         for (PetscInt j = set->offsets[i]; j < set->offsets[i + 1]; j++)
           PetscCall(MatSetValue(rows[1], begin[1] + row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));

@@ -130,9 +130,6 @@ typedef struct {
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
   PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
-  PetscBool  filled;      /* the matrices have been filled in this controller step */
-  PetscInt64 pattern;     /* counts how often they have got entries in other places */
-  PetscInt64 patterns[2]; /* that count for `interfaces` and `spares`, when they were filled; -1: they are made anew */
 } ContactRows;
 
 /* The rows of a body: those of the pairs that it is in */
@@ -143,6 +140,13 @@ typedef struct {
   PetscInt  *rows;  /* their numbers among the rows of this rank, ascending */
   PetscInt  *all;   /* of those of all ranks: their numbers among the rows of all ranks, ascending */
   PetscReal *area;  /* as that of rows; the body borrows it */
+  /* its matrix in contact->interfaces, and the spare one */
+  PetscBool  affected;    /* rows have got new entries in this attempt at a controller step */
+  PetscBool  rewritten;   /* they have in any attempt at it */
+  PetscBool  filled;      /* the matrix has been filled in this controller step */
+  PetscInt64 pattern;     /* counts how often rows have got entries in other places */
+  PetscInt64 patterns[2]; /* that count for both matrices, when they were filled; -1: they are made anew */
+  PetscInt64 saved;       /* that count at the start of the controller step */
 } ContactBodyRows;
 
 /* Turns of gaps with which forces have the same sum along the normals of both sides, see src/contact/rows/balance.c */
@@ -185,8 +189,6 @@ typedef struct {
   PetscBool   *opposite, *tied, *dropped, *heir;
   ContactState start, end;
   PetscInt     rebuilds; /* counted then */
-  PetscInt64   pattern;  /* that of the matrices */
-  PetscBool    moved;    /* rows have changed since */
 } ContactSavedRows;
 
 /* Forces of rows that are let go in a controller step */
@@ -308,6 +310,7 @@ typedef struct {
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
   PetscReal     *speeds;     /* per body */
+  int           *hands_over; /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;      /* to a body */
   PetscReal     *last_gap;   /* per row */
   PetscBool     *moved;      /* per row */
@@ -451,6 +454,8 @@ PETSC_INTERN void           ContactTurnPair(ContactPair *);
 PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyBodyRows(Contact);
+PETSC_INTERN void           ContactAffectAll(Contact);
+PETSC_INTERN void           ContactForgetMatrices(Contact);
 PETSC_INTERN PetscErrorCode ContactCopyAreas(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateBodies(Contact, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ContactCreateRowVec(Contact, Vec *);

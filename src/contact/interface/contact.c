@@ -222,8 +222,9 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
   contact->attempt.accepted_level = contact->attempt.level;
   contact->attempt.again          = PETSC_FALSE;
-  contact->rows.filled            = PETSC_FALSE;
   contact->energy.start_known     = PETSC_FALSE;
+  for (PetscInt b = 0; contact->body_rows && b < contact->n_bodies; b++)
+    contact->body_rows[b].filled = contact->body_rows[b].rewritten = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -345,7 +346,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
-  PetscCall(PetscFree(c->spares));
+  PetscCall(PetscFree2(c->spares, c->work.hands_over));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));

@@ -101,13 +101,12 @@ static PetscErrorCode UnpackRows(Contact contact, Tables tables)
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
-  contact->rows.filled      = PETSC_FALSE;
-  contact->rows.patterns[0] = contact->rows.patterns[1] = -1;
+  ContactForgetMatrices(contact);
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
   PetscCall(ContactUpdateBodies(contact, contact->work.moved));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeRows(contact->bodies[b]));
-  contact->rows.filled = PETSC_FALSE;
+  ContactForgetMatrices(contact);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,6 +135,6 @@ PetscErrorCode ContactUnpack(Contact contact, Tables tables)
     for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   }
   PetscCall(ContactUnpackImpulses(contact, tables));
-  contact->saved.moved = contact->attempt.again = PETSC_FALSE;
+  contact->attempt.again = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

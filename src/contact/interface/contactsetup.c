@@ -9,8 +9,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
   const PetscInt n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n, &contact->spares));
-  contact->rows.patterns[0] = contact->rows.patterns[1] = -1;
+  PetscCall(PetscCalloc2(n, &contact->spares, n, &contact->work.hands_over));
   PetscCall(PetscCalloc7(n, &contact->work.speeds, n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n,
                          &contact->nodes.dofs, n, &contact->nodes.n, n, &contact->nodes.n_all));
   PetscFunctionReturn(PETSC_SUCCESS);

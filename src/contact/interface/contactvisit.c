@@ -76,9 +76,8 @@ static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(CheckpointVisitMat(checkpoint, "rows of a body", &contact->interfaces[b]));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
+  ContactForgetMatrices(contact); /* those of later steps are made anew */
   PetscCall(ContactUpdateBodies(contact, contact->work.moved));
-  contact->rows.filled      = PETSC_FALSE;
-  contact->rows.patterns[0] = contact->rows.patterns[1] = -1; /* matrices of later steps are made anew */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,10 +100,7 @@ static PetscErrorCode VisitRowStates(Contact contact, Checkpoint checkpoint)
     PetscCall(CheckpointVisitReals(checkpoint, "released forces", n * contact->release.room, contact->release.forces));
   }
   if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
-  if (CheckpointLoads(checkpoint)) {
-    contact->saved.moved   = PETSC_FALSE;
-    contact->attempt.again = PETSC_FALSE;
-  }
+  if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -73,6 +73,24 @@ PetscErrorCode ContactDestroyBodyRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The rows of all bodies count as changed */
+void ContactAffectAll(Contact contact)
+{
+  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].affected = contact->body_rows[b].rewritten = PETSC_TRUE;
+}
+
+/* Rows have come from elsewhere: all matrices are made anew, and none belongs to a controller step under way */
+void ContactForgetMatrices(Contact contact)
+{
+  ContactAffectAll(contact);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactBodyRows *of = &contact->body_rows[b];
+
+    of->filled = of->rewritten = PETSC_FALSE;
+    of->patterns[0] = of->patterns[1] = -1;
+  }
+}
+
 /* Areas of the rows, as bodies borrow them */
 PetscErrorCode ContactCopyAreas(Contact contact)
 {
@@ -85,7 +103,8 @@ PetscErrorCode ContactCopyAreas(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the bodies their rows as the matrices have them now; `changed`: which rows of this rank are others than before */
+/* Gives the bodies whose rows are affected these as the matrices have them now; `changed`: which rows of this rank are others than before
+ */
 PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
 {
   PetscFunctionBegin;
@@ -93,6 +112,7 @@ PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const ContactBodyRows *of = &contact->body_rows[b];
 
+    if (!of->affected) continue;
     for (PetscInt k = 0; k < of->n; k++) contact->work.flags[k] = changed[of->rows[k]];
     PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.flags));
   }

@@ -161,52 +161,54 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of the two sets of matrices is filled. The bodies keep the rows of the last accepted step until this one is accepted, since contact
-   forces go over from them; the rows of a step that has failed are of no use any more. */
-static void ChooseMatrices(Contact contact)
+/* Which of the two matrices of a body is filled. The body keeps the rows of the last accepted step until this one is accepted, since
+   contact forces go over from them; the rows of a step that has failed are of no use any more. */
+static void ChooseMatrix(Contact contact, PetscInt b)
 {
-  ContactRows     *rows    = &contact->rows;
-  const PetscInt64 pattern = rows->patterns[0];
+  ContactBodyRows *of      = &contact->body_rows[b];
+  const PetscInt64 pattern = of->patterns[0];
+  const Mat        matrix  = contact->interfaces[b];
 
-  if (rows->filled) return;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const Mat matrix = contact->interfaces[b];
-
-    contact->interfaces[b] = contact->spares[b];
-    contact->spares[b]     = matrix;
-  }
-  rows->patterns[0] = rows->patterns[1];
-  rows->patterns[1] = pattern;
-  rows->filled      = PETSC_TRUE;
+  if (of->filled) return;
+  contact->interfaces[b] = contact->spares[b];
+  contact->spares[b]     = matrix;
+  of->patterns[0]        = of->patterns[1];
+  of->patterns[1]        = pattern;
+  of->filled             = PETSC_TRUE;
 }
 
-/* Fills the matrices of the rows, one for each body: in place if they have entries where those that were filled last have them, which is so
-   until rows are built again. Rows that are merged or turned come from products of matrices, which are made anew. */
+/* Fills the matrices of the bodies whose rows are affected: in place if they have entries where those that were filled last have them,
+   which is so until rows are built again. Rows that are merged or turned come from products of matrices, which are made anew. */
 PetscErrorCode ContactFillMatrices(Contact contact)
 {
   const PetscBool product = (PetscBool)(contact->held.merger || (contact->options.law == CONTACT_LAW_BONDED && contact->dim > 1));
-  PetscBool       in_place;
 
   PetscFunctionBegin;
-  ChooseMatrices(contact);
-  in_place                  = (PetscBool)(contact->rows.patterns[0] == contact->rows.pattern);
-  contact->rows.patterns[0] = product ? -1 : contact->rows.pattern;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    if (in_place) PetscCall(MatZeroEntries(contact->interfaces[b]));
+    ContactBodyRows *of = &contact->body_rows[b];
+
+    if (!of->affected) continue;
+    ChooseMatrix(contact, b);
+    if (of->patterns[0] == of->pattern) PetscCall(MatZeroEntries(contact->interfaces[b]));
     else PetscCall(CreateMatrix(contact, b));
+    of->patterns[0] = product ? -1 : of->pattern;
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair     = &contact->pairs[p];
     PetscInt           begin[2] = {0, 0};
     Mat                rows[2]  = {NULL, NULL};
+    PetscBool          any      = PETSC_FALSE;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
       begin[side] = contact->body_rows[pair->body[side]].begin + pair->begin - pair->shift[side];
-      rows[side]  = contact->interfaces[pair->body[side]];
+      if (!contact->body_rows[pair->body[side]].affected) continue;
+      rows[side] = contact->interfaces[pair->body[side]];
+      any        = PETSC_TRUE;
     }
-    PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
+    if (any) PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    if (!contact->body_rows[b].affected) continue;
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     PetscCall(ContactTurnMatrix(contact, b));
@@ -244,9 +246,12 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactFindSharedNodes(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
+  ContactForgetMatrices(contact);
   PetscCall(ContactFillMatrices(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
-  contact->rows.filled = PETSC_FALSE;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodySetInterface(contact->bodies[b], contact->interfaces[b]));
+    contact->body_rows[b].filled = PETSC_FALSE;
+  }
   if (contact->options.tolerance == (PetscReal)PETSC_DEFAULT) contact->options.tolerance = PENETRATION_TOLERANCE * extent;
   PetscCheck(contact->options.tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_tolerance %g m must not be negative", (double)contact->options.tolerance);

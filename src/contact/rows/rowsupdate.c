@@ -215,6 +215,24 @@ static PetscErrorCode CountIntervals(Contact contact, ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which bodies begin the step with forces along other rows than they end it with: their rows have got new entries, or have been let go */
+static PetscErrorCode FindHandingOver(Contact contact, const PetscReal before[])
+{
+  int *hands_over = contact->work.hands_over;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
+
+    hands_over[b] = of->affected || contact->attempt.again; /* what a failed attempt has handed over counts no more */
+    for (PetscInt k = 0; k < of->n && !hands_over[b]; k++) hands_over[b] = before[of->rows[k]] != contact->start.force[of->rows[k]];
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, hands_over, (PetscMPIInt)contact->n_bodies, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tells the bodies what force they begin the step with, along the rows as they were. `before` are the forces at its start, of which those
    of rows that have been let go are gone. */
 static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
@@ -223,6 +241,7 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   PetscInt  *intervals = contact->work.intervals, fewest = PETSC_INT_MAX;
 
   PetscFunctionBegin;
+  PetscCall(FindHandingOver(contact, before));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(CountIntervals(contact, &contact->pairs[p]));
     fewest = PetscMin(fewest, contact->pairs[p].intervals);
@@ -230,6 +249,7 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const ContactBodyRows *of = &contact->body_rows[b];
 
+    if (!contact->work.hands_over[b]) continue;
     for (PetscInt k = 0; k < of->n; k++) {
       const PetscInt     i    = of->rows[k];
       const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
@@ -268,19 +288,34 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The rows of a pair have got new entries, in other places if they have been built again */
+static void Affect(Contact contact, const ContactPair *pair, PetscBool rebuilt)
+{
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    ContactBodyRows *of = &contact->body_rows[pair->body[side]];
+
+    of->affected = of->rewritten = PETSC_TRUE;
+    if (rebuilt) of->pattern++;
+  }
+}
+
 /* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those
    near contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
   PetscReal near = 0;
-  PetscBool any, built = PETSC_FALSE;
+  PetscBool any = PETSC_FALSE, built = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   if (contact->attempt.again) PetscCall(ContactRestoreRows(contact));
   else PetscCall(ContactSaveRows(contact));
-  any                  = (PetscBool)(contact->attempt.again && contact->saved.moved);
-  contact->saved.moved = PETSC_FALSE;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactBodyRows *of = &contact->body_rows[b];
+
+    of->affected = (PetscBool)(contact->attempt.again && of->rewritten);
+    any          = (PetscBool)(any || of->affected);
+  }
   PetscCall(GetReach(contact, &near));
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
@@ -298,15 +333,14 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     if (!rebuilt && !followed) continue;
     built = (PetscBool)(built || rebuilt);
     any   = PETSC_TRUE;
+    Affect(contact, pair, rebuilt);
     PetscCall(ContactDescribeRows(contact, pair));
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  if (built) {
-    contact->counts.rebuilds++;
-    contact->rows.pattern++;
-  }
-  contact->energy.rebuilt = contact->saved.moved = PETSC_TRUE;
+  if (built) contact->counts.rebuilds++;
+  contact->energy.rebuilt = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));
+  if (contact->held.merger) ContactAffectAll(contact); /* heirs change with rows that are not their own */
   PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++)

@@ -82,7 +82,7 @@ PetscErrorCode ContactSaveRows(Contact contact)
   PetscFunctionBegin;
   PetscCall(Copy(contact, PETSC_FALSE));
   contact->saved.rebuilds = contact->counts.rebuilds;
-  contact->saved.pattern  = contact->rows.pattern;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].saved = contact->body_rows[b].pattern;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (!contact->pairs[p].bonded) PetscCall(TransferSave(contact->pairs[p].transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -94,7 +94,8 @@ PetscErrorCode ContactRestoreRows(Contact contact)
   PetscFunctionBegin;
   PetscCall(Copy(contact, PETSC_TRUE));
   contact->counts.rebuilds = contact->saved.rebuilds;
-  if (contact->rows.pattern != contact->saved.pattern) contact->rows.pattern++;
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (contact->body_rows[b].pattern != contact->body_rows[b].saved) contact->body_rows[b].pattern++;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (!contact->pairs[p].bonded) PetscCall(TransferRestore(contact->pairs[p].transfer));
   PetscFunctionReturn(PETSC_SUCCESS);

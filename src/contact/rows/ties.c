@@ -273,6 +273,7 @@ static PetscErrorCode RebuildTies(Contact contact)
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
+  ContactAffectAll(contact);
   PetscCall(ContactFillMatrices(contact));
   PetscCall(ContactUpdateBodies(contact, contact->rows.changed));
   PetscFunctionReturn(PETSC_SUCCESS);
