@@ -120,6 +120,7 @@ struct _p_Transfer {
   PetscReal      slip_bound, angle_bound;
   PetscBool      curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
   PetscBool      guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
+  PetscBool      moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
   RowSet         rows;
   PetscBool      built;
   PetscReal      built_near;    /* partners at most that far away are known since the last build [m] */

@@ -127,6 +127,31 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
 }
 
 /*@
+  TransferSetMoved - whether the surfaces are where their bodies are already when `TransferUpdate()` is called
+
+  Logically Collective
+
+  Input Parameters:
++ transfer - the `Transfer`
+- moved    - false by default: each update moves them
+
+  Level: developer
+
+  Note:
+  For surfaces that several transfers have in common: the caller moves each once, by `SurfaceUpdate()`.
+
+.seealso: `Transfer`, `TransferUpdate()`, `SurfaceUpdate()`
+@*/
+PetscErrorCode TransferSetMoved(Transfer transfer, PetscBool moved)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(transfer, moved, 2);
+  transfer->moved = moved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferSetGuards - whether Dirichlet nodes just beyond the end of the partner have rows too
 
   Logically Collective

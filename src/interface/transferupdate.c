@@ -210,7 +210,8 @@ static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *rea
 }
 
 /*@
-  TransferUpdate - moves both surfaces to where they are, and builds the rows again where that is needed
+  TransferUpdate - moves both surfaces to where they are, unless `TransferSetMoved()` says that they are there, and builds the rows again
+  where that is needed
 
   Collective
 
@@ -248,8 +249,10 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   PetscAssertPointer(rebuilt, 5);
   PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
              (double)near);
-  PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
-  if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
+  if (!transfer->moved) {
+    PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
+    if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
+  }
   *rebuilt = (PetscBool)(!transfer->built || near > transfer->built_near);
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));

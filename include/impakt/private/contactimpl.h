@@ -51,6 +51,14 @@ typedef struct {
   PetscInt       intervals;   /* of the controller step, between whose ends its force is linear */
 } ContactPair;
 
+/* A surface of a body, for all pairs that have the same */
+typedef struct {
+  PetscInt    body;
+  const char *name;   /* borrowed from a pair; NULL: the whole boundary */
+  PetscBool   shared; /* its faces are the same whoever the partner is */
+  Surface     surface;
+} ContactSurface;
+
 /* Default tolerances on lengths, in parts of the size of the smallest body: see ContactGetLengthScale(). That of the outer iterations is
    1e-12 m for bars of 0.25 m, as in Hoy, Tezaur, Mota, section 4. */
 #define CONTACT_POSITION_TOLERANCE     4e-12
@@ -324,18 +332,20 @@ typedef struct {
 struct _p_Contact {
   PETSCHEADER(struct _ContactOps);
   /* The problem */
-  PetscInt       n_bodies;
-  Body          *bodies;
-  PetscInt       dim; /* of space */
-  PetscInt       n_pairs;
-  PetscInt       max_pairs; /* how many there is room for */
-  ContactPair   *pairs;
-  PetscInt       n_obstacles;
-  Obstacle      *obstacles;
-  PetscInt       parts; /* of a controller step, see ContactGetParts() */
-  PetscReal      step;  /* one part of the controller step [s] */
-  ContactOptions options;
-  ContactScale   scale;
+  PetscInt        n_bodies;
+  Body           *bodies;
+  PetscInt        dim; /* of space */
+  PetscInt        n_pairs;
+  PetscInt        max_pairs; /* how many there is room for */
+  ContactPair    *pairs;
+  PetscInt        n_surfaces, max_surfaces;
+  ContactSurface *surfaces; /* of all pairs */
+  PetscInt        n_obstacles;
+  Obstacle       *obstacles;
+  PetscInt        parts; /* of a controller step, see ContactGetParts() */
+  PetscReal       step;  /* one part of the controller step [s] */
+  ContactOptions  options;
+  ContactScale    scale;
   /* What goes between contact and bodies */
   PetscBool         prescribes; /* the method prescribes displacements on Dirichlet sides */
   PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
@@ -448,6 +458,7 @@ PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
 PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
+PETSC_INTERN PetscErrorCode ContactMoveSurfaces(Contact);
 PETSC_INTERN PetscErrorCode ContactCreateSurfaces(Contact, ContactPair *, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactChooseRowSide(Contact, ContactPair *);
 PETSC_INTERN void           ContactTurnPair(ContactPair *);

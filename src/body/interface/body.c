@@ -113,6 +113,7 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscCall(VecGetArrayRead(local, &all));
   for (PetscInt node = 0; node < body->mesh.local_nodes; node++)
     if (PetscRealPart(all[node * body->mesh.dim]) > 0) body->layer.contains[node] = PETSC_TRUE;
+  body->layer.edge = 0;
   PetscCall(VecRestoreArrayRead(local, &all));
   if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
   PetscCall(VecDestroy(&marks));

@@ -186,6 +186,8 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(size, 2);
+  *size = body->layer.edge;
+  if (*size > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetDimension(body, &dim));
   PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
   PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
@@ -202,7 +204,7 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   if (!(sums[1] > 0)) PetscCall(SumCells(body, sums));
   if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
-  *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
+  *size = body->layer.edge = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -84,6 +84,20 @@ static PetscBool ChooseSides(const Preference *a, const Preference *b, const cha
   return (PetscBool)(b->size < a->size);
 }
 
+/* Adds a pair without bodies yet */
+static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair **pair)
+{
+  PetscFunctionBegin;
+  if (contact->n_pairs == contact->max_pairs) {
+    contact->max_pairs = 2 * contact->max_pairs + 4;
+    PetscCall(PetscRealloc((size_t)contact->max_pairs * sizeof(ContactPair), &contact->pairs));
+  }
+  *pair = &contact->pairs[contact->n_pairs++];
+  PetscCall(PetscMemzero(*pair, sizeof(**pair)));
+  PetscCall(PetscStrallocpy(name, &(*pair)->name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds a pair that is given with a tilde: the sides are the user's, which of them is the first is not */
 static PetscErrorCode AddTilde(Contact contact, const char pair[], const char left[], const char right[])
 {
@@ -154,13 +168,7 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
              "order to the program",
              pair);
   *colon = 0;
-  if (contact->n_pairs == contact->max_pairs) {
-    contact->max_pairs = 2 * contact->max_pairs + 4;
-    PetscCall(PetscRealloc((size_t)contact->max_pairs * sizeof(ContactPair), &contact->pairs));
-  }
-  p = &contact->pairs[contact->n_pairs++];
-  PetscCall(PetscMemzero(p, sizeof(*p)));
-  PetscCall(PetscStrallocpy(pair, &p->name));
+  PetscCall(AppendPair(contact, pair, &p));
   PetscCall(ParseSide(contact, pair, text, &p->body[0], &p->surface[0], NULL));
   PetscCall(ParseSide(contact, pair, colon + 1, &p->body[1], &p->surface[1], &p->obstacle));
   PetscCheck(p->body[0] != p->body[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -188,6 +196,8 @@ PetscErrorCode ContactDestroyPairs(Contact contact)
     }
     PetscCall(PetscFree(pair->name));
   }
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) PetscCall(SurfaceDestroy(&contact->surfaces[s].surface));
+  PetscCall(PetscFree(contact->surfaces));
   for (PetscInt o = 0; o < contact->n_obstacles; o++) PetscCall(ObstacleDestroy(&contact->obstacles[o]));
   PetscCall(PetscFree(contact->obstacles));
   PetscCall(PetscFree(contact->pairs));
@@ -198,15 +208,19 @@ PetscErrorCode ContactDestroyPairs(Contact contact)
 static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const Preference preferences[])
 {
   const char     *why;
-  const PetscBool turn = ChooseSides(&preferences[first], &preferences[second], &why);
-  char            pair[256];
+  const PetscBool turn    = ChooseSides(&preferences[first], &preferences[second], &why);
+  const PetscInt  body[2] = {turn ? second : first, turn ? first : second};
+  ContactPair    *pair;
+  char            name[256];
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[turn ? second : first])->name,
-                          ((PetscObject)contact->bodies[turn ? first : second])->name));
-  PetscCall(ContactAddPair(contact, pair));
-  contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
-  contact->pairs[contact->n_pairs - 1].why    = why;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s:%s", ((PetscObject)contact->bodies[body[0]])->name,
+                          ((PetscObject)contact->bodies[body[1]])->name));
+  PetscCall(AppendPair(contact, name, &pair));
+  pair->body[0] = body[0];
+  pair->body[1] = body[1];
+  pair->chosen  = PETSC_TRUE;
+  pair->why     = why;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,15 +294,19 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
   PetscCall(PetscFree(preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt o = 0; o < contact->n_obstacles; o++) {
-      const char *name;
-      char        pair[256];
+      ContactPair *pair;
+      const char  *name;
+      char         names[256];
 
       PetscCall(IsHidden(contact, a, -1, contact->obstacles[o], &hidden));
       if (hidden) continue;
       PetscCall(ObstacleGetName(contact->obstacles[o], &name));
-      PetscCall(PetscSNPrintf(pair, sizeof(pair), "%s:%s", ((PetscObject)contact->bodies[a])->name, name));
-      PetscCall(ContactAddPair(contact, pair));
-      contact->pairs[contact->n_pairs - 1].chosen = PETSC_TRUE;
+      PetscCall(PetscSNPrintf(names, sizeof(names), "%s:%s", ((PetscObject)contact->bodies[a])->name, name));
+      PetscCall(AppendPair(contact, names, &pair));
+      pair->body[0]  = a;
+      pair->body[1]  = contact->n_bodies;
+      pair->obstacle = contact->obstacles[o];
+      pair->chosen   = PETSC_TRUE;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -130,20 +130,66 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A surface of one side of a pair: that of an earlier pair where it has the same, or a new one */
+static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt side, PetscBool shared)
+{
+  ContactSurface *entry;
+  DM              dm;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < contact->n_surfaces && shared; s++) {
+    PetscBool same;
+
+    entry = &contact->surfaces[s];
+    if (!entry->shared || entry->body != pair->body[side]) continue;
+    PetscCall(PetscStrcmp(entry->name, pair->surface[side], &same));
+    if (!same) continue;
+    PetscCall(PetscObjectReference((PetscObject)entry->surface));
+    pair->surfaces[side] = entry->surface;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (contact->n_surfaces == contact->max_surfaces) {
+    contact->max_surfaces = 2 * contact->max_surfaces + 4;
+    PetscCall(PetscRealloc((size_t)contact->max_surfaces * sizeof(*contact->surfaces), &contact->surfaces));
+  }
+  entry  = &contact->surfaces[contact->n_surfaces++];
+  *entry = (ContactSurface){.body = pair->body[side], .name = pair->surface[side], .shared = shared};
+  PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
+  PetscCall(SurfaceCreate(dm, pair->surface[side], &entry->surface));
+  PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
+  PetscCall(PetscObjectReference((PetscObject)entry->surface));
+  pair->surfaces[side] = entry->surface;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All surfaces to where their bodies are */
+PetscErrorCode ContactMoveSurfaces(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) {
+    Vec u;
+
+    PetscCall(BodyGetSolution(contact->bodies[contact->surfaces[s].body], &u, NULL, NULL));
+    PetscCall(SurfaceUpdate(contact->surfaces[s].surface, u));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Surfaces of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. */
 PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscReal *extent)
 {
-  PetscInt dims[2] = {contact->dim, contact->dim};
+  PetscInt  dims[2]  = {contact->dim, contact->dim};
+  PetscBool faces[2] = {PETSC_FALSE, PETSC_FALSE}; /* those alone that face the partner at the start */
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal lower[3], upper[3];
     DM        dm;
 
+    faces[side] = (PetscBool)(contact->options.facing && !pair->surface[side]);
     PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
     PetscCall(DMGetCoordinateDim(dm, &dims[side]));
-    PetscCall(SurfaceCreate(dm, pair->surface[side], &pair->surfaces[side]));
-    PetscCall(SurfaceSetRound(pair->surfaces[side], (PetscBool)(contact->dim == 3 && contact->options.balance)));
+    PetscCall(TakeSurface(contact, pair, side, (PetscBool)!faces[side]));
     PetscCall(DMGetBoundingBox(dm, lower, upper));
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }
@@ -151,9 +197,7 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
              "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT
              ", and another body has %" PetscInt_FMT,
              pair->name, dims[0], dims[1], contact->dim);
-  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle,
-                              (PetscBool)(contact->options.facing && !pair->surface[0]),
-                              (PetscBool)(contact->options.facing && !pair->surface[1])));
+  PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, faces[0], faces[1]));
   PetscCall(CheckFacing(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -176,6 +220,7 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
     linear = (PetscBool)(linear && is_linear);
   }
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
+  PetscCall(TransferSetMoved(pair->transfer, PETSC_TRUE));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
   /* in three dimensions coarse balls lose six times the energy if bends count with normals that are means by areas */
   PetscCall(TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && !linear &&

@@ -320,6 +320,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
+  PetscCall(ContactMoveSurfaces(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     Vec          u[2] = {NULL, NULL};

@@ -255,6 +255,7 @@ static PetscErrorCode RebuildTies(Contact contact)
   int any = 0;
 
   PetscFunctionBegin;
+  PetscCall(ContactMoveSurfaces(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     Vec                u[2] = {NULL, NULL};
