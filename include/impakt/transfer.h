@@ -62,6 +62,7 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode TransferInitializePackage(void);
 PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
+PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferSetMoved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);

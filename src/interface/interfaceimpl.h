@@ -101,7 +101,8 @@ typedef struct {
 
 /* What TransferSave() puts aside */
 typedef struct {
-  PetscBool  ready;  /* there is room for it */
+  PetscBool  ready; /* there is room for it */
+  PetscBool  sleeps;
   PetscInt   builds; /* those counted when the rows were put aside; 0: none have been */
   RowSet     rows;
   PetscReal *built_x[2], *built_slip, *slip, built_near, smallest_size;
@@ -123,6 +124,7 @@ struct _p_Transfer {
   PetscBool      moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
   RowSet         rows;
   PetscBool      built;
+  PetscBool      sleeps;        /* no row has a partner until the next update, see TransferSleep() */
   PetscReal      built_near;    /* partners at most that far away are known since the last build [m] */
   PetscReal      smallest_size; /* edge of the smallest face of both sides at the last build [m] */
   PetscReal     *built_x[2];    /* positions of the owned nodes of both sides at the last build */

@@ -93,6 +93,7 @@ static PetscErrorCode CopyNotes(Transfer transfer, PetscBool back)
   PetscCall(CopyReals(back, 3 * n, transfer->built_slip, saved->built_slip));
   PetscCall(CopyReals(back, n, transfer->slip, saved->slip));
   PetscCall(CopyReals(back, 1, &transfer->built_near, &saved->built_near));
+  *(back ? &transfer->sleeps : &saved->sleeps) = back ? saved->sleeps : transfer->sleeps;
   PetscCall(CopyReals(back, 1, &transfer->smallest_size, &saved->smallest_size));
   PetscCall(CopyReals(back, 3 * n, transfer->built_x[0], saved->built_x[0]));
   if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);

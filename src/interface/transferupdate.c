@@ -210,6 +210,39 @@ static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *rea
 }
 
 /*@
+  TransferSleep - leaves all rows without a partner, since the surfaces are far apart, until the next `TransferUpdate()` builds them
+
+  Logically Collective
+
+  Input Parameter:
+. transfer - the `Transfer`, between two surfaces, updated once at least
+
+  Level: developer
+
+  Note:
+  Rows that had a partner count as changed.
+
+.seealso: `Transfer`, `TransferUpdate()`
+@*/
+PetscErrorCode TransferSleep(Transfer transfer)
+{
+  RowSet *set = &transfer->rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscCheck(transfer->built && transfer->neumann, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "Only rows between two surfaces can sleep, after TransferUpdate()");
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    set->changed[row]  = set->opposite[row];
+    set->opposite[row] = set->beyond[row] = transfer->keep[row] = PETSC_FALSE;
+    transfer->follow.known[row] = transfer->followed[row] = transfer->goes_on[row] = PETSC_FALSE;
+  }
+  transfer->follow.has_last = PETSC_FALSE;
+  transfer->sleeps          = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferUpdate - moves both surfaces to where they are, unless `TransferSetMoved()` says that they are there, and builds the rows again
   where that is needed
 
@@ -253,7 +286,8 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
     PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
     if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   }
-  *rebuilt = (PetscBool)(!transfer->built || near > transfer->built_near);
+  *rebuilt         = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
+  transfer->sleeps = PETSC_FALSE;
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (!*rebuilt) PetscCall(HasMoved(transfer, rebuilt));

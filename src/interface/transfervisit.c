@@ -70,6 +70,7 @@ PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitReals(checkpoint, "built_near", 1, &transfer->built_near));
+  PetscCall(CheckpointVisitBools(checkpoint, "sleeps", 1, &transfer->sleeps));
   PetscCall(CheckpointVisitReals(checkpoint, "smallest_size", 1, &transfer->smallest_size));
   PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(transfer->counts), &transfer->counts));
   PetscCall(CheckpointVisitBools(checkpoint, "has_last", 1, &follow->has_last));

@@ -6,6 +6,9 @@
 /* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
    compared with it */
 #define NOTHING_AT_START 1e-9
+/* Room for series of forces at first */
+#define SERIES_BYTES (1 << 16)
+
 /* Distance of the farthest corner of a bounding box from the origin [m] */
 static PetscErrorCode GetArm(Body body, PetscReal *arm)
 {
@@ -63,7 +66,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
     s->arm = PetscMax(s->arm, arm);
   }
   StatisticsInitializeContact(s);
-  s->capacity = 1024;
+  s->capacity = PetscMax(16, SERIES_BYTES / (PetscInt)sizeof(PetscReal) / (1 + 2 * s->results.n_pairs));
   PetscCall(PetscMalloc1(s->capacity * (1 + 2 * s->results.n_pairs), &s->series));
   *statistics = s;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -134,12 +134,52 @@ static void dimensions_must_agree(void **state)
   }
 }
 
+/* Surfaces that are far apart have no rows with a partner until the next update, which finds them again */
+static void sleeps_until_the_next_update(void **state)
+{
+  const char *const lower[] = {"0", "1.25"}, *const upper[] = {"1", "2"}, *const names[] = {NULL, NULL};
+  Obstacle  obstacle;
+  Transfer  other;
+  PetscBool rebuilt;
+  PetscInt  n;
+  Bars      bars;
+
+  (void)state;
+  bars_create(lower, upper, names, 10, &bars);
+  n = bars.rows.n;
+  for (PetscInt again = 0; again < 2; again++) {
+    ok(TransferSleep(bars.transfer));
+    ok(TransferGetRows(bars.transfer, &bars.rows));
+    assert_int_equal(bars.rows.n, n);
+    for (PetscInt i = 0; i < n; i++) {
+      assert_false(bars.rows.opposite[i]);
+      assert_int_equal(bars.rows.changed[i], !again); /* those that had a partner */
+    }
+  }
+  ok(TransferUpdate(bars.transfer, NULL, NULL, 0, &rebuilt));
+  assert_true(rebuilt);
+  ok(TransferGetRows(bars.transfer, &bars.rows));
+  for (PetscInt i = 0; i < n; i++) {
+    assert_true(bars.rows.opposite[i]);
+    near(bars.rows.gap[i], 0.25, 1e-15);
+  }
+  ok(TransferUpdate(bars.transfer, NULL, NULL, 0, &rebuilt));
+  assert_false(rebuilt);
+  ok(ObstacleCreate(PETSC_COMM_WORLD, "wall", &obstacle));
+  ok(ObstacleSetPlane(obstacle, (const PetscReal[]){2, 0, 0}, (const PetscReal[]){-1, 0, 0}));
+  ok(TransferCreate(PETSC_COMM_WORLD, bars.surface[0], NULL, obstacle, &other));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "between two surfaces", TransferSleep(other));
+  ok(TransferDestroy(&other));
+  ok(ObstacleDestroy(&obstacle));
+  bars_destroy(&bars);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       simulation_test(bars_that_face_each_other), simulation_test(overlap_is_a_negative_gap),
       simulation_test(far_bars_are_partners),     simulation_test(surfaces_that_do_not_face_each_other),
-      simulation_test(dimensions_must_agree),
+      simulation_test(dimensions_must_agree),     simulation_test(sleeps_until_the_next_update),
   };
 
   return impakt_main(argc, argv, tests);

@@ -40,6 +40,10 @@ typedef struct {
   ContactRowSide row_side;    /* which body is to have the rows, if `own_side` */
   PetscBool      own_side;    /* the pair has been given a side of its own */
   Surface        surfaces[2]; /* those of the bodies */
+  PetscInt       place[2];    /* these in contact->surfaces */
+  PetscBool      far;         /* its bodies are so far apart that its rows have no partner, see src/contact/rows/farpairs.c */
+  PetscBool      was_far;     /* at the start of the controller step */
+  PetscReal      distance;    /* between the boxes of its surfaces as the step begins, where they are far apart [m] */
   Transfer       transfer;    /* between the surfaces */
   PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
   PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
@@ -318,6 +322,7 @@ typedef struct {
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
   PetscReal     *speeds;     /* per body */
+  PetscReal     *boxes;      /* per surface: lower corner, and the upper one with its sign changed [m] */
   int           *hands_over; /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;      /* to a body */
   PetscReal     *last_gap;   /* per row */
@@ -459,6 +464,7 @@ PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
 PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
 PETSC_INTERN PetscErrorCode ContactMoveSurfaces(Contact);
+PETSC_INTERN PetscErrorCode ContactFindFarPairs(Contact, PetscReal);
 PETSC_INTERN PetscErrorCode ContactCreateSurfaces(Contact, ContactPair *, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactChooseRowSide(Contact, ContactPair *);
 PETSC_INTERN void           ContactTurnPair(ContactPair *);

@@ -347,6 +347,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
   PetscCall(PetscFree2(c->spares, c->work.hands_over));
+  PetscCall(PetscFree(c->work.boxes));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));

@@ -256,7 +256,7 @@ static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt en
 
     state->force   = sums[SUM_FORCE];
     state->active  = (PetscInt)sums[SUM_ACTIVE];
-    state->gap     = -maxima[MAX_PENETRATION];
+    state->gap     = contact->pairs[p].far ? contact->pairs[p].distance : -maxima[MAX_PENETRATION];
     state->tension = maxima[MAX_TENSION];
     state->area    = sums[SUM_AREA];
     for (PetscInt d = 0; d < 3; d++) {

@@ -146,12 +146,15 @@ static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt s
     if (!same) continue;
     PetscCall(PetscObjectReference((PetscObject)entry->surface));
     pair->surfaces[side] = entry->surface;
+    pair->place[side]    = s;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (contact->n_surfaces == contact->max_surfaces) {
     contact->max_surfaces = 2 * contact->max_surfaces + 4;
     PetscCall(PetscRealloc((size_t)contact->max_surfaces * sizeof(*contact->surfaces), &contact->surfaces));
   }
+  pair->place[side] = contact->n_surfaces;
+
   entry  = &contact->surfaces[contact->n_surfaces++];
   *entry = (ContactSurface){.body = pair->body[side], .name = pair->surface[side], .shared = shared};
   PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));

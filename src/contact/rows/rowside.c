@@ -233,6 +233,7 @@ void ContactTurnPair(ContactPair *pair)
   Swap(&pair->body[0], &pair->body[1], sizeof(pair->body[0]));
   Swap((void *)&pair->surface[0], (void *)&pair->surface[1], sizeof(pair->surface[0]));
   Swap((void *)&pair->surfaces[0], (void *)&pair->surfaces[1], sizeof(pair->surfaces[0]));
+  Swap(&pair->place[0], &pair->place[1], sizeof(pair->place[0]));
   pair->turned = (PetscBool)!pair->turned;
 }
 

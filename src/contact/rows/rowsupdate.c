@@ -299,6 +299,23 @@ static void Affect(Contact contact, const ContactPair *pair, PetscBool rebuilt)
   }
 }
 
+/* The rows of a pair where its bodies are; none, where they are far apart */
+static PetscErrorCode UpdatePair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *rebuilt)
+{
+  Vec u[2] = {NULL, NULL};
+
+  PetscFunctionBegin;
+  if (pair->far) {
+    PetscCall(TransferSleep(pair->transfer));
+    *rebuilt = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+  PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, rebuilt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those
    near contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
@@ -321,16 +338,14 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
   PetscCall(ContactMoveSurfaces(contact));
+  PetscCall(ContactFindFarPairs(contact, near));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-    Vec          u[2] = {NULL, NULL};
-    PetscBool    rebuilt, followed;
+    ContactPair *pair     = &contact->pairs[p];
+    PetscBool    followed = PETSC_FALSE, rebuilt;
 
-    if (pair->bonded) continue;
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-      PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
-    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, &rebuilt));
-    PetscCall(FollowPair(contact, pair, near, &followed));
+    if (pair->bonded || (pair->far && pair->was_far)) continue;
+    PetscCall(UpdatePair(contact, pair, near, &rebuilt));
+    if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
     if (!rebuilt && !followed) continue;
     built = (PetscBool)(built || rebuilt);
     any   = PETSC_TRUE;

@@ -1,0 +1,71 @@
+/*
+   Pairs that the program has chosen, of all bodies with each other, are mostly far apart. While the boxes about both surfaces are farther
+   from each other than bodies can come in the next controller steps, their rows have no partner: they are neither built again nor looked
+   at, and nothing is put aside of them.
+*/
+#include <impakt/private/contactimpl.h>
+
+/* Boxes that are farther apart, beyond the reach of a controller step, are far [edges of the contact elements] */
+#define FAR 4
+/* Up to so many such pairs all have their rows always, and gaps are those of the surfaces however far they are apart */
+#define FEW_PAIRS 16
+
+/* Boxes of all surfaces where they are, of all ranks */
+static PetscErrorCode GetBoxes(Contact contact)
+{
+  PetscReal *boxes = contact->work.boxes;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) {
+    PetscReal         *box = boxes + 6 * s;
+    const SurfaceData *data;
+
+    PetscCall(SurfaceGetData(contact->surfaces[s].surface, &data));
+    for (PetscInt k = 0; k < 6; k++) box[k] = PETSC_MAX_REAL;
+    for (PetscInt i = 0; i < data->n_owned; i++)
+      for (PetscInt d = 0; d < 3; d++) {
+        box[d]     = PetscMin(box[d], data->positions[3 * i + d]);
+        box[3 + d] = PetscMin(box[3 + d], -data->positions[3 * i + d]);
+      }
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, boxes, (PetscMPIInt)(6 * contact->n_surfaces), MPIU_REAL, MPIU_MIN,
+                               PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Distance of two boxes [m] */
+static PetscReal Distance(const PetscReal a[], const PetscReal b[])
+{
+  PetscReal square = 0;
+
+  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(a[d] + b[3 + d], b[d] + a[3 + d])));
+  return PetscSqrtReal(square);
+}
+
+/* Which pairs are far. `near`: surfaces that far apart may touch in the next controller step [m]. Call with the surfaces where they are. */
+PetscErrorCode ContactFindFarPairs(Contact contact, PetscReal near)
+{
+  PetscReal largest = 0;
+  PetscInt  chosen  = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs && chosen <= FEW_PAIRS; p++) chosen += contact->pairs[p].chosen && !contact->pairs[p].obstacle;
+  if (chosen <= FEW_PAIRS) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->work.boxes) PetscCall(PetscMalloc1(6 * contact->n_surfaces, &contact->work.boxes));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal size;
+
+    PetscCall(BodyGetContactElementSize(contact->bodies[b], &size));
+    largest = PetscMax(largest, size);
+  }
+  PetscCall(GetBoxes(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    if (!pair->chosen || pair->obstacle || pair->bonded) continue;
+    pair->distance = Distance(contact->work.boxes + 6 * pair->place[0], contact->work.boxes + 6 * pair->place[1]);
+    pair->far      = (PetscBool)(pair->distance > near + FAR * largest);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
