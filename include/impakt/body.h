@@ -115,6 +115,8 @@ PETSC_EXTERN PetscErrorCode BodySetInitialDisplacement(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialVelocity(Body, const PetscReal[]);
 
 PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode BodyGetControllerStep(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyEstimateSubsteps(Body, PetscReal, PetscReal, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *),
                                                 void *);
 

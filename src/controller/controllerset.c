@@ -246,6 +246,9 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   if (!controller->contact) PetscCall(ReadBodies(controller));
   PetscCall(ReadTimes(controller));
   PetscCall(ControllerReadStepControl(controller));
+  /* pairs choose their sides by it */
+  for (PetscInt b = 0; b < controller->n_bodies && !controller->chooses_step; b++)
+    PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetFromOptions(contact));
   PetscCall(PetscTime(&end));

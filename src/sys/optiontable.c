@@ -101,8 +101,8 @@ static const KnownOption options[] = {
      "default 4; 0: it "
      "ends the run"},
     {"time", OPTION_OF_BODY, "ts_time_step", "dt|auto",
-     "substep [s], default the controller step; auto: 0.9 of the stable step of an explicit body, made smaller to divide the controller "
-     "step"},
+     "substep [s], default the controller step, and auto for an explicit body that is unstable in it; auto: 0.9 of the stable step of an "
+     "explicit body, made smaller to divide the controller step"},
     {"time", OPTION_OF_BODY, "ts_alpha_radius", "r", "numerical dissipation of alpha2, from 1 (none) to 0"},
     {"time", OPTION_OF_BODY, "ts_alpha_alpha_m", "a",
      "parameter alpha_m of alpha2, default 1; alpha_m and alpha_f of 0.5 make the implicit midpoint rule"},

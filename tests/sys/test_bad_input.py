@@ -37,7 +37,7 @@ CASES = {
     "body-twice": (f"{BASE} -bodies left,left", ["-bodies", "left", "twice"]),
     "indivisible": (f"{BASE} -left_ts_time_step 3e-8", ["-left_ts_time_step", "3e-08", "-time_step", "1e-07"]),
     "substep-too-long": (f"{BASE} -right_ts_time_step 2e-7", ["-right_ts_time_step", "2e-07", "-time_step", "1e-07"]),
-    "unstable": (f"{BASE} {EXPLICIT} -time_step 2e-6", ["left", "2e-06", "stable", "auto"]),
+    "unstable": (f"{BASE} {EXPLICIT} -left_ts_time_step 2e-6 -time_step 2e-6", ["left", "2e-06", "stable", "auto"]),
     "unstable-penalty": (f"{PENALTY} {EXPLICIT} -contact_penalty 1e12", ["-contact_penalty", "1e+12", "stiff"]),
     "negative-density": (f"{BASE} -left_density -1000", ["-left_density", "-1000", "positive"]),
     "no-density": ("-bodies a -a_dm_plex_dim 1 -a_youngs_modulus 1", ["-a_density"]),
@@ -98,13 +98,18 @@ def test_bad_input_on_two_ranks(case, impakt):
 
 
 def test_stable_step_is_named(impakt):
-    """The message gives the limit, and what is just below it is taken; with masses of a mesh alone, which no factor changes by 4e-5."""
-    run = impakt(f"{BASE} {EXPLICIT} {TOTAL} -time_step 2e-6", expect_failure=True)
+    """The message gives the limit, and what is just below it is taken; with masses of a mesh alone, which no factor changes by 4e-5.
+    Where no substep is given, a controller step just above the limit makes two of it."""
+    run = impakt(f"{BASE} {EXPLICIT} {TOTAL} -left_ts_time_step 2e-6 -time_step 2e-6", expect_failure=True)
     check_message(run, ["2e-06 s", "left", "stable step"])
     limit = float(re.search(r"stable step, (\S+) s", run.stderr)[1])
     assert limit == pytest.approx(STABLE_STEP, rel=1e-5)  # six digits are printed
-    impakt(f"{BASE} {EXPLICIT} {TOTAL} -time_step {STABLE_STEP * (1 - 1e-6)!r} -time_end -1.9e-4")
-    impakt(f"{BASE} {EXPLICIT} {TOTAL} -time_step {STABLE_STEP * (1 + 1e-6)!r}", expect_failure=True)
+    for part, substeps in ((1 - 1e-6, 1), (1 + 1e-6, 2)):
+        step = STABLE_STEP * part
+        run = impakt(f"{BASE} {EXPLICIT} {TOTAL} -time_step {step!r} -time_end {-2e-4 + 10 * step!r} -exact none")
+        assert {body["substeps"] for body in run.summary["bodies"].values()} == {10 * substeps}
+    given = " ".join(f"-{body}_ts_time_step {step!r}" for body in ("left", "right"))
+    impakt(f"{BASE} {EXPLICIT} {TOTAL} -time_step {step!r} {given}", expect_failure=True)
 
 
 def test_automatic_step(impakt):

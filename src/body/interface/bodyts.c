@@ -2,6 +2,10 @@
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
 
+/* Stable step of a body over the time that a plane wave takes through its mean element, about: 0.77 of cubes and squares with Poisson's
+   ratio 0.25 */
+#define STABLE_PART 0.77
+
 /*@
   BodySetTSType - chooses the time integrator
 
@@ -80,7 +84,7 @@ PetscErrorCode BodyGetTS(Body body, TS *ts)
   Input Parameters:
 + body - the `Body`, not yet set up
 - step - [s], of which the controller step must be a multiple; `PETSC_DETERMINE`: 0.9 of the stable explicit step, or less to divide
-         the controller step; 0 (default): the controller step
+         the controller step; 0 (default): the controller step, but as `PETSC_DETERMINE` for an explicit body that is unstable in it
 
   Options Database Key:
 . -<body>_ts_time_step (auto|dt) - the substep
@@ -123,6 +127,69 @@ PetscErrorCode BodyGetTimeStep(Body body, PetscReal *step)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(step, 2);
   *step = body->time.requested_step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyEstimateSubsteps - about how many substeps an explicit body will make to a controller step, before contact is set up
+
+  Not Collective
+
+  Input Parameters:
++ body    - the `Body`, with its mesh and material
+. transit - time that a plane wave takes through its mean element [s]
+- step    - controller step [s]
+
+  Output Parameter:
+. substeps - at least 1; 1 for implicit and static bodies
+
+  Level: developer
+
+  Note:
+  The stable step itself depends on which nodes are massless, and costs as much as some steps. What is made of the estimate must not be
+  wrong where the estimate is.
+
+.seealso: `Body`, `BodyGetSubsteps()`, `BodyGetStableStep()`
+@*/
+PetscErrorCode BodyEstimateSubsteps(Body body, PetscReal transit, PetscReal step, PetscInt *substeps)
+{
+  PetscBool is_explicit;
+  PetscReal substep;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(substeps, 4);
+  *substeps = 1;
+  PetscCall(BodyIsExplicit(body, &is_explicit));
+  if (!is_explicit || !(transit > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  substep = body->time.requested_step;
+  if (substep <= 0) substep = step <= STABLE_PART * transit && substep == 0 ? step : 0.9 * STABLE_PART * transit;
+  if (step / substep < PETSC_INT_MAX / 2) *substeps = PetscMax(1, (PetscInt)PetscCeilReal(step / substep * (1 - 1e-6)));
+  else *substeps = PETSC_INT_MAX / 2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetControllerStep - the controller step that the body has been told
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. step - as given to `BodySetControllerStep()` [s]; 0: not yet known
+
+  Level: developer
+
+.seealso: `Body`, `BodySetControllerStep()`
+@*/
+PetscErrorCode BodyGetControllerStep(Body body, PetscReal *step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(step, 2);
+  *step = body->time.whole_step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

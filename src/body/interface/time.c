@@ -14,6 +14,15 @@
 /* For TSSetMaxTime() [s]: no end, since the controller has one; PETSc takes PETSC_MAX_REAL for a time that was not set */
 #define NO_END (0.5 * PETSC_MAX_REAL)
 
+/* Whether the body chooses its substep: where it is told to, and where nothing is said of the substep of an explicit body that would be
+   unstable in one step. A controller step between 0.9 times the stable step and the stable step stays one. Ties whose nodes keep their
+   mass have been made for one step. */
+static PetscBool ChoosesSubstep(Body body)
+{
+  if (body->time.requested_step != 0 || body->rows.tied_mass) return (PetscBool)(body->time.requested_step < 0);
+  return (PetscBool)(body->integrator->needs_stable_step && body->time.controller_step > body->time.stable_step * (1 + ROUND_OFF));
+}
+
 /* A whole number of substeps to the controller step */
 PetscErrorCode BodySetUpSubsteps(Body body)
 {
@@ -23,7 +32,10 @@ PetscErrorCode BodySetUpSubsteps(Body body)
   PetscFunctionBegin;
   PetscCheck(body->time.controller_step > 0, comm, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetControllerStep() first");
   if (body->integrator->needs_stable_step || body->time.requested_step < 0) PetscCall(BodyComputeStableStep(body));
-  if (body->time.requested_step < 0) {
+  if (ChoosesSubstep(body)) {
+    PetscCheck(body->time.controller_step / (SAFETY * body->time.stable_step) < MAX_SUBSTEPS, comm, PETSC_ERR_USER_INPUT,
+               "The stable step of body '%s', %.6g s, is too small for the controller step -time_step %g s", body->hdr.name,
+               (double)body->time.stable_step, (double)body->time.controller_step);
     /* a quotient that is a whole number but for round-off is not rounded up to the next one */
     body->time.substeps = (PetscInt)PetscCeilReal(body->time.controller_step / (SAFETY * body->time.stable_step) * (1 - ROUND_OFF));
   } else {

@@ -43,8 +43,46 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
 /* What decides which of two bodies takes displacements */
 typedef struct {
   PetscBool is_explicit;
-  PetscReal size; /* edge of its mean element, or of the largest that is alike [m] */
+  PetscInt  substeps; /* of explicit bodies, about */
+  PetscReal size;     /* edge of its mean element, or of the largest that is alike [m] */
 } Preference;
+
+/* Time that a plane wave takes through an element of a body [s] */
+static PetscErrorCode GetTransit(Body body, PetscReal size, PetscReal *transit)
+{
+  PetscReal density, impedance, cross_section;
+  Material  material;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(MaterialGetDensity(material, &density));
+  PetscCall(BodyGetImpedance(body, &impedance));
+  PetscCall(BodyGetCrossSection(body, &cross_section));
+  *transit = impedance > 0 ? size * density * cross_section / impedance : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* About how many substeps explicit bodies will make. A controller step that is still to be chosen lies between the times in which waves
+   cross the elements of both sides, see ContactGetResolvedStep(). */
+static PetscErrorCode EstimateSubsteps(Contact contact, const PetscReal size[], Preference preferences[])
+{
+  PetscReal *transit, step, least = PETSC_MAX_REAL, most = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_bodies, &transit));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(GetTransit(contact->bodies[b], size[b], &transit[b]));
+    if (!preferences[b].is_explicit || !(transit[b] > 0)) continue;
+    least = PetscMin(least, transit[b]);
+    most  = PetscMax(most, transit[b]);
+  }
+  PetscCall(BodyGetControllerStep(contact->bodies[0], &step));
+  if (!(step > 0)) step = PetscSqrtReal(least) * PetscSqrtReal(most);
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    PetscCall(BodyEstimateSubsteps(contact->bodies[b], transit[b], step, &preferences[b].substeps));
+  PetscCall(PetscFree(transit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* The preferences of all bodies. Sizes are compared with the largest that is alike, not two by two: of three bodies each could be alike to
    the next, and the first not to the last, so that the order could go round in a circle. */
@@ -67,18 +105,25 @@ static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
     if (size[largest] < ALIKE * level) level = size[largest];
     preferences[largest].size = level;
   }
+  PetscCall(EstimateSubsteps(contact, size, preferences));
   PetscCall(PetscFree(size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the second of two bodies is to take displacements. An implicit body does rather than an explicit one; if both are alike in that,
-   the one with the finer mesh: of two discs without friction that hit each other off-centre the coarser one as the first side has 1.5 to 5
-   times the spin. If both are alike in that too, the one that is named first does. */
+/* Whether the second of two bodies is to take displacements. An implicit body does rather than an explicit one. Of two explicit bodies the
+   one with fewer substeps does: the compliance of rows on a body with substeps is found by integrating that body under a unit force on
+   each, so that the fewer such rows the better. If both are alike in that, the one with the finer mesh: of two discs without friction that
+   hit each other off-centre the coarser one as the first side has 1.5 to 5 times the spin. If both are alike in that too, the one that is
+   named first does. */
 static PetscBool ChooseSides(const Preference *a, const Preference *b, const char **why)
 {
   if (a->is_explicit != b->is_explicit) {
     *why = "implicit body first";
     return a->is_explicit;
+  }
+  if (a->substeps != b->substeps) {
+    *why = "fewer substeps first";
+    return (PetscBool)(b->substeps < a->substeps);
   }
   *why = a->size == b->size ? "alike, as named" : "finer mesh first";
   return (PetscBool)(b->size < a->size);
@@ -140,8 +185,9 @@ static PetscErrorCode AddTilde(Contact contact, const char pair[], const char le
   Level: beginner
 
   Note:
-  With a tilde for the colon the first side is the implicit body, then the one with the finer mesh, then the one that is named first. The
-pair has the name in this order, and `ContactView()` says why. All bodies must have their meshes.
+  With a tilde for the colon the first side is the implicit body; of explicit bodies the one that makes fewer substeps, as far as the
+controller step is known; then the one with the finer mesh; then the one that is named first. The pair has the name in this order, and
+`ContactView()` says why. All bodies must have their meshes.
 
 .seealso: `Contact`, `ContactSetBodies()`, `ContactAddObstacle()`, `SurfaceCreate()`
 @*/

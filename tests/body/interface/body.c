@@ -98,6 +98,29 @@ static void chooses_its_own_step(void **state)
   }
 }
 
+/* Without a substep of its own, an explicit body makes one to a controller step that is stable, and chooses beyond: h / c = 0.1 s */
+static void substeps_by_default(void **state)
+{
+  static const struct {
+    PetscReal step;
+    PetscInt  substeps;
+  } cases[] = {{0.05, 1}, {0.0999, 1}, {0.1, 1}, {0.1001, 2}, {0.5, 6}, {7.3, 82}};
+
+  (void)state;
+  for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++)
+    for (PetscInt is_explicit = 0; is_explicit < 2; is_explicit++) {
+      Body         body;
+      PetscOptions options = bar_create(&body, MESH MATERIAL "-mass_type lumped -ts_type %s", is_explicit ? "centraldifference" : "alpha2");
+      PetscInt     n;
+
+      ok(BodySetControllerStep(body, 0, cases[k].step));
+      ok(BodySetUp(body));
+      ok(BodyGetSubsteps(body, &n));
+      assert_int_equal(n, is_explicit ? cases[k].substeps : 1);
+      bar_destroy(&body, options);
+    }
+}
+
 /* Each is refused when options are read, or when the body is set up with a controller step of 0.3 s */
 static void refuses_bad_input(void **state)
 {
@@ -118,8 +141,8 @@ static void refuses_bad_input(void **state)
       {MESH MATERIAL "-ts_time_step 0.07", "-bar_ts_time_step|0.07|does not divide|0.3|auto", PETSC_ERR_USER_INPUT, PETSC_TRUE},
       {MESH MATERIAL "-ts_time_step 0.6", "-bar_ts_time_step|0.6|does not divide|0.3", PETSC_ERR_USER_INPUT, PETSC_TRUE}, /* twice it */
       {MESH MATERIAL "-ts_time_step 1e-12", "-bar_ts_time_step|1e-12|too small", PETSC_ERR_USER_INPUT, PETSC_TRUE},
-      {MESH MATERIAL "-ts_type centraldifference -mass_type lumped", "-bar_ts_time_step|0.3 s|'bar'|stable step, 0.1 s|auto",
-       PETSC_ERR_USER_INPUT, PETSC_TRUE},
+      {MESH MATERIAL "-ts_type centraldifference -mass_type lumped -ts_time_step 0.3",
+       "-bar_ts_time_step|0.3 s|'bar'|stable step, 0.1 s|auto", PETSC_ERR_USER_INPUT, PETSC_TRUE},
       {MESH MATERIAL "-ts_type centraldifference -mass_type consistent -ts_time_step 0.06", "-bar_ts_time_step 0.06|0.057735",
        PETSC_ERR_USER_INPUT, PETSC_TRUE}, /* 0.1 / sqrt(3) */
       {MESH MATERIAL "-ts_adapt_type basic", "-bar_ts_adapt_type|not supported|none", PETSC_ERR_USER_INPUT, PETSC_TRUE},
@@ -239,10 +262,10 @@ static void tells_where_a_number_is_lost(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(is_made_from_options_alone),   cmocka_unit_test(has_defaults),
-      cmocka_unit_test(chooses_its_own_step),         cmocka_unit_test(refuses_bad_input),
-      cmocka_unit_test(is_set_up_in_order),           cmocka_unit_test(needs_a_controller_step),
-      cmocka_unit_test(tells_where_a_number_is_lost),
+      cmocka_unit_test(is_made_from_options_alone), cmocka_unit_test(has_defaults),
+      cmocka_unit_test(chooses_its_own_step),       cmocka_unit_test(refuses_bad_input),
+      cmocka_unit_test(substeps_by_default),        cmocka_unit_test(is_set_up_in_order),
+      cmocka_unit_test(needs_a_controller_step),    cmocka_unit_test(tells_where_a_number_is_lost),
   };
 
   return impakt_main(argc, argv, tests);

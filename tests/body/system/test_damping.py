@@ -135,7 +135,7 @@ def test_stable_step(alpha, beta, impakt):
     """The step that is told is the largest for which z^2 - (2 - w^2 dt^2 - 2 c dt) z + 1 - 2 c dt = 0 has no root beyond 1, with 2 c = alpha + beta w^2, of
     a bar with lumped mass whose fastest vibration has w = 2 c / h."""
     bar = f"{BAR} {EXPLICIT} -b_mass_type lumped -b_damping_mass {alpha} -b_damping_stiffness {beta} -b_initial_velocity x"
-    message = impakt(f"{bar} -time_step 1e-2 -time_end 1", expect_failure=True).stderr
+    message = impakt(f"{bar} -b_ts_time_step 1e-2 -time_step 1e-2 -time_end 1", expect_failure=True).stderr
     stable = float(re.search(r"larger than its stable step, (\S+) s", message).group(1))
     w = 2 * 1e3 * ELEMENTS / LENGTH
 
