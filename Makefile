@@ -154,11 +154,12 @@ test test-all: $(BUILD)/impakt $(units) $(replays)
 	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long")
 
 # BENCH="--largest 10000" makes it shorter
-bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 ## time and memory, beside plain C yardsticks: a report in out/bench
+bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yardstick_solids ## time and memory, beside plain C yardsticks: a report in out/bench
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD) --json out/bench/bars.json
 	$(PYTHON) tests/scaling/solids.py --build $(BUILD) --json out/bench/solids.json $(BENCH)
+	$(PYTHON) tests/scaling/shapes.py --build $(BUILD) --json out/bench/shapes.json $(BENCH)
 	$(PYTHON) tests/scaling/contact.py --build $(BUILD) --json out/bench/contact.json $(BENCH)
-	$(PYTHON) tests/scaling/benchreport.py --program $(BUILD)/impakt --out out/bench out/bench/bars.json out/bench/solids.json out/bench/contact.json
+	$(PYTHON) tests/scaling/benchreport.py --program $(BUILD)/impakt --out out/bench out/bench/bars.json out/bench/solids.json out/bench/shapes.json out/bench/contact.json
 
 bench-compare: ## what got slower since an earlier report: make bench-compare OLD.json, a copy of its out/bench/report.json
 	@$(PYTHON) tests/scaling/benchreport.py --out out/bench --compare $(or $(firstword $(filter %.json,$(MAKECMDGOALS))),OLD.json)
@@ -241,6 +242,10 @@ $(BUILD)/yardstick: tests/scaling/yardstick.c
 	$(call say,CC) gcc -O2 -std=c11 $(WARNINGS) -o $@ $< -lm
 
 $(BUILD)/yardstick_hex8: tests/scaling/yardstick_hex8.c
+	@mkdir -p $(@D)
+	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
+
+$(BUILD)/yardstick_solids: tests/scaling/yardstick_solids.c
 	@mkdir -p $(@D)
 	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
 

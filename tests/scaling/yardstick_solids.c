@@ -173,7 +173,7 @@ INLINE void AddForces(const Mesh *mesh, const Shape *shape, int dim, int n_nodes
   for (int first = 0; first < mesh->n_elements; first += BATCH) {
     const int *nodes = mesh->nodes + n_nodes * first;
     const int  n     = mesh->n_elements - first < BATCH ? mesh->n_elements - first : BATCH;
-    double     x[12][BATCH] __attribute__((aligned(64))), u[12][BATCH] __attribute__((aligned(64))), f[12][BATCH] __attribute__((aligned(64)));
+    double x[12][BATCH] __attribute__((aligned(64))), u[12][BATCH] __attribute__((aligned(64))), f[12][BATCH] __attribute__((aligned(64)));
 
     for (int e = 0; e < BATCH; e++)
       for (int a = 0; a < n_nodes; a++)
@@ -193,10 +193,8 @@ INLINE void AddForces(const Mesh *mesh, const Shape *shape, int dim, int n_nodes
 }
 
 /* One loop for each shape, in which the gradients of simplices are constants: their zeros cost nothing */
-static const Shape simplex[2] = {
-    {2, 3, 1, 0.5,     {{{-1, -1}, {1, 0}, {0, 1}}}                        },
-    {3, 4, 1, 1.0 / 6, {{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}
-};
+static const Shape simplex[2] = {{2, 3, 1, 0.5, {{{-1, -1}, {1, 0}, {0, 1}}}},
+                                 {3, 4, 1, 1.0 / 6, {{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};
 
 CLONES static void AddTri3(const Mesh *mesh, const Shape *shape, bool neo_hookean)
 {
@@ -230,7 +228,8 @@ static double StoredEnergy(const Mesh *mesh, const Shape *s, bool neo_hookean)
         x[s->dim * a + i][0] = mesh->x[s->dim * mesh->nodes[s->nodes * e + a] + i];
         u[s->dim * a + i][0] = mesh->u[s->dim * mesh->nodes[s->nodes * e + a] + i];
       }
-    for (int g = 0; g < s->points; g++) energy += AddPoint(mesh, s->dim, s->nodes, s->gradient[g], s->weight, neo_hookean, true, x, u, NULL, 0);
+    for (int g = 0; g < s->points; g++)
+      energy += AddPoint(mesh, s->dim, s->nodes, s->gradient[g], s->weight, neo_hookean, true, x, u, NULL, 0);
   }
   return energy;
 }
@@ -260,9 +259,9 @@ static void *Allocate(size_t n, size_t size)
 /* Corners of the parts of a cell: a square, its two triangles, or six tetrahedra around the diagonal of a cube */
 static void SetNodes(Mesh *mesh, const Shape *s, int n)
 {
-  static const int square[4][2]  = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-  static const int halves[2][3]  = {{0, 1, 2}, {0, 2, 3}};
-  static const int path[6][2]    = {{0, 1}, {1, 2}, {2, 0}, {1, 0}, {2, 1}, {0, 2}}; /* axes along which the first two edges go */
+  static const int square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  static const int halves[2][3] = {{0, 1, 2}, {0, 2, 3}};
+  static const int path[6][2]   = {{0, 1}, {1, 2}, {2, 0}, {1, 0}, {2, 1}, {0, 2}}; /* axes along which the first two edges go */
   const int        parts = s->dim == 3 ? 6 : 5 - s->nodes, m = n + 1;
 
   for (int e = 0; e < mesh->n_elements + BATCH; e++) {
@@ -347,9 +346,9 @@ CLONES static double Multiply(int rounds, double factor)
 
 static int MeasureMachine(int millions)
 {
-  const size_t n = (size_t)millions * 1000000;
+  const size_t n      = (size_t)millions * 1000000;
   const int    rounds = 20000000;
-  double      *a = Allocate(n, sizeof(double)), *b = Allocate(n, sizeof(double)), *c = Allocate(n, sizeof(double)), bandwidth = 0, rate, sum;
+  double *a = Allocate(n, sizeof(double)), *b = Allocate(n, sizeof(double)), *c = Allocate(n, sizeof(double)), bandwidth = 0, rate, sum;
 
   for (int repeat = 0; repeat < 5; repeat++) {
     const double start = GetSeconds();
@@ -371,10 +370,10 @@ static int MeasureMachine(int millions)
 static double CountOperations(const Shape *s, bool neo_hookean, double nodes_per_element)
 {
   const int d = s->dim, simplices = s->points == 1;
-  double    point, jacobian = simplices ? d * d : 2 * s->nodes * d * d;
+  double    point, jacobian       = simplices ? d * d : 2 * s->nodes * d * d;
 
-  point = 2 * jacobian + (d == 3 ? 27 + 5 : 3) + 1;                       /* gradients, cofactors, determinant */
-  point += 2 * d * d * d;                                                 /* H */
+  point = 2 * jacobian + (d == 3 ? 27 + 5 : 3) + 1; /* gradients, cofactors, determinant */
+  point += 2 * d * d * d;                           /* H */
   if (neo_hookean) point += (d == 3 ? 3 + 27 + 5 : 2 + 3) + 5 + 3 * d * d + d;
   else point += d - 1 + 1 + 2 * d + d * (d - 1);
   point += d * d * (2 * d - 1) + d * d + (simplices ? d * (d - 1) : 2 * s->nodes * d * d); /* stress to the nodes */
@@ -383,7 +382,7 @@ static double CountOperations(const Shape *s, bool neo_hookean, double nodes_per
 
 int main(int argc, char **argv)
 {
-  const char *name = NULL;
+  const char *name  = NULL;
   int         cells = 20, steps = 100;
   bool        neo_hookean = false;
   Shape       shape;
@@ -398,7 +397,8 @@ int main(int argc, char **argv)
     else name = "";
   }
   if (!name || (strcmp(name, "tri3") && strcmp(name, "quad4") && strcmp(name, "tet4") && strcmp(name, "machine")))
-    return fprintf(stderr, "usage: %s --shape tri3|quad4|tet4|machine [--cells n] [--steps m] [--material linear|neo_hookean]\n", argv[0]), 1;
+    return fprintf(stderr, "usage: %s --shape tri3|quad4|tet4|machine [--cells n] [--steps m] [--material linear|neo_hookean]\n", argv[0]),
+           1;
   if (cells < 1 || steps < 1) return fprintf(stderr, "--cells and --steps must be positive\n"), 1;
   if (!strcmp(name, "machine")) return MeasureMachine(cells);
   SetShape(&shape, name);

@@ -98,6 +98,17 @@ SIMD_INLINE void GetGradients(SimdVector X[SIMD_PARTS][DIM][MODES], SimdVector U
   for (PetscInt part = 0; part < SIMD_PARTS; part++) GetGradientsOfPart(part, X[part], U[part], xi, at);
 }
 
+/* The same at the first point, with all that it takes */
+SIMD_INLINE void GetFirstGradients(const Solid *solid, const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal u[],
+                                   Gradients *at)
+{
+  SimdVector X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
+
+  GetModes(connectivity, first, count, solid->coordinates, X);
+  GetModes(connectivity, first, count, u, U);
+  GetGradients(X, U, points[0], at);
+}
+
 /* Adds the force of one point, by monomials: the stress against the axes of the reference element against their gradients */
 SIMD_INLINE void AddPointOfPart(PetscInt part, SimdReal P[9], SimdVector cofactor[DIM][DIM], const PetscReal xi[DIM],
                                 SimdVector F[DIM][MODES])
@@ -135,19 +146,28 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
   PetscInt  inverted = -1;
   Gradients at[2]    = {0};
 
+  if (count && POINTS == 1) GetFirstGradients(solid, connectivity, 0, count, u, &at[0]);
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
     SimdReal       P[9], nodal[DIM][NODES], check                                                  = {0};
 
-    GetModes(connectivity, first, count, solid->coordinates, X);
-    GetModes(connectivity, first, count, u, U);
-    /* gradients one point ahead: read in whole right after it is written in parts, H would have to go through the cache */
-    GetGradients(X, U, points[0], &at[0]);
+    /* gradients one point ahead, where there is one point that of the next batch: read in whole right after it is written in parts, H would
+       have to go through the cache */
+    if (POINTS == 1) {
+      if (first + SIMD_WIDTH < count)
+        GetFirstGradients(solid, connectivity, first + SIMD_WIDTH, count, u, &at[(first / SIMD_WIDTH + 1) % 2]);
+    } else {
+      GetModes(connectivity, first, count, solid->coordinates, X);
+      GetModes(connectivity, first, count, u, U);
+      GetGradients(X, U, points[0], &at[0]);
+    }
     for (PetscInt g = 0; g < POINTS; g++) {
-      if (g + 1 < POINTS) GetGradients(X, U, points[g + 1], &at[(g + 1) % 2]);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at[g % 2].H, P);
-      for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at[g % 2].cofactor[part], points[g], F[part]);
+      const PetscInt now = (POINTS == 1 ? first / SIMD_WIDTH : g) % 2;
+
+      if (g + 1 < POINTS) GetGradients(X, U, points[g + 1], &at[1 - now]);
+      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at[now].H, P);
+      for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at[now].cofactor[part], points[g], F[part]);
     }
     for (PetscInt part = 0; part < SIMD_PARTS; part++)
       for (PetscInt i = 0; i < DIM; i++) {
