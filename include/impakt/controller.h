@@ -126,3 +126,4 @@ PETSC_EXTERN PetscErrorCode ControllerGetProbes(Controller, PetscInt *, const Co
 PETSC_EXTERN PetscErrorCode ControllerGetSupports(Controller, PetscInt *, const ControllerSupport *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetTimes(Controller, PetscReal *, PetscReal *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerGetTimings(Controller, PetscLogDouble *, PetscLogDouble *, PetscLogDouble *);
+PETSC_EXTERN PetscErrorCode ControllerGetStartMemory(Controller, PetscLogDouble *);

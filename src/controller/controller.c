@@ -20,6 +20,8 @@
 @*/
 PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
 {
+  struct rusage usage;
+
   PetscFunctionBegin;
   PetscAssertPointer(controller, 2);
   PetscCall(ControllerInitializePackage());
@@ -27,6 +29,7 @@ PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
                               ControllerDestroy, ControllerView));
   (*controller)->guard.part = ENERGY_GUARD;
   (*controller)->most_cuts  = CONTROLLER_STEP_CUTS;
+  if (!getrusage(RUSAGE_SELF, &usage)) (*controller)->start_memory = 1024 * (PetscLogDouble)usage.ru_maxrss; /* Linux counts kB */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -257,5 +260,29 @@ PetscErrorCode ControllerGetTimings(Controller controller, PetscLogDouble *setup
   if (setup) *setup = controller->setup_seconds;
   if (wall) *wall = controller->wall_seconds;
   if (cpu) *cpu = controller->cpu_seconds;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ControllerGetStartMemory - what the process needs by itself
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`
+
+  Output Parameter:
+. bytes - most memory that this process had when the controller was created, before there were bodies [B]
+
+  Level: advanced
+
+.seealso: `Controller`, `ControllerGetTimings()`
+@*/
+PetscErrorCode ControllerGetStartMemory(Controller controller, PetscLogDouble *bytes)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(bytes, 2);
+  *bytes = controller->start_memory;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,6 +59,7 @@ struct _p_Controller {
   } guard;
   /* cost */
   PetscLogDouble setup_seconds, wall_seconds, cpu_seconds;
+  PetscLogDouble start_memory; /* of this process, before there were bodies [B] */
   PetscBool      setup;
 };
 

@@ -1,5 +1,6 @@
 /* The table that a run prints at its end. */
 #include "report.h"
+#include "ranks.h"
 #include <math.h>
 
 /* Times of first contact below this part of the duration of contact are printed as 0: round-off of start + gap / speed */
@@ -190,11 +191,13 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   const Body    *bodies;
   PetscInt       n;
   PetscLogDouble setup, wall, cpu;
+  RanksSummary   ranks;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, &n, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
+  PetscCall(RanksGather(controller, &ranks));
   if (results->n_pairs) {
     PetscCall(ViewContact(contact, bodies, results, exact, viewer));
     PetscCall(ViewSweeps(controller, contact, results, viewer));
@@ -203,5 +206,6 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ViewReactions(bodies, results, viewer));
   if (exact) PetscCall(ViewErrors(exact, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));
+  PetscCall(RanksView(&ranks, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -92,12 +92,12 @@ static PetscErrorCode ReadBricks(MPI_Comm comm, const char prefix[], MeshBox *bo
 }
 
 /* Whether each rank makes its own brick of the box */
-static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *bricks)
+static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], const char name[], MeshBox *box, PetscBool *bricks)
 {
   const char *const divisions[] = {"bricks", "graph"};
   const char       *option;
   PetscInt          division = 0;
-  PetscBool         given, set;
+  PetscBool         given, set, balance;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 2, &division, &set));
@@ -107,7 +107,9 @@ static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], MeshBox *
   PetscCheck(!option || !(given || (set && !division)), comm, PETSC_ERR_USER_INPUT,
              "-%s%s needs -%smesh_division graph, without -%smesh_bricks", prefix, option ? option + 1 : "", prefix, prefix);
   *bricks = (PetscBool)(!option && !division);
-  if (*bricks && !set && !given) PetscCall(MeshBricksBalance(comm, box, bricks));
+  PetscCall(MeshBoxMarkContact(comm, prefix, name, box));
+  if (*bricks && !given) PetscCall(MeshBricksChoose(comm, box, &balance));
+  if (*bricks && !given && !set) *bricks = balance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -243,7 +245,7 @@ PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (box.is_box) PetscCall(ReadDivision(comm, prefix, &box, &bricks));
+  if (box.is_box) PetscCall(ReadDivision(comm, prefix, name, &box, &bricks));
   if (bricks) {
     PetscCall(MeshCreateBricks(comm, &box, dm));
   } else {

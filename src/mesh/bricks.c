@@ -4,6 +4,10 @@
    The bricks come from cutting the box in two, again and again, so that no graph is divided and no cell is sent. What ranks exchange is
    which points of their bricks' sides are the same. A point of the mesh is known to all ranks by its place in a lattice of half cells, in
    which vertices have even numbers along all axes and the middle of a cell odd ones.
+
+   A step is over once the rank with most elements has done with them and, after that, the rank with most contact faces with those: the one
+   cannot make up for the other. Cuts across the longest edge leave all contact faces to the bricks at one end of a bar. So cuts along the
+   normal of the contact surface are made rarer, step by step, up to none at all, and the division that costs least is taken.
 */
 #include "meshimpl.h"
 #include <petscsf.h>
@@ -12,13 +16,34 @@
 /* The largest brick may have so many times the cells of the mean brick. Where that does not do, as with few cells for many ranks, PETSc
    divides the box as a graph. */
 #define MOST_IMBALANCE 1.1
+/* Work for a face that two bricks share, whose nodes are packed, sent and added up, in units of the work for an element */
+#define COST_OF_SHARED 0.2
+/* An edge along the normal of a contact surface counts with 1, 1/2, 1/4, ... of its cells when the longest is looked for, and at last with
+   none: so many divisions are compared */
+#define DIVISIONS 8
 
 /* The cells begin[d] to end[d] - 1 along each axis d */
 typedef struct {
   PetscInt begin[3], end[3];
 } Brick;
 
-/* Cuts the box so often that each rank has a brick, always across the axis along which the brick has most cells */
+/* The axis across which a brick is cut: that with most cells, those along the normals of contact surfaces counting less */
+static PetscInt ChooseAxis(const MeshBox *box, const Brick *brick)
+{
+  PetscReal most = -1;
+  PetscInt  axis = 0;
+
+  for (PetscInt d = 0; d < box->dim; d++) {
+    const PetscInt n = brick->end[d] - brick->begin[d];
+
+    if (n < 2 || box->along[d] * (PetscReal)n <= most) continue;
+    most = box->along[d] * (PetscReal)n;
+    axis = d;
+  }
+  return axis;
+}
+
+/* Cuts the box so often that each rank has a brick */
 static Brick CutForRank(const MeshBox *box, PetscMPIInt size, PetscMPIInt rank)
 {
   Brick brick = {{0, 0, 0}, {1, 1, 1}};
@@ -26,11 +51,9 @@ static Brick CutForRank(const MeshBox *box, PetscMPIInt size, PetscMPIInt rank)
   for (PetscInt d = 0; d < box->dim; d++) brick.end[d] = box->faces[d];
   while (size > 1) {
     const PetscMPIInt below = size / 2;
-    PetscInt          axis  = 0, cut;
+    const PetscInt    axis = ChooseAxis(box, &brick), n = brick.end[axis] - brick.begin[axis];
+    const PetscInt    cut = brick.begin[axis] + (PetscInt)((2 * (PetscInt64)n * below + size) / (2 * size)); /* rounded */
 
-    for (PetscInt d = 1; d < box->dim; d++)
-      if (brick.end[d] - brick.begin[d] > brick.end[axis] - brick.begin[axis]) axis = d;
-    cut = brick.begin[axis] + (PetscInt)((2 * (PetscInt64)(brick.end[axis] - brick.begin[axis]) * below + size) / (2 * size)); /* rounded */
     if (rank < below) {
       brick.end[axis] = cut;
       size            = below;
@@ -66,21 +89,68 @@ static PetscReal CountCells(const Brick *brick)
   return n;
 }
 
-/* Whether the bricks of all ranks are near enough to each other in size */
-PetscErrorCode MeshBricksBalance(MPI_Comm comm, const MeshBox *box, PetscBool *balance)
+/* Faces of a brick in contact surfaces, and faces that it shares with other bricks */
+static void CountFaces(const MeshBox *box, const Brick *brick, PetscReal *contact, PetscReal *shared)
 {
-  PetscReal   all = 1, most = 0;
+  const PetscReal cells = CountCells(brick);
+
+  *contact = *shared = 0;
+  for (PetscInt side = 0; side < 2 * box->dim && cells > 0; side++) {
+    const PetscInt  d     = side / 2;
+    const PetscReal faces = cells / (PetscReal)(brick->end[d] - brick->begin[d]);
+
+    if (side % 2 ? brick->end[d] < box->faces[d] : brick->begin[d] > 0) *shared += faces;
+    else if (box->contact[side]) *contact += faces;
+  }
+}
+
+/* What a step costs with the bricks as they are cut, in units of the work for an element; most: cells of the largest brick */
+static PetscReal FindCost(const MeshBox *box, PetscMPIInt size, PetscReal *most)
+{
+  PetscReal most_contact = 0, most_shared = 0;
+
+  *most = 0;
+  for (PetscMPIInt rank = 0; rank < size; rank++) {
+    const Brick brick = CutForRank(box, size, rank);
+    PetscReal   contact, shared;
+
+    CountFaces(box, &brick, &contact, &shared);
+    *most        = PetscMax(*most, CountCells(&brick));
+    most_contact = PetscMax(most_contact, contact);
+    most_shared  = PetscMax(most_shared, shared);
+  }
+  return *most + box->contact_cost * most_contact + COST_OF_SHARED * most_shared;
+}
+
+/* Chooses how the box is cut; balance: whether the bricks of all ranks are near enough to each other in size if it is cut across its
+   longest edges */
+PetscErrorCode MeshBricksChoose(MPI_Comm comm, MeshBox *box, PetscBool *balance)
+{
+  PetscReal   all = 1, most, least_cost, weight = 1, best = 1;
   PetscMPIInt size;
+  PetscBool   any = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  for (PetscInt d = 0; d < box->dim; d++) all *= (PetscReal)box->faces[d];
-  for (PetscMPIInt rank = 0; rank < size; rank++) {
-    const Brick brick = CutForRank(box, size, rank);
-
-    most = PetscMax(most, CountCells(&brick));
+  for (PetscInt d = 0; d < box->dim; d++) {
+    all *= (PetscReal)box->faces[d];
+    box->along[d] = 1;
+    if (box->contact[2 * d] || box->contact[2 * d + 1]) any = PETSC_TRUE;
   }
-  *balance = (PetscBool)(most * size <= MOST_IMBALANCE * all);
+  least_cost = FindCost(box, size, &most);
+  *balance   = (PetscBool)(most * size <= MOST_IMBALANCE * all);
+  if (!any || !*balance || size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 1; i < DIVISIONS; i++) {
+    PetscReal cost;
+
+    weight = i < DIVISIONS - 1 ? weight / 2 : 0;
+    for (PetscInt d = 0; d < box->dim; d++) box->along[d] = box->contact[2 * d] || box->contact[2 * d + 1] ? weight : 1;
+    cost = FindCost(box, size, &most);
+    if (cost >= least_cost) continue;
+    least_cost = cost;
+    best       = weight;
+  }
+  for (PetscInt d = 0; d < box->dim; d++) box->along[d] = box->contact[2 * d] || box->contact[2 * d + 1] ? best : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -104,6 +104,9 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
 . -<body>_dm_plex_simplex (true|false)                - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
 . -<body>_mesh_division (bricks|graph)                - each rank makes its own brick of a box, or the first one all of it, as a graph
 . -<body>_mesh_bricks n,n,n                           - bricks of a box along each axis, their product the number of ranks
+. -<body>_mesh_contact_surfaces a,b                   - surfaces that may touch another body, whose faces are spread over the ranks; default
+                                                        those that -contact_pairs names
+. -<body>_mesh_contact_cost c                         - work for a face of these, in units of that for an element, default 15
 . -<body>_dm_plex_shape ball                          - a disc or a ball instead, in blocks around a central one
 . -<body>_ball_radius r                               - its radius [m], default 1
 . -<body>_ball_centre x,y,z                           - its centre [m], default the origin
@@ -129,9 +132,10 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   pole, and sqrt(g) h opposite to it. If that is not small beside the radius, the ball is a coarse polyhedron there.
 
   A box of bars, quadrilaterals or hexahedra is cut in two across its longest edge, again and again, until each rank has a brick, which it
-  makes itself. If the largest brick would have more than 1.1 times the mean number of elements, or an option asks for what PETSc alone
-  does (`-<body>_petscpartitioner_type`, `-<body>_dm_distribute`, `-<body>_dm_plex_box_bd`, ...), the first rank makes the box, and PETSc
-  divides it.
+  makes itself. Edges along the normals of surfaces that may touch another body are cut less often, as far as the most elements, contact
+  faces and shared faces of a brick together cost less by that. If the largest brick would have more than 1.1 times the mean number of
+elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner_type`, `-<body>_dm_distribute`, `-<body>_dm_plex_box_bd`,
+...), the first rank makes the box, and PETSc divides it.
 
   The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that belong to no element of the
   body are left out. The file is read by the first rank.

@@ -66,7 +66,11 @@ typedef struct {
   PetscInt  dim, faces[3];
   PetscReal lower[3], upper[3]; /* [m] */
   PetscBool simplex, is_box;
-  PetscInt  bricks[3]; /* bricks along each axis, one for each rank; 0: not given */
+  /* how it is divided among ranks */
+  PetscInt  bricks[3];    /* bricks along each axis, one for each rank; 0: not given */
+  PetscBool contact[6];   /* sides (xmin, xmax, ymin, ...) that may touch another body */
+  PetscReal contact_cost; /* work for one of their faces, in units of the work for an element */
+  PetscReal along[3];     /* how much the cells along each axis count when the longest edge is looked for, to be cut */
 } MeshBox;
 
 PETSC_INTERN PetscErrorCode MeshFileInitialize(MeshFile *, const char[]);
@@ -87,7 +91,9 @@ PETSC_INTERN PetscErrorCode MeshOnFirstRank(MPI_Comm, PetscErrorCode (*)(void *)
 PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], DM *);
 PETSC_INTERN PetscInt       MeshBoxSideNumber(PetscInt, PetscInt);
-PETSC_INTERN PetscErrorCode MeshBricksBalance(MPI_Comm, const MeshBox *, PetscBool *);
+PETSC_INTERN PetscErrorCode MeshReadContact(MPI_Comm, const char[], const char[], PetscInt *, char ***, PetscReal *);
+PETSC_INTERN PetscErrorCode MeshBoxMarkContact(MPI_Comm, const char[], const char[], MeshBox *);
+PETSC_INTERN PetscErrorCode MeshBricksChoose(MPI_Comm, MeshBox *, PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBricks(MPI_Comm, const MeshBox *, DM *);
 PETSC_INTERN PetscErrorCode MeshIsBall(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBall(MPI_Comm, const char[], const char[], DM *);

@@ -47,7 +47,12 @@ static const KnownOption options[] = {
      "but graph where a brick would have 1.1 times the mean number of elements, or where another option needs it (petscpartitioner_type, "
      "dm_distribute, dm_distribute_overlap, dm_plex_box_bd)"},
     {"meshes", OPTION_OF_BODY, "mesh_bricks", "n[,n,n]",
-     "number of bricks along each axis of a box, their product the number of ranks; default: the longest edge is halved again and again"},
+     "number of bricks along each axis of a box, their product the number of ranks; default: edges are halved again and again, the longest "
+     "first, those along the normals of contact surfaces less often as far as a step costs less by that"},
+    {"meshes", OPTION_OF_BODY, "mesh_contact_surfaces", "a,b",
+     "surfaces that may touch another body, whose faces are spread over the ranks; default those that contact_pairs names"},
+    {"meshes", OPTION_OF_BODY, "mesh_contact_cost", "c",
+     "work for a face of these surfaces, in units of that for an element, default 15; 0: elements alone are spread"},
     {"meshes", OPTION_OF_BODY, "ball_radius", "r", "radius of a ball [m], default 1"},
     {"meshes", OPTION_OF_BODY, "ball_keep_volume", "true|false",
      "whether the nodes of a ball's surface move outward until the mesh has the ball's volume, default true; or lie at the radius"},

@@ -112,6 +112,63 @@ static void given_bricks(void **state)
   ok(DMDestroy(&dm));
 }
 
+/* Cells and faces of zmax on the rank that has most of them */
+static void CountMost(DM dm, PetscReal most[2])
+{
+  PetscInt start, end, n, *faces;
+
+  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
+  ok(MeshGetSurface(dm, "zmax", &n, &faces));
+  ok(PetscFree(faces));
+  most[0] = (PetscReal)(end - start);
+  most[1] = (PetscReal)n;
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD), 0);
+}
+
+/* A bar that touches something with one end: halves across its axis leave the 36 faces there to one rank, halves along it share them. Faces
+   that cost nothing change nothing, and a face that costs 0.1 elements is not worth the 72 more faces that halves along the axis share. */
+static void contact_faces_are_spread(void **state)
+{
+  const char *const ways[] = {"-mesh_contact_surfaces zmax", "-mesh_contact_surfaces 2", "-mesh_contact_surfaces zmax -mesh_contact_cost 0",
+                              "-mesh_contact_surfaces zmax -mesh_contact_cost 0.1", ""};
+  const PetscBool   along[] = {PETSC_TRUE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
+
+  (void)state;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(ways); i++) {
+    DM        dm = create_mesh("-dm_plex_dim 3 -dm_plex_box_faces 6,6,18 %s", ways[i]);
+    PetscReal most[2];
+
+    CheckMesh(dm);
+    CountMost(dm, most);
+    assert_int_equal((int)most[0], 648 / size_of_world());
+    assert_int_equal((int)most[1], along[i] ? 36 / size_of_world() : 36);
+    ok(DMDestroy(&dm));
+  }
+}
+
+/* Without a list it is the names of -contact_pairs, of either side, that count; other bodies' surfaces, and words alone, do not */
+static void pairs_name_contact_faces(void **state)
+{
+  const char *const pairs[] = {
+      "box.zmax:other.zmin", "other.zmin~box.zmax", "c:d,box.zmax:wall", "other.zmax:box.xmax", "auto", "box:other"};
+  const PetscBool along[] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
+
+  (void)state;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(pairs); i++) {
+    PetscReal    most[2];
+    PetscOptions options = options_begin("-prefix_push a_ -dm_plex_dim 3 -dm_plex_box_faces 6,6,18 -prefix_pop -contact_pairs %s",
+                                         pairs[i]);
+    DM           dm;
+
+    ok(MeshCreate(PETSC_COMM_WORLD, "a_", "box", &dm));
+    options_end(options);
+    CountMost(dm, most);
+    assert_int_equal((int)most[0], 648 / size_of_world());
+    assert_int_equal((int)most[1], along[i] ? 36 / size_of_world() : 36);
+    ok(DMDestroy(&dm));
+  }
+}
+
 /* An option of the partitioner asks for a graph; with this one PETSc divides 12 cells in the order in which it made them */
 static void graph_where_needed(void **state)
 {
@@ -130,6 +187,7 @@ static void bad_divisions(void **state)
   const char box[] = "-dm_plex_dim 3 -dm_plex_box_faces 6,6,6";
 
   (void)state;
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_contact_cost|-1", "%s -mesh_contact_cost -1", box);
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|7 bricks|axis 2", "%s -mesh_bricks 1,7,1", box);
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|0 bricks|axis 1", "%s -mesh_bricks 0,1,1", box);
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|2 axes|3", "%s -mesh_bricks %d,1", box, size_of_world());
@@ -141,8 +199,13 @@ static void bad_divisions(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_graph),      cmocka_unit_test(more_ranks_than_cells), cmocka_unit_test(given_bricks),
-      cmocka_unit_test(graph_where_needed), cmocka_unit_test(bad_divisions),
+      cmocka_unit_test(same_as_graph),
+      cmocka_unit_test(more_ranks_than_cells),
+      cmocka_unit_test(given_bricks),
+      cmocka_unit_test(graph_where_needed),
+      cmocka_unit_test(bad_divisions),
+      cmocka_unit_test(contact_faces_are_spread),
+      cmocka_unit_test(pairs_name_contact_faces),
   };
 
   return impakt_main(argc, argv, tests);

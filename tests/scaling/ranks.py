@@ -116,7 +116,7 @@ def counts(arguments, found, lines):
         lines += ["Of one controller step, on the rank with most; elements, facets, rows, neighbours and memory of the largest rank.", ""]
         cells = [[row["ranks"], *(number(row[name], 4) for name in COLUMNS)] for row in rows]
         lines += table([["ranks", *(name.replace("_", " ") for name in COLUMNS)], *cells, ["exponent", *(number(powers[name], 2) for name in COLUMNS)]])
-        names = ("elements", "facets", "rows")
+        names = ("elements", "facets", "rows", "work")
         lines += ["Largest by mean:", ""]
         lines += table([["ranks", *names], *([row["ranks"], *(number(row[f"{name}_imbalance"]) for name in names)] for row in rows)])
 
@@ -150,20 +150,21 @@ def results(arguments, found, lines):
 
 
 def corner(arguments, found, lines):
-    """A small box on one corner of a large one: how facets and rows lie on 4 ranks, cut as by default, as a graph, and across the surface."""
+    """A small box on one corner of a large one: how facets and rows lie on 4 ranks, cut as if contact cost nothing, as by default, and as a graph."""
     size, rows = max(6, arguments.size // 2), []
     ways = {
+        "elements alone": ("-a_mesh_contact_cost", "0", "-b_mesh_contact_cost", "0"),
         "default": (),
         "graph": ("-a_mesh_division", "graph", "-b_mesh_division", "graph"),
-        "across the surface": ("-a_mesh_bricks", "2,2,1", "-b_mesh_bricks", "2,2,1"),
     }
     for name, more in ways.items():
         summary, _ = run(arguments, boxes(size, corner=True), 4, 6, more)
         ranks = summary["timing"]["ranks"]
-        rows.append({"division": name} | {key: ranks[key]["largest"] / ranks[key]["mean"] if ranks[key]["mean"] else None for key in ("elements", "facets", "rows")})
+        rows.append({"division": name} | {key: ranks[key]["largest"] / ranks[key]["mean"] if ranks[key]["mean"] else None for key in ("elements", "facets", "rows", "work")})
     found["corner"] = {"size": size, "rows": rows}
     lines += ["## Contact on one corner, 4 ranks: largest by mean", ""]
-    lines += table([["division", "elements", "facets", "rows"], *([row["division"], *(number(row[key]) for key in ("elements", "facets", "rows"))] for row in rows)])
+    names = ("elements", "facets", "rows", "work")
+    lines += table([["division", *names], *([row["division"], *(number(row[key]) for key in names)] for row in rows)])
 
 
 def bandwidth(arguments, processes):
