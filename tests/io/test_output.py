@@ -90,7 +90,10 @@ SUMMARY = {
         "per_phase": {"alpha2": {"seconds": float, "substeps": int}, "sweeps": {"seconds": float, "count": int}},
         "ranks": {
             "count": int,
-            **{name: {"largest": float, "mean": float} for name in ("elements", "nodes", "facets", "rows", "neighbours", "peak_memory")},
+            **{
+                name: {"largest": float, "mean": float}
+                for name in ("elements", "nodes", "halo", "facets", "rows", "neighbours", "peak_memory", "base_memory", "work")
+            },
         },
     },
 }
