@@ -233,14 +233,15 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const MeshBox *box, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A box or another of DMPLEX's shapes from options */
-PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
+/* A box or another of DMPLEX's shapes from options; whole: there is a mesh now, all of it on the first rank */
+PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], DM *dm, PetscBool *whole)
 {
   MeshBox   box;
   PetscBool bricks = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ReadBox(comm, prefix, &box));
+  *whole = (PetscBool)(box.is_box && box.dim > 1 && box.simplex);
   if (box.is_box && box.dim > 1 && box.simplex) {
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
     PetscFunctionReturn(PETSC_SUCCESS);

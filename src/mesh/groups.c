@@ -33,15 +33,20 @@ static PetscBool InLabel(const Selection *selection, PetscInt point)
   return (PetscBool)(value >= 0);
 }
 
+static void UseSide(PetscInt side, const PetscReal lower[], const PetscReal upper[], Selection *selection)
+{
+  selection->side      = side;
+  selection->place     = side % 2 ? upper[side / 2] : lower[side / 2];
+  selection->tolerance = ON_SIDE * (upper[side / 2] - lower[side / 2]);
+}
+
 static PetscErrorCode FindSide(DM dm, PetscInt side, Selection *selection)
 {
   PetscReal lower[3], upper[3];
 
   PetscFunctionBegin;
   PetscCall(DMGetBoundingBox(dm, lower, upper));
-  selection->side      = side;
-  selection->place     = side % 2 ? upper[side / 2] : lower[side / 2];
-  selection->tolerance = ON_SIDE * (upper[side / 2] - lower[side / 2]);
+  UseSide(side, lower, upper, selection);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -236,6 +241,50 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
     PetscCall(PetscFree(*faces));
     PetscCall(RefuseSurface(dm, name, " with faces on its boundary"));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of a mesh that is on this rank alone, which the others know nothing of; no faces where there is no such surface, and those on a
+   side of the bounding box only if `by_side` */
+PetscErrorCode MeshFindSurface(DM dm, const char name[], PetscBool by_side, PetscInt *n_faces, PetscInt *faces[])
+{
+  Selection selection = {.side = -1};
+  DMLabel   boundary;
+  PetscBool internal, found = PETSC_FALSE;
+  PetscInt  dim, start, end, number;
+  PetscReal lower[3], upper[3];
+  char     *rest;
+
+  PetscFunctionBegin;
+  *n_faces = 0;
+  *faces   = NULL;
+  number   = (PetscInt)strtol(name, &rest, 10);
+  PetscCall(MeshLabelIsInternal(name, &internal));
+  if (!internal) PetscCall(DMGetLabel(dm, name, &selection.label));
+  if (!selection.label && rest != name && !*rest) {
+    PetscCall(DMGetLabel(dm, "Face Sets", &selection.label));
+    selection.by_value = PETSC_TRUE;
+    selection.value    = number;
+  }
+  found = (PetscBool)(selection.label != NULL);
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  for (PetscInt side = 0; side < 2 * dim && by_side && !found; side++) {
+    PetscCall(PetscStrcmp(name, sides[side], &found));
+    if (!found) continue;
+    PetscCall(DMGetLocalBoundingBox(dm, lower, upper));
+    UseSide(side, lower, upper, &selection);
+  }
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DMLabelCreate(PETSC_COMM_SELF, "boundary", &boundary));
+  PetscCall(DMPlexGetHeightStratum(dm, 1, &start, &end));
+  for (PetscInt f = start; f < end; f++) {
+    PetscInt n;
+
+    PetscCall(DMPlexGetSupportSize(dm, f, &n));
+    if (n == 1) PetscCall(DMLabelSetValue(boundary, f, 1));
+  }
+  PetscCall(CollectFaces(dm, boundary, &selection, n_faces, faces));
+  PetscCall(DMLabelDestroy(&boundary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

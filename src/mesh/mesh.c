@@ -81,6 +81,20 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The prefix of the body for the mesh and for its partitioner. An option of PETSc's partitioner without any prefix goes on being that of
+   all bodies that have none of their own. */
+static PetscErrorCode SetPrefix(DM dm, const char prefix[])
+{
+  PetscBool of_body, of_all;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-petscpartitioner_type", &of_body));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-petscpartitioner_type", &of_all));
+  if (of_body || !of_all) PetscCall(DMPlexSetOptionsPrefix(dm, prefix));
+  else PetscCall(DMSetOptionsPrefix(dm, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
   MeshCreate - the mesh of a body from options, distributed over the ranks
 
@@ -137,6 +151,9 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
 elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner_type`, `-<body>_dm_distribute`, `-<body>_dm_plex_box_bd`,
 ...), the first rank makes the box, and PETSc divides it.
 
+  Any other mesh is on the first rank, and divided as a graph. Where a surface may touch another body, its cells are halved across their
+  extents instead if that makes a step cheaper, that along the normal of the surface less often.
+
   The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that belong to no element of the
   body are left out. The file is read by the first rank.
 
@@ -145,7 +162,7 @@ elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   char      path[PETSC_MAX_PATH_LEN];
-  PetscBool from_file, blocks, ball = PETSC_FALSE;
+  PetscBool from_file, blocks, ball = PETSC_FALSE, whole = PETSC_TRUE;
 
   PetscFunctionBegin;
   PetscAssertPointer(dm, 4);
@@ -157,8 +174,9 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
   if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm));
   else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm));
-  else PetscCall(MeshCreateBox(comm, prefix, name, dm));
-  PetscCall(DMSetOptionsPrefix(*dm, prefix));
+  else PetscCall(MeshCreateBox(comm, prefix, name, dm, &whole));
+  PetscCall(SetPrefix(*dm, prefix));
+  if (whole) PetscCall(MeshSpreadContact(*dm, prefix, name, (PetscBool)!from_file));
 #if defined(PETSC_HAVE_PTSCOTCH)
   SCOTCH_randomReset(); /* what it draws goes on from one mesh to the next: a body's parts would hang on what was divided before it */
 #endif

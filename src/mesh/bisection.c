@@ -1,0 +1,257 @@
+/*
+   Meshes of the first rank, of which a surface may touch another body, divided among ranks by the coordinates of their cells.
+
+   A step is over once the rank with most cells has done with them and, after that, the rank with most contact faces with those. A graph
+   whose vertices have both as one weight gives ranks with contact faces fewer cells, so that others wait for the faces, and they for the
+   cells of others. Here each rank has as many cells as another: those of one rank are halved, again and again, across their longest extent
+   (recursive coordinate bisection, as in S. Plimpton, S. Attaway, B. Hendrickson, J. Swegle, C. Vaughan, D. Gardner, "Transient dynamics
+   simulations: parallel algorithms for contact detection and smoothed particle hydrodynamics", 1998). The extent along the normal of the
+   contact surface counts less and less, so that more and more ranks have a part of it, and the cheapest of these divisions is taken. If
+   that is the first, in which all extents count alike, PETSc divides the mesh as a graph, which makes smoother parts.
+*/
+#include "meshimpl.h"
+#include <petscpartitioner.h>
+#include <sys/names.h>
+
+/* Work for a face that two ranks share, in units of the work for an element, as in bricks.c */
+#define COST_OF_SHARED 0.2
+/* The extent along the normal counts with 1, 1/2, 1/4, ... and at last with nothing: so many divisions are compared */
+#define DIVISIONS 8
+/* A surface has a normal if this part of its area, times squares of cosines, looks along one axis */
+#define ONE_AXIS 0.6
+
+typedef struct {
+  DM          dm;
+  const char *prefix;
+  PetscInt    n_names;
+  char      **names;
+  PetscReal   cost;  /* work for a face in contact, in units of that for an element */
+  PetscBool   sides; /* names may be those of sides of the bounding box */
+  PetscMPIInt size;
+  /* of each cell */
+  PetscInt   n, dim;
+  PetscReal *centres;
+  PetscInt  *faces; /* in contact */
+  PetscInt  *part, *best;
+  PetscReal  along[3];
+  PetscBool  found; /* a division that is better than one without regard to contact */
+} Bisection;
+
+static PetscBool IsBefore(const Bisection *b, PetscInt axis, PetscInt cell, PetscInt other)
+{
+  const PetscReal x = b->centres[b->dim * cell + axis], y = b->centres[b->dim * other + axis];
+
+  return (PetscBool)(x < y || (x == y && cell < other));
+}
+
+/* Moves the k cells that come first along an axis to the front (Hoare's selection) */
+static void MoveFirst(const Bisection *b, PetscInt axis, PetscInt k, PetscInt n, PetscInt cells[])
+{
+  PetscInt low = 0, high = n - 1;
+
+  while (low < high) {
+    const PetscInt pivot = cells[low + (high - low) / 2];
+    PetscInt       i = low, j = high;
+
+    while (i <= j) {
+      while (IsBefore(b, axis, cells[i], pivot)) i++;
+      while (IsBefore(b, axis, pivot, cells[j])) j--;
+      if (i <= j) {
+        const PetscInt cell = cells[i];
+
+        cells[i++] = cells[j];
+        cells[j--] = cell;
+      }
+    }
+    if (k - 1 <= j) high = j;
+    else if (k - 1 >= i) low = i;
+    else break;
+  }
+}
+
+/* The axis along which these cells reach farthest, with the weights of the axes */
+static PetscInt FindLongest(const Bisection *b, PetscInt n, const PetscInt cells[])
+{
+  PetscReal most = -1;
+  PetscInt  axis = 0;
+
+  for (PetscInt d = 0; d < b->dim; d++) {
+    PetscReal lower = PETSC_MAX_REAL, upper = -PETSC_MAX_REAL;
+
+    for (PetscInt i = 0; i < n; i++) {
+      lower = PetscMin(lower, b->centres[b->dim * cells[i] + d]);
+      upper = PetscMax(upper, b->centres[b->dim * cells[i] + d]);
+    }
+    if (upper <= lower || b->along[d] * (upper - lower) <= most) continue;
+    most = b->along[d] * (upper - lower);
+    axis = d;
+  }
+  return axis;
+}
+
+/* Gives cells to the ranks from `first` on */
+static void Halve(Bisection *b, PetscInt n, PetscInt cells[], PetscMPIInt first, PetscMPIInt size)
+{
+  while (size > 1) {
+    const PetscMPIInt below = size / 2;
+    const PetscInt    k     = (PetscInt)((2 * (PetscInt64)n * below + size) / (2 * size)); /* rounded */
+
+    if (k > 0 && k < n) MoveFirst(b, FindLongest(b, n, cells), k, n, cells);
+    Halve(b, k, cells, first, below); /* as deep as the logarithm of the number of ranks */
+    cells += k;
+    n -= k;
+    first += below;
+    size -= below;
+  }
+  for (PetscInt i = 0; i < n; i++) b->part[cells[i]] = first;
+}
+
+/* What a step costs with the parts as they are, in units of the work for an element */
+static PetscErrorCode FindCost(const Bisection *b, PetscReal *cost)
+{
+  PetscInt *counts, start, end, cstart, most[3] = {0, 0, 0};
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(3 * b->size, &counts));
+  for (PetscInt c = 0; c < b->n; c++) {
+    counts[3 * b->part[c]]++;
+    counts[3 * b->part[c] + 1] += b->faces[c];
+  }
+  PetscCall(DMPlexGetHeightStratum(b->dm, 0, &cstart, NULL));
+  PetscCall(DMPlexGetHeightStratum(b->dm, 1, &start, &end));
+  for (PetscInt f = start; f < end; f++) {
+    const PetscInt *support;
+    PetscInt        n;
+
+    PetscCall(DMPlexGetSupportSize(b->dm, f, &n));
+    PetscCall(DMPlexGetSupport(b->dm, f, &support));
+    if (n != 2 || b->part[support[0] - cstart] == b->part[support[1] - cstart]) continue;
+    for (PetscInt k = 0; k < 2; k++) counts[3 * b->part[support[k] - cstart] + 2]++;
+  }
+  for (PetscMPIInt rank = 0; rank < b->size; rank++)
+    for (PetscInt k = 0; k < 3; k++) most[k] = PetscMax(most[k], counts[3 * rank + k]);
+  PetscCall(PetscFree(counts));
+  *cost = (PetscReal)most[0] + b->cost * (PetscReal)most[1] + COST_OF_SHARED * (PetscReal)most[2];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the contact faces of each cell, and finds the axis along which their normals look; -1 if there is none */
+static PetscErrorCode CountFaces(Bisection *b, PetscInt *axis)
+{
+  PetscReal area = 0, looks[3] = {0, 0, 0};
+  PetscInt  cstart;
+
+  PetscFunctionBegin;
+  *axis = -1;
+  PetscCall(DMPlexGetHeightStratum(b->dm, 0, &cstart, NULL));
+  for (PetscInt i = 0; i < b->n_names; i++) {
+    PetscInt n, *faces;
+
+    PetscCall(MeshFindSurface(b->dm, b->names[i], b->sides, &n, &faces));
+    for (PetscInt f = 0; f < n; f++) {
+      const PetscInt *support;
+      PetscReal       size, centre[3], normal[3] = {0, 0, 0};
+
+      PetscCall(DMPlexGetSupport(b->dm, faces[f], &support));
+      PetscCall(DMPlexComputeCellGeometryFVM(b->dm, faces[f], &size, centre, normal));
+      b->faces[support[0] - cstart]++;
+      area += size;
+      for (PetscInt d = 0; d < b->dim; d++) looks[d] += size * PetscSqr(normal[d]);
+    }
+    PetscCall(PetscFree(faces));
+  }
+  for (PetscInt d = 0; d < b->dim; d++)
+    if (area > 0 && looks[d] > ONE_AXIS * area) *axis = d;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Compares divisions, on the first rank */
+static PetscErrorCode Compare(void *ctx)
+{
+  Bisection *b = (Bisection *)ctx;
+  PetscInt   axis, start, end, *cells;
+  PetscReal  least = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetCoordinateDim(b->dm, &b->dim));
+  PetscCall(DMPlexGetHeightStratum(b->dm, 0, &start, &end));
+  b->n = end - start;
+  PetscCall(PetscCalloc1(b->n, &b->faces));
+  PetscCall(CountFaces(b, &axis));
+  if (axis < 0 || b->n < b->size) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc3(b->dim * b->n, &b->centres, b->n, &b->part, b->n, &b->best));
+  PetscCall(PetscMalloc1(b->n, &cells));
+  for (PetscInt c = 0; c < b->n; c++) {
+    PetscReal volume, centre[3];
+
+    PetscCall(DMPlexComputeCellGeometryFVM(b->dm, start + c, &volume, centre, NULL));
+    for (PetscInt d = 0; d < b->dim; d++) b->centres[b->dim * c + d] = centre[d];
+  }
+  for (PetscInt d = 0; d < 3; d++) b->along[d] = 1;
+  for (PetscInt i = 0; i < DIVISIONS; i++) {
+    PetscReal cost = 0;
+
+    for (PetscInt c = 0; c < b->n; c++) cells[c] = c;
+    Halve(b, b->n, cells, 0, b->size);
+    PetscCall(FindCost(b, &cost));
+    if (cost < least) {
+      least    = cost;
+      b->found = (PetscBool)(i > 0);
+      PetscCall(PetscArraycpy(b->best, b->part, b->n));
+    }
+    b->along[axis] = i < DIVISIONS - 2 ? b->along[axis] / 2 : 0;
+  }
+  PetscCall(PetscFree(cells));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells PETSc which cells go to which rank */
+static PetscErrorCode SetParts(Bisection *b)
+{
+  PetscPartitioner partitioner;
+  PetscInt        *sizes, *next, *points;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc3(b->size, &sizes, b->size + 1, &next, b->n, &points));
+  for (PetscInt c = 0; c < b->n; c++) sizes[b->best[c]]++;
+  for (PetscMPIInt rank = 0; rank < b->size; rank++) next[rank + 1] = next[rank] + sizes[rank];
+  for (PetscInt c = 0; c < b->n; c++) points[next[b->best[c]]++] = c;
+  PetscCall(DMPlexGetPartitioner(b->dm, &partitioner));
+  PetscCall(PetscPartitionerSetType(partitioner, PETSCPARTITIONERSHELL));
+  PetscCall(PetscPartitionerShellSetPartition(partitioner, b->size, sizes, points));
+  PetscCall(PetscFree3(sizes, next, points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prepares the division of a mesh that is on the first rank such that contact faces lie on all ranks, if that makes a step cheaper and no
+   option asks for another division */
+PetscErrorCode MeshSpreadContact(DM dm, const char prefix[], const char name[], PetscBool placed)
+{
+  static const char *const options[] = {"-petscpartitioner_type", "-dm_distribute"};
+  MPI_Comm                 comm      = PetscObjectComm((PetscObject)dm);
+  Bisection                b         = {.dm = dm, .prefix = prefix};
+  PetscBool                has       = PETSC_FALSE, rotated;
+  PetscErrorCode           error     = PETSC_SUCCESS;
+  char                     where[256];
+  int                      found;
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], &has));
+  if (!has) PetscCall(PetscOptionsHasName(NULL, NULL, options[0], &has));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-rotate", &rotated));
+  b.sides = (PetscBool)(placed || !rotated);
+  PetscCallMPI(MPI_Comm_size(comm, &b.size));
+  PetscCall(MeshReadContact(comm, prefix, name, &b.n_names, &b.names, &b.cost));
+  if (!has && b.size > 1 && b.n_names && b.cost > 0) {
+    PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', division of its mesh", name));
+    error = MeshOnFirstRank(comm, Compare, &b, where);
+    found = b.found;
+    if (!error) PetscCallMPI(MPI_Bcast(&found, 1, MPI_INT, 0, comm));
+    if (!error && found) error = SetParts(&b);
+  }
+  PetscCall(NamesDestroy(b.n_names, &b.names));
+  PetscCall(PetscFree(b.faces));
+  PetscCall(PetscFree3(b.centres, b.part, b.best));
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
