@@ -165,7 +165,7 @@ bench-compare: ## what got slower since an earlier report: make bench-compare OL
 	@$(PYTHON) tests/scaling/benchreport.py --out out/bench --compare $(or $(firstword $(filter %.json,$(MAKECMDGOALS))),OLD.json)
 
 # RANKS="--ranks 16 --size 12 --only counts" makes it shorter
-scaling: $(BUILD)/impakt $(BUILD)/yardstick_memory ## counts on up to 64 ranks, one rank against two, the same results: a report in out/scaling
+scaling: $(BUILD)/impakt $(BUILD)/yardstick_memory $(BUILD)/yardstick_mpi ## counts on up to 64 ranks, one rank against two, the same results: a report in out/scaling
 	$(PYTHON) tests/scaling/ranks.py --build $(BUILD) --mpiexec "$(MPIEXEC)" $(RANKS)
 
 docs: $(BUILD)/impakt ## the table of options in options/README.md, as the program prints it
@@ -248,6 +248,10 @@ $(BUILD)/yardstick_hex8: tests/scaling/yardstick_hex8.c
 $(BUILD)/yardstick_solids: tests/scaling/yardstick_solids.c
 	@mkdir -p $(@D)
 	$(call say,CC) gcc -O3 -std=c11 -fopenmp-simd -fno-math-errno $(WARNINGS) -o $@ $< -lm
+
+$(BUILD)/yardstick_mpi: tests/scaling/yardstick_mpi.c
+	@mkdir -p $(@D)
+	$(call say,CC) mpicc -O2 -std=c11 $(WARNINGS) -o $@ $<
 
 $(BUILD)/yardstick_memory: tests/scaling/yardstick_memory.c
 	@mkdir -p $(@D)

@@ -1,6 +1,6 @@
 """How runs scale with the number of ranks: counts on many ranks, times on one and two, the same results on all.
 
-    python tests/scaling/ranks.py --build build [--ranks 64] [--size 24] [--repeats 5] [--only counts,speed,results,corner]
+    python tests/scaling/ranks.py --build build [--ranks 64] [--size 24] [--repeats 5] [--only counts,results,corner,memory,speed,model]
 
 Two `hex8` boxes that meet, 2n x n x n and 5/6 of that along each axis, n being --size. The report is out/scaling/report.md, with its figures in
 report.json and pictures beside it. Counts do not hang on a clock, so that they may be taken with many more ranks than cores. Messages, bytes and
@@ -18,10 +18,11 @@ import tempfile
 from pathlib import Path
 from statistics import median
 
+import model as performance
 from bench import RunError, command_line, execute, read_summary
 from reporting import ROOT, build, heading, machine, number, spread, table
 
-PARTS = ("counts", "results", "corner", "speed")
+PARTS = ("counts", "results", "corner", "memory", "speed", "model")
 COUNTED = {"messages": "Num Messages", "bytes": "Message Length", "reductions": "Num Reductions"}
 MPI = {
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
@@ -167,6 +168,22 @@ def corner(arguments, found, lines):
     lines += table([["division", *names], *([row["division"], *(number(row[key]) for key in names)] for row in rows)])
 
 
+def memory(arguments, found, lines):
+    """Memory of a rank beyond what a process needs for itself, which boxes of a few elements show, and without its halo."""
+    ranks = [r for r in (1, 2, 4, 8) if r <= arguments.ranks]
+    size, rows = 2 * arguments.size, []
+    for r in ranks:
+        small, much = (run(arguments, boxes(n), r, 2)[0]["timing"]["ranks"] for n in (4, size))
+        by_itself, halo = small["peak_memory"]["mean"], much["halo"]["mean"] / much["nodes"]["mean"]
+        rows.append({"ranks": r, "mean": much["peak_memory"]["mean"], "by_itself": by_itself, "halo": halo, "own": (much["peak_memory"]["mean"] - by_itself) * (1 - halo)})
+    points = [(math.log(row["ranks"]), math.log(row["own"])) for row in rows]
+    power = (points[-1][1] - points[0][1]) / (points[-1][0] - points[0][0]) if len(points) > 1 else None
+    found["memory"] = {"size": size, "rows": rows, "exponent": power}
+    lines += [f"## Memory of a rank: {size}x{size}x{2 * size} and 5/6 of that, explicit", ""]
+    cells = [[row["ranks"], *(number(row[name] / 1e6, 4) for name in ("mean", "by_itself")), number(row["halo"]), number(row["own"] / 1e6, 4)] for row in rows]
+    lines += table([["ranks", "mean (MB)", "of a process by itself (MB)", "part of nodes that are a halo", "what is left (MB)"], *cells, ["exponent", "", "", "", number(power, 2)]])
+
+
 def bandwidth(arguments, processes):
     """GB/s of all of so many processes at a time, each on a core of its own."""
     cores = sorted(os.sched_getaffinity(0))
@@ -203,6 +220,44 @@ def speed(arguments, found, lines):
     lines += table([["", "1 rank", "2 ranks", "2 ranks are faster", "of memory's ceiling"], *rows])
 
 
+def model(arguments, found, lines):
+    """A model of a step's time, fitted to boxes of one size, beside runs of other sizes; what it says of many cores of a public machine."""
+    if len(os.sched_getaffinity(0)) < 2:
+        lines += ["## Model", "", "This machine has one core: not measured.", ""]
+        return
+    sizes = sorted({2 * arguments.size // 3, arguments.size, 4 * arguments.size // 3})
+    steps, measured = (4, 24), {}
+    for _ in range(arguments.repeats):
+        for size in sizes:
+            for contact in (False, True):
+                for ranks in (1, 2):
+                    runs = [run(arguments, boxes(size, contact=contact), ranks, n, launcher=("--bind-to", "none")) for n in steps]
+                    measured.setdefault((size, contact, ranks), []).append([summary["timing"]["cpu"] for summary, _ in runs])
+    # other programs only make runs longer: the shortest of the long ones, less the shortest of the short ones
+    times = {key: (min(v[1] for v in values) - min(v[0] for v in values)) / (steps[1] - steps[0]) for key, values in measured.items()}
+    shapes = {}
+    for size in sizes:
+        small = max(2, 5 * size // 6)
+        shapes[size] = (2 * size**3 + max(2, 5 * 2 * size // 6) * small**2, ((size + 1) ** 2, (small + 1) ** 2))
+    of_size = {(contact, ranks): times[arguments.size, contact, ranks] for contact in (False, True) for ranks in (1, 2)}
+    rates = performance.fit(performance.messages(arguments), *shapes[arguments.size], of_size)
+    rows = []
+    for (size, contact, ranks), time in times.items():
+        guess = performance.predict(rates, *shapes[size], contact, ranks)
+        rows.append({"size": size, "contact": contact, "ranks": ranks, "measured": time, "model": guess, "error": guess / time - 1})
+    machine_rates = performance.moved(rates, bandwidth(arguments, 2) / 2, performance.ARCHER2)
+    many = performance.large(machine_rates)
+    found["model"] = {"rates": rates, "rows": rows, "machine": performance.ARCHER2, "machine_rates": machine_rates, "large": many}
+    lines += [f"## Model, fitted to boxes of {arguments.size}x{arguments.size}x{2 * arguments.size} and 5/6 of that", ""]
+    lines += [f"Processor time of the first rank, the least of {arguments.repeats} repeats. An element takes {number(1e6 * rates['element'])} us, an entry of factors {number(1e9 * rates['entry'])} ns, {number(rates['solve_loss'])} times that on several ranks; a message {number(1e6 * rates['latency'])} us, a reduction {number(1e6 * rates['reduction'])} us.", ""]
+    cells = [[row["size"], "yes" if row["contact"] else "no", row["ranks"], number(1e3 * row["measured"]), number(1e3 * row["model"]), f"{100 * row['error']:+.0f} %"] for row in rows]
+    lines += table([["size", "contact", "ranks", "measured (ms)", "model (ms)", "error"], *cells])
+    lines += [f"1e8 elements with 1e6 contact nodes on each side, on cores of {performance.ARCHER2['name']} ({performance.ARCHER2['source']}), ms of a step:", ""]
+    names = performance.PARTS
+    cells = [[row["ranks"], number(1e3 * row["step"]), *(number(1e3 * row[name]) for name in names), number(row["efficiency"], 2), row["bottleneck"]] for row in many]
+    lines += table([["cores", "step", *names, "efficiency", "longest"], *cells])
+
+
 def draw(found, directory):
     """Pictures of counts over ranks."""
     import matplotlib
@@ -228,12 +283,24 @@ def draw(found, directory):
         figure.savefig(directory / f"counts-{integrator}.png", dpi=120)
         plt.close(figure)
         yield f"counts-{integrator}.png"
+    if "model" in found:
+        rows = found["model"]["large"]
+        figure, axis = plt.subplots(figsize=(6, 4), layout="constrained")
+        for name in ("step", *performance.PARTS):
+            axis.loglog([row["ranks"] for row in rows], [1e3 * row[name] for row in rows], "o-", label=name)
+        axis.set_xlabel(f"cores of {found['model']['machine']['name']}")
+        axis.set_ylabel("ms of a step")
+        axis.grid(True, which="both", alpha=0.3)
+        axis.legend()
+        figure.savefig(directory / "model.png", dpi=120)
+        plt.close(figure)
+        yield "model.png"
 
 
 def main():
     arguments = command_line(
         __doc__,
-        "impakt and yardstick_memory",
+        "impakt, yardstick_memory and yardstick_mpi",
         900,
         ranks=(64, "most ranks"),
         implicit=(16, "most ranks of implicit bodies"),
