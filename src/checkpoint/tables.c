@@ -74,6 +74,17 @@ PetscErrorCode TablesAdd(Tables tables, const char name[], PetscInt n, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TablesAddNumbers - a table of one row, of what all ranks have alike; Collective */
+PetscErrorCode TablesAddNumbers(Tables tables, const char name[], PetscInt n, const PetscReal values[])
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(tables->comm, &rank));
+  PetscCall(TablesAdd(tables, name, rank ? 0 : 1, n, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 void TablesGetNumber(Tables tables, PetscInt *n)
 {
   *n = tables->n;
@@ -114,6 +125,20 @@ PetscErrorCode TablesGet(Tables tables, const char name[], PetscInt width, Petsc
              ": it is of another problem",
              table->width, name, width);
   *n      = table->n;
+  *values = table->values;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TablesGetNumbers - those of TablesAddNumbers(), and how many they are */
+PetscErrorCode TablesGetNumbers(Tables tables, const char name[], PetscInt *n, const PetscReal *values[])
+{
+  Table *table;
+
+  PetscFunctionBegin;
+  PetscCall(FindTable(tables, name, &table));
+  PetscCheck(table->n == 1, tables->comm, PETSC_ERR_FILE_UNEXPECTED,
+             "The checkpoint has %" PetscInt_FMT " rows in '%s' where there is to be one: it is of another problem", table->n, name);
+  *n      = table->width;
   *values = table->values;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

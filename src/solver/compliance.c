@@ -243,3 +243,52 @@ PetscErrorCode ComplianceVisit(Compliance c, Checkpoint checkpoint)
       PetscCall(CheckpointVisitReals(checkpoint, "compliance column", c->n, c->matrices + (k * c->room + j) * c->room));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* The known rows with their matrices as a table, for a checkpoint that is continued on another number of ranks: how many rows, which, the
+   levels that each is known at, and the columns of each level. All ranks have the same. */
+PetscErrorCode CompliancePack(Compliance c, const char name[], Tables tables)
+{
+  const PetscInt size = 1 + 2 * c->n + c->levels * c->n * c->n;
+  PetscReal     *packed, *next;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(size, &packed));
+  next    = packed;
+  *next++ = (PetscReal)c->n;
+  for (PetscInt j = 0; j < c->n; j++) *next++ = (PetscReal)c->rows[j];
+  for (PetscInt j = 0; j < c->n; j++) *next++ = (PetscReal)c->known[j];
+  for (PetscInt k = 0; k < c->levels; k++)
+    for (PetscInt j = 0; j < c->n; j++)
+      for (PetscInt i = 0; i < c->n; i++) *next++ = PetscRealPart(c->matrices[(k * c->room + j) * c->room + i]);
+  PetscCall(TablesAddNumbers(tables, name, size, packed));
+  PetscCall(PetscFree(packed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That table in place of what is known; `now`: for each row of the run that has written it, its number in this run */
+PetscErrorCode ComplianceUnpack(Compliance c, const char name[], const PetscInt now[], Tables tables)
+{
+  const PetscReal *packed;
+  PetscInt         size, n;
+
+  PetscFunctionBegin;
+  PetscCall(TablesGetNumbers(tables, name, &size, &packed));
+  n = (PetscInt)*packed++;
+  PetscCheck(n >= 0 && n <= c->global && size == 1 + 2 * n + c->levels * n * n, c->comm, PETSC_ERR_FILE_UNEXPECTED,
+             "The checkpoint has %" PetscInt_FMT " numbers in '%s' for %" PetscInt_FMT " rows: it is of another problem", size, name, n);
+  for (PetscInt j = 0; j < c->global; j++) c->place[j] = -1;
+  c->n = 0;
+  PetscCall(ComplianceReserve(c, n));
+  c->n          = n;
+  c->ramp_valid = PETSC_FALSE;
+  c->state++;
+  for (PetscInt j = 0; j < n; j++) {
+    c->rows[j]           = now[(PetscInt)*packed++];
+    c->place[c->rows[j]] = j;
+  }
+  for (PetscInt j = 0; j < n; j++) c->known[j] = (PetscInt)*packed++;
+  for (PetscInt k = 0; k < c->levels; k++)
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = 0; i < n; i++) c->matrices[(k * c->room + j) * c->room + i] = *packed++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

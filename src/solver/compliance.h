@@ -6,6 +6,7 @@
 #pragma once
 #include <petscsys.h>
 #include <checkpoint/checkpoint.h>
+#include <checkpoint/tables.h>
 
 typedef struct _n_Compliance *Compliance;
 
@@ -22,3 +23,5 @@ PETSC_INTERN void           ComplianceGetMatrix(Compliance, PetscInt, PetscInt *
 PETSC_INTERN PetscErrorCode ComplianceGetRamp(Compliance, PetscInt *, const PetscScalar *[]);
 PETSC_INTERN PetscInt64     ComplianceGetState(Compliance);
 PETSC_INTERN PetscErrorCode ComplianceVisit(Compliance, Checkpoint);
+PETSC_INTERN PetscErrorCode CompliancePack(Compliance, const char[], Tables);
+PETSC_INTERN PetscErrorCode ComplianceUnpack(Compliance, const char[], const PetscInt[], Tables);

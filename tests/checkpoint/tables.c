@@ -75,6 +75,35 @@ static void found_by_their_places(void **state)
   }
 }
 
+/* What all ranks have alike is kept once, in a row of its own */
+static void of_all_ranks(void **state)
+{
+  PetscMPIInt      rank;
+  Tables           tables;
+  PetscInt         n, width;
+  const char      *name;
+  const PetscReal *values;
+
+  (void)state;
+  assert_int_equal(MPI_Comm_rank(PETSC_COMM_WORLD, &rank), 0);
+  ok(TablesCreate(PETSC_COMM_WORLD, &tables));
+  ok(TablesAddNumbers(tables, "numbers", 3, (PetscReal[]){3, -1, 0.5}));
+  ok(TablesGetTable(tables, 0, &name, &n, &width, &values));
+  assert_string_equal(name, "numbers");
+  assert_int_equal(n, !rank);
+  if (!rank) {
+    ok(TablesGetNumbers(tables, "numbers", &n, &values));
+    assert_int_equal(n, 3);
+    near(values[0], 3, 0);
+    near(values[1], -1, 0);
+    near(values[2], 0.5, 0);
+  }
+  ok(TablesDestroy(&tables));
+  tables = make_tables(4);
+  refused(PETSC_ERR_FILE_UNEXPECTED, "4 rows in 'nodes'|to be one", TablesGetNumbers(tables, "nodes", &n, &values));
+  ok(TablesDestroy(&tables));
+}
+
 static void of_another_problem(void **state)
 {
   const PetscErrorCode code   = PETSC_ERR_FILE_UNEXPECTED;
@@ -108,10 +137,8 @@ static void two_at_one_place(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(gathered),
-      cmocka_unit_test(found_by_their_places),
-      cmocka_unit_test(of_another_problem),
-      cmocka_unit_test(two_at_one_place),
+      cmocka_unit_test(gathered),           cmocka_unit_test(found_by_their_places), cmocka_unit_test(of_all_ranks),
+      cmocka_unit_test(of_another_problem), cmocka_unit_test(two_at_one_place),
   };
 
   return impakt_main(argc, argv, tests);

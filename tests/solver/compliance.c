@@ -140,13 +140,63 @@ static void a_ramp_is_the_sum_of_its_hats(void **state)
   ok(ComplianceDestroy(&single.compliance));
 }
 
+/* On another number of ranks rows have other numbers: row r is number (r + 2) modulo 7 there */
+static void rows_get_other_numbers(void **state)
+{
+  static const PetscInt order[] = {4, 0, 6};
+  Known                 known = create(LEVELS), other = create(LEVELS);
+  PetscInt              now[ROWS], n, width = 0;
+  PetscReal            *copy;
+  const PetscReal      *values;
+  const PetscInt       *place;
+  Tables                packed, tables;
+
+  (void)state;
+  for (PetscInt i = 0; i < 3; i++) set(&known, order[i], i == 2 ? 1 : LEVELS);
+  set(&other, 5, LEVELS); /* is no more known afterwards */
+  ok(TablesCreate(PETSC_COMM_WORLD, &packed));
+  ok(CompliancePack(known.compliance, "w", packed));
+  /* the first rank has the table; one that is read from a file all of them have */
+  ok(TablesCreate(PETSC_COMM_WORLD, &tables));
+  if (known.begin == 0) ok(TablesGetNumbers(packed, "w", &width, &values));
+  assert_int_equal(MPI_Bcast(&width, 1, MPIU_INT, 0, PETSC_COMM_WORLD), 0);
+  ok(PetscMalloc1(width, &copy));
+  if (known.begin == 0) ok(PetscArraycpy(copy, values, width));
+  assert_int_equal(MPI_Bcast(copy, (int)width, MPIU_REAL, 0, PETSC_COMM_WORLD), 0);
+  ok(TablesShare(tables, "w", 1, width, copy));
+  for (PetscInt r = 0; r < ROWS; r++) now[r] = (r + 2) % ROWS;
+  ok(ComplianceUnpack(other.compliance, "w", now, tables));
+  ComplianceGetRows(other.compliance, &n, NULL, &place);
+  assert_int_equal(n, 3);
+  assert_int_equal(place[5], -1);
+  assert_true(ComplianceKnows(other.compliance, now[0]));
+  assert_false(ComplianceKnows(other.compliance, now[6]));
+  for (PetscInt k = 0; k < LEVELS; k++) {
+    const PetscScalar *matrix;
+    PetscInt           leading;
+
+    ComplianceGetMatrix(other.compliance, k, &leading, &matrix);
+    for (PetscInt i = 0; i < 2; i++)
+      for (PetscInt j = 0; j < 2; j++) near(matrix[place[now[order[j]]] * leading + place[now[order[i]]]], entry(k, order[i], order[j]), 0);
+    near(matrix[place[now[6]] * leading + place[now[4]]], k ? 0 : entry(0, 4, 6), 0);
+  }
+  ok(ComplianceReserve(other.compliance, ROWS - 3)); /* moves what is there */
+  set(&other, 3, LEVELS);
+  assert_true(ComplianceKnows(other.compliance, 3));
+  copy[0] = ROWS + 1;
+  refused(PETSC_ERR_FILE_UNEXPECTED, "numbers in 'w' for 8 rows|another problem", ComplianceUnpack(other.compliance, "w", now, tables));
+  ok(TablesDestroy(&packed));
+  ok(TablesDestroy(&tables));
+  ok(ComplianceDestroy(&known.compliance));
+  ok(ComplianceDestroy(&other.compliance));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_bring_their_columns),
-      cmocka_unit_test(a_column_may_be_known_in_part),
-      cmocka_unit_test(rows_are_forgotten_and_come_back),
-      cmocka_unit_test(a_ramp_is_the_sum_of_its_hats),
+      cmocka_unit_test(rows_bring_their_columns),         cmocka_unit_test(a_column_may_be_known_in_part),
+      cmocka_unit_test(rows_are_forgotten_and_come_back), cmocka_unit_test(a_ramp_is_the_sum_of_its_hats),
+      cmocka_unit_test(rows_get_other_numbers),
   };
 
   return impakt_main(argc, argv, tests);

@@ -23,6 +23,10 @@ struct _ContactOps {
   PetscErrorCode (*accept)(Contact); /* corrects the states at the end of a step, before the next step starts from them */
   /* what the method remembers from step to step, to or from a checkpoint; NULL: runs with it have no checkpoints */
   PetscErrorCode (*visit)(Contact, Checkpoint);
+  /* (NULL) what the method remembers from step to step that no solver finds anew to round-off, to tables by which a run is continued on
+     another number of ranks; and back, after rowschanged() */
+  PetscErrorCode (*pack)(Contact, Tables);
+  PetscErrorCode (*unpack)(Contact, Tables);
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };

@@ -2,6 +2,22 @@
    controller steps. */
 #include "implicitimpl.h"
 
+/* Where the matrix of whole controller steps was linearised last, to another vector or back; the first number tells whether it was */
+static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (back) {
+    if (numbers[0] != 0) PetscCall(BodyImplicitRefactor(body, point));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  numbers[0] = implicit->deformed[0];
+  numbers[1] = 0;
+  if (implicit->deformed[0]) PetscCall(VecCopy(implicit->points[0], point));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What all integrators on TSALPHA2 have in common */
 PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
 {
@@ -18,6 +34,7 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   integrator->ops.renew          = BodyImplicitRenew;
   integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
   integrator->ops.visit          = BodyImplicitVisit;
+  integrator->ops.copypoint      = CopyPoint;
   integrator->ops.destroy        = BodyImplicitDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -161,6 +161,13 @@ static PetscErrorCode VisitLayer(Body body, PetscInt level, Checkpoint checkpoin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
+{
+  PetscFunctionBegin;
+  if (GetLayer(body)) PetscCall(LayerBalanceCopyPoint(GetLayer(body), body, back, point, numbers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Velocity of massless, held and prescribed nodes */
 static PetscErrorCode FinishSubstep(Body body)
 {
@@ -347,6 +354,7 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
   integrator->ops.save          = Save;
   integrator->ops.restore       = Restore;
   integrator->ops.visit         = VisitLayer;
+  integrator->ops.copypoint     = CopyPoint;
   integrator->ops.destroy       = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

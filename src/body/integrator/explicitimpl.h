@@ -13,6 +13,7 @@ PETSC_INTERN PetscErrorCode LayerBalanceSave(LayerBalance, Body, BodySlot);
 PETSC_INTERN PetscErrorCode LayerBalanceRestore(LayerBalance, Body, BodySlot);
 PETSC_INTERN PetscErrorCode LayerBalanceApplyUnit(LayerBalance, Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode LayerBalanceVisit(LayerBalance, Body, Checkpoint);
+PETSC_INTERN PetscErrorCode LayerBalanceCopyPoint(LayerBalance, Body, PetscBool, Vec, PetscReal[2]);
 PETSC_INTERN PetscBool      BodyHasOutsideForce(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyComputeOutsideForce(Body, PetscReal, PetscReal, PetscBool, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyProbeBySubsteps(Body, PetscInt, const PetscInt[], Compliance);

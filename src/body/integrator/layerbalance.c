@@ -290,6 +290,39 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The displacement at which all that was put aside has factors is that of the present ones, which are made if they are others than before
+ */
+static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool others)
+{
+  PetscFunctionBegin;
+  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
+    layer->aside[slot].number = layer->now.number;
+    layer->aside[slot].slow   = layer->now.slow;
+    PetscCall(VecCopy(layer->now.point, layer->aside[slot].point));
+  }
+  if (others) PetscCall(Refactor(layer, body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For a checkpoint that is continued on another number of ranks: where the factors were made, on the nodes of the body near the layer, and
+   their number, 0 for those of the undeformed layer, and whether they are slow; or back */
+PetscErrorCode LayerBalanceCopyPoint(LayerBalance layer, Body body, PetscBool back, Vec point, PetscReal numbers[2])
+{
+  PetscFunctionBegin;
+  if (back) {
+    layer->n_made = layer->now.number = (PetscInt)numbers[0];
+    layer->now.slow                   = (PetscBool)(numbers[1] != 0);
+    if (!layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(BodyGatherLayer(body, point, layer->now.point));
+    PetscCall(TakeFactors(layer, body, PETSC_TRUE));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  numbers[0] = (PetscReal)layer->now.number;
+  numbers[1] = layer->now.slow;
+  PetscCall(BodySpreadLayer(body, layer->now.point, point));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* State for a checkpoint: where the factors of a nonlinear layer were made */
 PetscErrorCode LayerBalanceVisit(LayerBalance layer, Body body, Checkpoint checkpoint)
 {
@@ -301,13 +334,7 @@ PetscErrorCode LayerBalanceVisit(LayerBalance layer, Body body, Checkpoint check
   PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
   PetscCall(CheckpointVisitBools(checkpoint, "layer slow", 1, &layer->now.slow));
   PetscCall(CheckpointVisitVec(checkpoint, "layer point", layer->now.point));
-  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
-    layer->aside[slot].number = layer->now.number;
-    layer->aside[slot].slow   = layer->now.slow;
-    PetscCall(VecCopy(layer->now.point, layer->aside[slot].point));
-  }
-  if (layer->now.number != before) PetscCall(Refactor(layer, body));
+  if (CheckpointLoads(checkpoint)) PetscCall(TakeFactors(layer, body, (PetscBool)(layer->now.number != before)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

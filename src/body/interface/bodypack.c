@@ -1,10 +1,14 @@
-/* The state of a body as a table of its nodes, by which a run is continued on another number of ranks: to round-off, since what solvers and
-   compliance know is found anew. */
-#include <body/layout/bodyimpl.h>
+/* The state of a body as tables, by which a run is continued on another number of ranks. What solvers and compliance of a linear body know
+   is found anew, to round-off. Those of a nonlinear body depend on displacements of earlier steps: factors are made again where they were
+   made, and the compliance is kept. */
+#include <body/rows/complianceimpl.h>
 #include "bodyvisit.h"
 
 /* The vectors of the state that are packed; a state without loads has no applied forces, one without dashpots none of theirs */
 enum { N_VECS = 5 };
+
+/* What is beside the nodes: two numbers of the factors */
+enum { N_FACTORS = 2 };
 
 static void GetVecs(BodyState *state, Vec vecs[N_VECS])
 {
@@ -20,8 +24,84 @@ static void GetKey(Body body, PetscInt node, PetscReal key[TABLES_KEY])
   for (PetscInt d = 0; d < TABLES_KEY; d++) key[d] = d < body->mesh.dim ? body->mesh.coordinates[node * body->mesh.dim + d] : 0;
 }
 
+static PetscErrorCode Name(Body body, const char what[], char name[], size_t size)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, size, "%s/%s", body->hdr.name, what));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the factors of a nonlinear body have been made */
+static PetscErrorCode PackPoint(Body body, Tables tables)
+{
+  const PetscInt     dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + dim;
+  PetscReal          numbers[N_FACTORS] = {0, 0}, *packed;
+  const PetscScalar *values;
+  Vec                point;
+  char               name[256];
+
+  PetscFunctionBegin;
+  if (body->model.linear || !body->integrator->ops.copypoint) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(body->state.u, &point));
+  PetscCall(VecZeroEntries(point));
+  PetscCall((*body->integrator->ops.copypoint)(body, PETSC_FALSE, point, numbers));
+  PetscCall(PetscMalloc1(n * width, &packed));
+  PetscCall(VecGetArrayRead(point, &values));
+  for (PetscInt i = 0; i < n; i++) {
+    GetKey(body, i, packed + i * width);
+    for (PetscInt d = 0; d < dim; d++) packed[i * width + TABLES_KEY + d] = PetscRealPart(values[i * dim + d]);
+  }
+  PetscCall(VecRestoreArrayRead(point, &values));
+  PetscCall(Name(body, "linearised at", name, sizeof(name)));
+  PetscCall(TablesAdd(tables, name, n, width, packed));
+  PetscCall(Name(body, "factors", name, sizeof(name)));
+  PetscCall(TablesAddNumbers(tables, name, N_FACTORS, numbers));
+  PetscCall(PetscFree(packed));
+  PetscCall(VecDestroy(&point));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the next controller step, which begins whole, goes on with what a nonlinear body remembers of whole steps: see steplevel.c */
+static PetscBool GoesOn(Body body)
+{
+  return (PetscBool)(!body->model.linear && body->time.accepted_level == 0);
+}
+
+/* The factors of the saved run, or, where it would make them anew, new ones */
+static PetscErrorCode UnpackPoint(Body body, const PetscInt rows[], Tables tables)
+{
+  const PetscInt   dim = body->mesh.dim, width = TABLES_KEY + dim;
+  PetscReal        numbers[N_FACTORS];
+  const PetscReal *packed;
+  PetscScalar     *values;
+  PetscInt         n;
+  Vec              point;
+  char             name[256];
+
+  PetscFunctionBegin;
+  if (!GoesOn(body) || !body->integrator->ops.copypoint) {
+    if (!body->model.linear && body->integrator->ops.renew) PetscCall((*body->integrator->ops.renew)(body));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(Name(body, "linearised at", name, sizeof(name)));
+  PetscCall(TablesGet(tables, name, width, &n, &packed));
+  PetscCall(VecDuplicate(body->state.u, &point));
+  PetscCall(VecGetArrayWrite(point, &values));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes; i++)
+    for (PetscInt d = 0; d < dim; d++) values[i * dim + d] = packed[rows[i] * width + TABLES_KEY + d];
+  PetscCall(VecRestoreArrayWrite(point, &values));
+  PetscCall(Name(body, "factors", name, sizeof(name)));
+  PetscCall(TablesGetNumbers(tables, name, &n, &packed));
+  PetscCheck(n == N_FACTORS, PetscObjectComm((PetscObject)body), PETSC_ERR_FILE_UNEXPECTED,
+             "The checkpoint has %" PetscInt_FMT " numbers in '%s' where there are to be %d: it is of another problem", n, name, N_FACTORS);
+  PetscCall(PetscArraycpy(numbers, packed, N_FACTORS));
+  PetscCall((*body->integrator->ops.copypoint)(body, PETSC_TRUE, point, numbers));
+  PetscCall(VecDestroy(&point));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
-  BodyPack - adds the table of a body
+  BodyPack - adds the tables of a body
 
   Collective
 
@@ -34,6 +114,7 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;
   PetscReal     *packed;
   Vec            vecs[N_VECS];
+  char           name[256];
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n * width, &packed));
@@ -50,11 +131,15 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   }
   PetscCall(TablesAdd(tables, body->hdr.name, n, width, packed));
   PetscCall(PetscFree(packed));
+  PetscCall(PackPoint(body, tables));
+  if (body->model.linear || !body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Name(body, "compliance", name, sizeof(name)));
+  PetscCall(CompliancePack((body->time.level ? body->levels[0].compliance : body->compliance)->matrices, name, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
-  BodyUnpack - the state of a body from the table of a run with any number of ranks
+  BodyUnpack - the state of a body from the tables of a run with any number of ranks
 
   Collective
 
@@ -88,21 +173,37 @@ PetscErrorCode BodyUnpack(Body body, Tables tables)
       for (PetscInt d = 0; d < dim; d++) values[i * dim + d] = packed[rows[i] * width + TABLES_KEY + k * dim + d];
     PetscCall(VecRestoreArrayWrite(vecs[k], &values));
   }
-  PetscCall(PetscFree(rows));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(BodyStateCopy(&body->state, &body->saved));
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  if (!body->model.linear && body->integrator->ops.renew) PetscCall((*body->integrator->ops.renew)(body));
+  PetscCall(UnpackPoint(body, rows, tables));
+  PetscCall(PetscFree(rows));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyTakeRows - the rows of BodyUpdateInterface() are those of the last accepted step; after BodyUnpack() */
-PetscErrorCode BodyTakeRows(Body body)
+/*
+  BodyTakeRows - the rows of BodyUpdateInterface() are those of the last accepted step; after BodyUnpack()
+
+  Collective
+
+  Input Parameters:
++ body   - the `Body`
+. now    - for each row of the run that has written the tables, its number in this run
+- tables - the tables
+*/
+PetscErrorCode BodyTakeRows(Body body, const PetscInt now[], Tables tables)
 {
+  char name[256];
+
   PetscFunctionBegin;
   PetscCall(BodyHandoverEnd(body));
   body->start.changed = body->iterate.known = body->repeats = PETSC_FALSE;
+  if (!GoesOn(body) || !body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Name(body, "compliance", name, sizeof(name)));
+  PetscCall(ComplianceUnpack(body->compliance->matrices, name, now, tables));
+  body->compliance->factored_state = -1;
+  PetscCall(BodyNoteKnownRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

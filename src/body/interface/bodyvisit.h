@@ -9,5 +9,5 @@ PETSC_INTERN PetscErrorCode BodyVisitMesh(Body, Checkpoint);
 PETSC_INTERN PetscErrorCode BodyVisitShared(Body, Checkpoint);
 PETSC_INTERN PetscErrorCode BodyPack(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyUnpack(Body, Tables);
-PETSC_INTERN PetscErrorCode BodyTakeRows(Body);
+PETSC_INTERN PetscErrorCode BodyTakeRows(Body, const PetscInt[], Tables);
 PETSC_INTERN PetscErrorCode BodyRepeatsBits(Body, PetscBool *);

@@ -292,6 +292,7 @@ PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
 PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
 PETSC_INTERN PetscErrorCode BodyCreateLayerVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodyGatherLayer(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySpreadLayer(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);

@@ -39,6 +39,9 @@ typedef struct {
    * present
    */
   PetscErrorCode (*visit)(Body, PetscInt, Checkpoint);
+  /* (NULL) of a nonlinear body: where its factors for whole controller steps have been made, and two numbers of them, to a vector of the
+     body; or (true) back, with factors that are made there */
+  PetscErrorCode (*copypoint)(Body, PetscBool, Vec, PetscReal[2]);
   PetscErrorCode (*freerows)(Body, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of the controller step if no
                                                       contact acts on any, without integrating [m]; may be set in setup() */
   /* (NULL) the columns of some rows of any rank, into a compliance, where there is no simpler way to one of them; may be set in setup() */

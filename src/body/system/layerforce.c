@@ -247,6 +247,15 @@ PetscErrorCode BodyGatherLayer(Body body, Vec u, Vec near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The way back: u gets the values of these nodes, and others stay. Ranks that have a node in common have the same values of it. */
+PetscErrorCode BodySpreadLayer(Body body, Vec near, Vec u)
+{
+  PetscFunctionBegin;
+  PetscCall(VecScatterBegin(body->layer.elements->gather, near, u, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(body->layer.elements->gather, near, u, INSERT_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m] */
 PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
 {

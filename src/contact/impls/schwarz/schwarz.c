@@ -275,6 +275,8 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->accept         = SchwarzAcceptTied;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->visit          = SchwarzVisit;
+  contact->ops->pack           = SchwarzPack;
+  contact->ops->unpack         = SchwarzUnpack;
   contact->ops->destroy        = ContactDestroy_Schwarz;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -235,3 +235,5 @@ PETSC_INTERN PetscErrorCode SchwarzMeasureChange(Contact, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode SchwarzTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
 PETSC_INTERN PetscErrorCode SchwarzCheckConverged(Contact);
 PETSC_INTERN PetscErrorCode SchwarzVisit(Contact, Checkpoint);
+PETSC_INTERN PetscErrorCode SchwarzPack(Contact, Tables);
+PETSC_INTERN PetscErrorCode SchwarzUnpack(Contact, Tables);
