@@ -46,7 +46,7 @@ PetscErrorCode DeviationSet(Deviation deviation, Body body, const char text[])
   PetscCall(PetscSNPrintf(option, sizeof(option), "-%sexact_displacement", prefix));
   PetscCall(BodyGetDimension(body, &dim));
   for (PetscInt d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&deviation->exact[3 * b + d]));
-  PetscCall(ExpressionListCreate(comm, option, text, dim, PETSC_FALSE, deviation->exact + 3 * b));
+  PetscCall(ExpressionListCreate(comm, option + 1, text, dim, PETSC_FALSE, deviation->exact + 3 * b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

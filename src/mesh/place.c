@@ -95,17 +95,17 @@ static PetscErrorCode CheckPlace(DM dm, const char prefix[], const char name[], 
     size     = PetscMax(size, extreme[d] + extreme[3 + d]);
     distance = PetscMax(distance, PetscMax(PetscAbsReal(extreme[d]), PetscAbsReal(extreme[3 + d])));
   }
+  PetscCheck(
+      size >= SMALLEST_EXTENT * distance, comm, PETSC_ERR_USER_INPUT,
+      "Body '%s' is %g m large and lies %g m from the origin, also by -%stranslate and -%srotate_centre: so far away its coordinates do "
+      "not have the digits that its elements need",
+      name, (double)size, (double)distance, prefix, prefix);
   PetscCheck((size >= SMALLEST_SIZE && size <= LARGEST_SIZE) || motion->scale == 1, comm, PETSC_ERR_USER_INPUT,
              "Body '%s' is %g m large after -%sscale %g: choose a factor that leaves it between %g and %g m", name, (double)size, prefix,
              (double)motion->scale, SMALLEST_SIZE, LARGEST_SIZE);
   PetscCheck(size >= SMALLEST_SIZE && size <= LARGEST_SIZE, comm, PETSC_ERR_USER_INPUT,
              "Body '%s' is %g m large: its mesh must be between %g and %g m, also by -%sscale", name, (double)size, SMALLEST_SIZE,
              LARGEST_SIZE, prefix);
-  PetscCheck(
-      size >= SMALLEST_EXTENT * distance, comm, PETSC_ERR_USER_INPUT,
-      "Body '%s' is %g m large and lies %g m from the origin, also by -%stranslate and -%srotate_centre: so far away its coordinates do "
-      "not have the digits that its elements need",
-      name, (double)size, (double)distance, prefix, prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

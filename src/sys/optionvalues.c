@@ -4,6 +4,9 @@
    stands. Impakt refuses the former and adds to the latter. */
 #include <impakt.h>
 #include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include "names.h"
 #include "optionsfiles.h"
@@ -89,6 +92,37 @@ PetscErrorCode OptionsDescribeMissing(const char option[], char text[], size_t s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The first whole number of a list that PETSc would cut off without a word, since it has more bits than a PetscInt */
+static PetscErrorCode FindTooLarge(const char option[], const char value[], char number[], size_t size)
+{
+  const KnownOption *known;
+  PetscBool          whole;
+  PetscToken         elements;
+  const char        *element;
+
+  PetscFunctionBegin;
+  number[0] = 0;
+  PetscCall(FindKnown(option, &known));
+  if (!known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcmp(known->value, "n", &whole));
+  if (!whole) PetscCall(PetscStrncmp(known->value, "n[,", 3, &whole));
+  if (!whole) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscTokenCreate(value, ',', &elements));
+  while (!number[0]) {
+    char     *end;
+    long long n;
+
+    PetscCall(PetscTokenFind(elements, &element));
+    if (!element) break;
+    errno = 0;
+    n     = strtoll(element, &end, 10);
+    if (end == element || *end || (!errno && n >= PETSC_INT_MIN && n <= PETSC_INT_MAX)) continue;
+    PetscCall(PetscStrncpy(number, element, size));
+  }
+  PetscCall(PetscTokenDestroy(&elements));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Stops with an error if an option without a value is not one that can be on or off. Before anybody has read options; collective */
 PetscErrorCode OptionsCheckValues(void)
 {
@@ -98,10 +132,12 @@ PetscErrorCode OptionsCheckValues(void)
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++) {
-    char name[2 * PETSC_MAX_PATH_LEN], text[1024] = "";
+    char name[2 * PETSC_MAX_PATH_LEN], text[1024] = "", number[256] = "";
 
     if (!values[i] || !values[i][0]) PetscCall(OptionsDescribeMissing(names[i], text, sizeof(text)));
-    else if (OptionsIsUnclosed(values[i])) PetscCall(PetscSNPrintf(text, sizeof(text), "'%s': a ${ without its }", values[i]));
+    else PetscCall(FindTooLarge(names[i], values[i], number, sizeof(number)));
+    if (number[0]) PetscCall(PetscSNPrintf(text, sizeof(text), "%s: whole numbers go to %" PetscInt_FMT " here", number, PETSC_INT_MAX));
+    if (values[i] && OptionsIsUnclosed(values[i])) PetscCall(PetscSNPrintf(text, sizeof(text), "'%s': a ${ without its }", values[i]));
     if (!text[0]) continue;
     PetscCall(NameWithOrigin(names[i], name, sizeof(name)));
     SETERRQ(PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s %s", name, text);
@@ -150,7 +186,19 @@ static PetscBool Contains(const char value[], const char text[])
   return PETSC_FALSE;
 }
 
-/* The options with such a value that somebody has read, each with its origin and what it takes */
+/* Whether a value is a list with a number in it that is not finite */
+static PetscBool HasInfinite(const char value[])
+{
+  for (const char *at = value; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+    char        *end;
+    const double number = strtod(at, &end);
+
+    if (end > at && (!*end || *end == ',') && !(fabs(number) <= PETSC_MAX_REAL)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The options with such a value (NULL: with a number that is not finite) that somebody has read, each with its origin and what it takes */
 static PetscErrorCode Describe(const char value[], char text[], size_t size)
 {
   char       *all, name[2 * PETSC_MAX_PATH_LEN], one[3 * PETSC_MAX_PATH_LEN];
@@ -172,10 +220,11 @@ static PetscErrorCode Describe(const char value[], char text[], size_t size)
     if (!key) continue;
     PetscCall(PetscOptionsUsed(NULL, word + 1, &used));
     if (used) PetscCall(PetscOptionsFindPair(NULL, NULL, word, &given, &set));
-    if (!set || !given || !Contains(given, value)) continue;
+    if (!set || !given || !(value ? Contains(given, value) : HasInfinite(given))) continue;
     PetscCall(FindKnown(word + 1, &known));
     PetscCall(NameWithOrigin(word + 1, name, sizeof(name)));
     PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s%s", name, known ? ", which takes " : "", known ? known->value : ""));
+    if (!value) PetscCall(PetscSNPrintf(one, sizeof(one), "%s: '%s'", name, given));
     PetscCall(NamesAppend(text, size, " or ", one));
   }
   PetscCall(PetscTokenDestroy(&words));
@@ -200,10 +249,17 @@ PetscErrorCode OptionsExplain(const char function[], const char message[], char 
 {
   char             value[512], names[2048];
   const Complaint *complaint = NULL;
-  PetscBool        converts, views;
+  PetscBool        converts, views, bounded = PETSC_FALSE;
 
   PetscFunctionBegin;
   *explained = PETSC_FALSE;
+  if (message) PetscCall(PetscStrncmp(message, "Newly set value ", 16, &bounded));
+  if (bounded) { /* PETSC_MAX_REAL and its negative are the bounds of all numbers that have no others */
+    PetscCall(Describe(NULL, names, sizeof(names)));
+    if (names[0]) PetscCall(PetscSNPrintf(text, size, "%s is no finite number", names));
+    *explained = (PetscBool)(names[0] != 0);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscStrncmp(function, "PetscOptionsStringTo", 20, &converts));
   PetscCall(PetscStrncmp(function, "PetscOptionsCreateViewer", 24, &views));
   if ((converts || views) && message) complaint = FindComplaint(message, value, sizeof(value));

@@ -95,7 +95,7 @@ static PetscErrorCode ReadPoint(Body body, const char option[], const char text[
   PetscBool  steady  = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(ExpressionListCreate(comm, option, text, body->mesh.dim, PETSC_FALSE, list));
+  PetscCall(ExpressionListCreate(comm, option + 1, text, body->mesh.dim, PETSC_FALSE, list));
   for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscBool constant;
 
