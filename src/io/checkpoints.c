@@ -9,6 +9,8 @@
 #define LOOK_EVERY 0.05
 /* Part of -max_wall_time that is left for the last checkpoint and the summary */
 #define TIME_LEFT 0.01
+/* Larger than the number of any signal */
+#define LAST_SIGNAL 64
 
 /* The run begins: what came before, reading meshes and setting up, counts as well */
 PetscErrorCode OutputStartClock(Output output)
@@ -70,29 +72,27 @@ static PetscErrorCode Look(Output output, PetscInt step, StopSignals *signals, P
   Checkpoints   *c    = &output->checkpoints;
   MPI_Comm       comm = PetscObjectComm((PetscObject)output);
   PetscLogDouble now;
-  double         values[6] = {0}; /* stopped by an interrupt, by another signal, a checkpoint; seconds since begin, checkpoint, last look */
+  double         values[5] = {0}; /* the signal that ends the run, a checkpoint; seconds since begin, checkpoint, last look */
   PetscMPIInt    size;
 
   PetscFunctionBegin;
   PetscCall(PetscTime(&now));
   if (c->catches) StopSignalsTake(signals);
-  values[0] = signals->stop && signals->name[3] == 'I';
-  values[1] = signals->stop;
-  values[2] = signals->checkpoint;
-  values[3] = now - c->begin;
-  values[4] = now - c->written;
-  values[5] = now - c->looked;
+  values[0] = signals->stop ? LAST_SIGNAL - signals->stop : 0; /* what the user does counts before SIGTERM, which mpiexec sends beside it */
+  values[1] = signals->checkpoint;
+  values[2] = now - c->begin;
+  values[3] = now - c->written;
+  values[4] = now - c->looked;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size > 1) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, values, 6, MPI_DOUBLE, MPI_MAX, comm));
-    if (values[5] < LOOK_EVERY) c->look_every = PetscMin(2 * c->look_every, 1 << 16);
-    else c->look_every = PetscMax(1, (PetscInt)((double)c->look_every * LOOK_EVERY / values[5]));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, values, 5, MPI_DOUBLE, MPI_MAX, comm));
+    if (values[4] < LOOK_EVERY) c->look_every = PetscMin(2 * c->look_every, 1 << 16);
+    else c->look_every = PetscMax(1, (PetscInt)((double)c->look_every * LOOK_EVERY / values[4]));
   }
-  signals->stop       = (PetscBool)(values[1] > 0);
-  signals->name       = values[0] > 0 ? "SIGINT" : "SIGTERM";
-  signals->checkpoint = (PetscBool)(values[2] > 0);
-  *late               = (PetscBool)(c->max_wall_time > 0 && values[3] >= (1 - TIME_LEFT) * c->max_wall_time);
-  *due                = (PetscBool)(c->wall_interval > 0 && values[4] >= c->wall_interval);
+  signals->stop       = values[0] > 0 ? LAST_SIGNAL - (int)values[0] : 0;
+  signals->checkpoint = (PetscBool)(values[1] > 0);
+  *late               = (PetscBool)(c->max_wall_time > 0 && values[2] >= (1 - TIME_LEFT) * c->max_wall_time);
+  *due                = (PetscBool)(c->wall_interval > 0 && values[3] >= c->wall_interval);
   c->looked           = now;
   c->next_look        = step + c->look_every;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -125,7 +125,7 @@ static PetscErrorCode AfterStep(Controller controller, PetscInt step, void *cont
 {
   Output       output  = (Output)context;
   Checkpoints *c       = &output->checkpoints;
-  StopSignals  signals = {PETSC_FALSE, PETSC_FALSE, NULL};
+  StopSignals  signals = {0, PETSC_FALSE};
   PetscBool    late = PETSC_FALSE, due = PETSC_FALSE;
   PetscInt     steps;
 
@@ -135,7 +135,7 @@ static PetscErrorCode AfterStep(Controller controller, PetscInt step, void *cont
   if (signals.stop || late) {
     *stop = c->stopped = PETSC_TRUE;
     PetscCall(Write(output, step));
-    PetscCall(TellEnd(output, step, late ? "-max_wall_time" : signals.name));
+    PetscCall(TellEnd(output, step, late ? "-max_wall_time" : StopSignalName(signals.stop)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (step == steps || signals.checkpoint || due || (c->interval && step && step % c->interval == 0)) PetscCall(Write(output, step));
@@ -229,7 +229,7 @@ PetscErrorCode OutputSetMaxWallTime(Output output, PetscReal seconds)
 }
 
 /*@
-  OutputCatchSignals - has SIGINT and SIGTERM end the run in good order, and SIGUSR1 write a checkpoint
+  OutputCatchSignals - has SIGINT, SIGTERM and SIGHUP end the run in good order, and SIGUSR1 write a checkpoint
 
   Logically Collective
 

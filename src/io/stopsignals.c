@@ -2,9 +2,11 @@
    Signals that end a run in good order, or ask it for a checkpoint. Nothing is done when a signal comes but that the process takes note of
    it, and that without a variable: which function handles a signal tells whether it has come. SIGINT and SIGTERM are handled by Note()
    until they come. After that SIGINT has its default, so that the second Ctrl-C ends the run at once, and SIGTERM is ignored, since whoever
-   starts several ranks may send it more than once. SIGUSR1 is handled by Note() until it comes, then by Noted() until it has been taken.
+   starts several ranks may send it more than once. SIGHUP, which comes when the terminal is closed, is handled by Noted() after it has
+   come.
+   SIGUSR1 is handled by Note() until it comes, then by Noted() until it has been taken.
 
-   Before that, while meshes are read and matrices made, there is no step to be finished and nothing to be saved: SIGINT and SIGTERM end the
+   Before that, while meshes are read and matrices made, there is no step to be finished and nothing to be saved: these three end the
    process at once, with a line that says so. EndFirst() handles them on the first rank, EndOther() on the others.
 */
 #define _POSIX_C_SOURCE 200809L
@@ -39,7 +41,9 @@ static void Note(int number)
 static void EndFirst(int number)
 {
   const char *text =
-      number == SIGINT
+      number == SIGHUP
+          ? "impakt: ended by SIGHUP during the set-up, before the first step: there is nothing to continue, the same command begins anew\n"
+      : number == SIGINT
           ? "impakt: ended by SIGINT during the set-up, before the first step: there is nothing to continue, the same command begins anew\n"
           : "impakt: ended by SIGTERM during the set-up, before the first step: there is nothing to continue, the same command begins "
             "anew\n";
@@ -65,23 +69,25 @@ static PetscBool Handles(int number, void (*handler)(int))
 
 /* From now on signals end the process with a line that says that there is nothing to continue; but SIGUSR1 is taken note of, and asks for a
    checkpoint after the first step, and two others no longer end it. An interrupt that the process ignores, as one does that a shell has
-   started in the background, stays ignored. */
+   started in the background, stays ignored, and so does the end of the terminal where nohup has started the process. */
 void StopSignalsBegin(PetscMPIInt rank)
 {
   void (*const end)(int) = rank ? EndOther : EndFirst;
 
   if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, end);
+  if (!Handles(SIGHUP, SIG_IGN)) Handle(SIGHUP, end);
   Handle(SIGTERM, end);
   Handle(SIGUSR1, Note);
   Handle(SIGPIPE, SIG_IGN); /* who reads the output may stop, as in `| head`; the files go on. PETSc has a banner for it */
   Handle(SIGXFSZ, SIG_IGN); /* a file that becomes larger than the shell allows is an error with a message, not the end */
 }
 
-/* From now on signals are taken note of; an interrupt that is ignored stays so, and one for a checkpoint that has come already is not lost
+/* From now on signals are taken note of; those that are ignored stay so, and one for a checkpoint that has come already is not lost
  */
 void StopSignalsCatch(void)
 {
   if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, Note);
+  if (!Handles(SIGHUP, SIG_IGN)) Handle(SIGHUP, Note);
   Handle(SIGTERM, Note);
   if (!Handles(SIGUSR1, Noted)) Handle(SIGUSR1, Note);
 }
@@ -89,19 +95,21 @@ void StopSignalsCatch(void)
 /* Signals do again what they do by default */
 void StopSignalsRelease(void)
 {
-  const int numbers[] = {SIGINT, SIGTERM, SIGUSR1};
+  const int numbers[] = {SIGINT, SIGHUP, SIGTERM, SIGUSR1};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(numbers); i++)
     if (Handles(numbers[i], Note) || Handles(numbers[i], Noted)) Handle(numbers[i], SIG_DFL);
 }
 
+const char *StopSignalName(int number)
+{
+  return number == SIGINT ? "SIGINT" : number == SIGHUP ? "SIGHUP" : "SIGTERM";
+}
+
 /* What has been asked for since the last call. To be called only after StopSignalsCatch(); a signal that has come to end the run stays. */
 void StopSignalsTake(StopSignals *signals)
 {
-  const PetscBool interrupted = Handles(SIGINT, SIG_DFL), terminated = Handles(SIGTERM, SIG_IGN);
-
-  signals->stop       = (PetscBool)(interrupted || terminated);
-  signals->name       = interrupted ? "SIGINT" : terminated ? "SIGTERM" : NULL;
+  signals->stop       = Handles(SIGINT, SIG_DFL) ? SIGINT : Handles(SIGHUP, Noted) ? SIGHUP : Handles(SIGTERM, SIG_IGN) ? SIGTERM : 0;
   signals->checkpoint = Handles(SIGUSR1, Noted);
   if (signals->checkpoint) Handle(SIGUSR1, Note);
 }

@@ -3,11 +3,12 @@
 #include <petscsys.h>
 
 typedef struct {
-  PetscBool   stop, checkpoint; /* what has been asked for */
-  const char *name;             /* of the signal that ends the run */
+  int       stop;       /* the signal that ends the run; 0: none has come */
+  PetscBool checkpoint; /* one has been asked for */
 } StopSignals;
 
-PETSC_INTERN void StopSignalsBegin(PetscMPIInt);
-PETSC_INTERN void StopSignalsCatch(void);
-PETSC_INTERN void StopSignalsRelease(void);
-PETSC_INTERN void StopSignalsTake(StopSignals *);
+PETSC_INTERN void        StopSignalsBegin(PetscMPIInt);
+PETSC_INTERN void        StopSignalsCatch(void);
+PETSC_INTERN void        StopSignalsRelease(void);
+PETSC_INTERN void        StopSignalsTake(StopSignals *);
+PETSC_INTERN const char *StopSignalName(int);

@@ -24,8 +24,9 @@ def children(pid):
 
 
 def heed_interrupts():
-    """Who starts the tests in the background has them ignore SIGINT, and what they start would too."""
+    """Who starts the tests in the background, or by nohup, has them ignore SIGINT or SIGHUP, and what they start would too."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def begin(where, ranks, *more, case=CASE):
@@ -129,7 +130,7 @@ def end_by(where, number, seconds, *more, ranks=1, case=CASE):
     return process.returncode, stderr
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.long)])
+@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.long), pytest.param(signal.SIGHUP, marks=pytest.mark.long)])
 def test_end_in_good_order(run_in, folder, same_runs, number):
     whole, other = folder("whole"), folder("ended")
     run_in(SLOW, whole)
@@ -249,7 +250,7 @@ def end_setup(where, number, ranks, victim):
     return process.returncode, stderr
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, pytest.param(signal.SIGHUP, marks=pytest.mark.long)])
 def test_end_of_setup(folder, number):
     """Before the first step: one line, and no file is left."""
     where = folder("run")
