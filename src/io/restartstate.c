@@ -2,6 +2,7 @@
    Runs whose bodies begin with the state of a checkpoint: displacements and velocities at a new time, under other loads, with other
    integrators, on any number of ranks. Nodes are found by their places in the mesh.
 */
+#include <contact/interface/contactvisit.h>
 #include "outputimpl.h"
 #include "checkpointfileimpl.h"
 
@@ -120,7 +121,7 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
   }
   PetscCheck(found, comm, PETSC_ERR_USER_INPUT, "-restart_state %s has none of the bodies of this run", path);
   PetscCall(ControllerGetContact(output->controller, &contact));
-  PetscCall(ContactCheckInitialGap(contact));
+  PetscCall(ContactTakeState(contact));
   PetscCall(PetscFPrintf(comm, stderr, "impakt: begun with the state of %s, after its controller step %" PetscInt_FMT " at time %g s\n",
                          path, file.info.step, (double)file.info.time));
   PetscCall(CheckpointFileClose(&file));

@@ -149,6 +149,31 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The present states are the start; `of_state`: they come from another run */
+static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactTie(contact));
+  PetscCall(ContactDropShared(contact));
+  PetscCall(ContactLetTouch(contact, of_state));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    ContactPairState   state;
+
+    PetscCall(ContactGetPairState(contact, p, &state));
+    if (pair->obstacle && state.gap < -contact->options.tolerance) PetscCall(ContactRefuseInside(contact, pair, -state.gap));
+    PetscCheck(pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
+               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
+               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  }
+  PetscCall(ContactSetMeanForces(contact));
+  PetscCall(ContactBalanceStart(contact));
+  PetscCall(ContactStartTies(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactCheckInitialGap - takes the present states as the start: ties what lies on each other, refuses bodies that overlap, and brings
   massless nodes into balance
@@ -172,24 +197,16 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCall(ContactComputeStartGaps(contact));
-  PetscCall(ContactTie(contact));
-  PetscCall(ContactDropShared(contact));
-  PetscCall(ContactLetTouch(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    ContactPairState   state;
+  PetscCall(TakeStart(contact, PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    PetscCall(ContactGetPairState(contact, p, &state));
-    if (pair->obstacle && state.gap < -contact->options.tolerance) PetscCall(ContactRefuseInside(contact, pair, -state.gap));
-    PetscCheck(pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
-               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
-               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
-  }
-  PetscCall(ContactSetMeanForces(contact));
-  PetscCall(ContactBalanceStart(contact));
-  PetscCall(ContactStartTies(contact));
+/* ContactTakeState - the same with states that the bodies have from another run: in contact there, they may overlap by what rows of the
+   other side, or other meshes of the partner, leave of depth */
+PetscErrorCode ContactTakeState(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(TakeStart(contact, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -10,3 +10,4 @@ PETSC_INTERN PetscErrorCode ContactVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactVisitShared(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactUnpack(Contact, Tables);
+PETSC_INTERN PetscErrorCode ContactTakeState(Contact);

@@ -5,22 +5,40 @@
    of depth is less where they do what they should */
 #define INSIDE 0.02
 
+/* Size of the smallest contact element of both bodies [m] */
+static PetscErrorCode LeastElement(Contact contact, const ContactPair *pair, PetscReal *least)
+{
+  PetscFunctionBegin;
+  *least = PETSC_MAX_REAL;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    PetscReal size;
+
+    PetscCall(BodyGetContactElementSize(contact->bodies[pair->body[side]], &size));
+    *least = PetscMin(*least, size);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rows that start no deeper than the bow of their partner's faces makes of surfaces which only touch, as two balls whose poles meet, start
-   closed: the depth is added to their gap until they have been open, so that it is no blow in the first step */
-PetscErrorCode ContactLetTouch(Contact contact)
+   closed: the depth is added to their gap until they have been open, so that it is no blow in the first step. Bodies that begin with the
+   state of another run (`of_state`) have been in contact there by other rows perhaps, of the other side: what these leave of depth is
+   allowed too. */
+PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
 {
   PetscFunctionBegin;
   if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     TransferRows       rows;
+    PetscReal          least;
 
     if (pair->obstacle) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
+    PetscCall(LeastElement(contact, pair, &least));
     for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
-      const PetscReal depth = -contact->start.gap[i];
+      const PetscReal depth = -contact->start.gap[i], bow = rows.bow[(i - pair->begin) / pair->components];
 
-      if (!contact->rows.opposite[i] || depth <= 0 || depth > rows.bow[(i - pair->begin) / pair->components]) continue;
+      if (!contact->rows.opposite[i] || depth <= 0 || depth > (of_state ? PetscMax(bow, INSIDE * least) : bow)) continue;
       contact->rows.gap_shift[i] += depth;
       contact->rows.initial_gap[i] += depth;
       contact->end.gap[i] = contact->start.gap[i] = 0;
@@ -48,21 +66,16 @@ PetscErrorCode ContactLetTouch(Contact contact)
 @*/
 PetscErrorCode ContactGetOverlap(Contact contact, PetscInt pair, PetscReal *depth, PetscBool *inside)
 {
-  const ContactPair *p;
-  ContactPairState   state;
-  PetscReal          size = 0, least = PETSC_MAX_REAL;
+  ContactPairState state;
+  PetscReal        least;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(depth, 3);
   PetscAssertPointer(inside, 4);
   PetscCall(ContactGetPairState(contact, pair, &state));
-  p      = &contact->pairs[pair];
   *depth = PetscMax(-state.gap, 0);
-  for (PetscInt side = 0; side < (p->obstacle ? 1 : 2); side++) {
-    PetscCall(BodyGetContactElementSize(contact->bodies[p->body[side]], &size));
-    least = PetscMin(least, size);
-  }
+  PetscCall(LeastElement(contact, &contact->pairs[pair], &least));
   *inside = (PetscBool)(contact->options.law != CONTACT_LAW_TIED && *depth > INSIDE * least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
