@@ -87,12 +87,12 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const StatisticsRe
   if (law == CONTACT_LAW_TIED && !results->pairs[p].active_max)
     PetscCall(Add(verdict, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
   PetscCall(ContactGetPairState(contact, p, &state));
-  if (state.beyond_impulse > BEYOND * state.normal_impulse) {
+  if (state.beyond_impulse > BEYOND * PetscAbsReal(state.normal_impulse)) { /* ties pull as well as push */
     PetscCall(ContactGetPairRowSide(contact, p, &side));
     PetscCall(Add(verdict,
                   "nodes beyond the end of the partner bear %.3g %% of the impulse of %s, as if it reached there: what hangs over may not "
                   "tip; set -contact_rows %s, or refine the surface",
-                  (double)(100 * state.beyond_impulse / state.normal_impulse), name, side ? "first" : "second"));
+                  (double)(100 * state.beyond_impulse / PetscAbsReal(state.normal_impulse)), name, side ? "first" : "second"));
   }
   if (inside) PetscCall(Add(verdict, "%s end %.3g m inside each other", name, (double)depth));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -11,6 +11,9 @@
 #include <sys/stat.h>
 #include "optionsfiles.h"
 
+/* What some editors put before the text of a file in UTF-8 */
+#define BYTE_ORDER_MARK "\xef\xbb\xbf"
+
 typedef struct Place *Place;
 /* Where a walk through the files is: a file, included by the line of another */
 struct Place {
@@ -186,8 +189,19 @@ static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
       PetscCall(Blame(walk, place, "there is a zero byte in it: is it a text file?"));
       break;
     }
+    if (place->line == 1 && !strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK))) {
+      PetscCall(Blame(walk, place, "it begins with a byte-order mark, which no editor shows: save it as UTF-8 without one"));
+      break;
+    }
     if (comment) *comment = 0;
     name = NextWord(&rest);
+    if (name && name[0] != '-' && strcmp(name, "alias") != 0) {
+      char problem[256];
+
+      PetscCall(PetscSNPrintf(problem, sizeof(problem), "'%.100s' is no option, since these begin with a dash", name));
+      PetscCall(Blame(walk, place, problem));
+      break;
+    }
     if (name) PetscCall(VisitOption(walk, name, NextWord(&rest), place));
   }
   free(text);

@@ -90,7 +90,8 @@ LINES = {
     "no prefix": ("-prefix_push 1", ['"1"', "first character must be a letter"]),
     "second value": ("-time_end 1 2", ["line 1", "extra token 2"]),
     "two options": ("-time_end 1\n-left_density -right_density", ["line 2", "two options per line"]),
-    "word": ("time_end 1", ["line 1", "time_end"]),
+    "word": ("time_end 1", ["line 1", "'time_end' is no option", "dash"]),
+    "byte-order mark": ("\ufeff-time_end 1", ["line 1", "byte-order mark"]),
     "zero byte": ("-time_end 1\n-time_\0", ["line 2", "zero byte"]),
 }
 
