@@ -257,6 +257,7 @@ def test_other_ranks(run_in, folder, case, before, after):
     assert differences(whole, other, 1e-10) == []
 
 
+HEAD_ON = BLOCKS + "-right_dm_plex_box_faces 8,8 -right_translate 1.005,0 -left_initial_velocity 20,0 -contact_swap_sides"
 # Amid contact: the case, ranks before and after, and the part of the run after which it is continued
 RANKS_AMID = {
     "ties": ("-options_file options/cantilever-tied.opts", 1, 2, 0.55),
@@ -264,6 +265,8 @@ RANKS_AMID = {
     "stack": ("-options_file options/stack.opts -time_end 0.12", 2, 1, 0.8),
     "slides": ("-options_file options/sliding-flat.opts", 1, 3, 0.55),
     "discs": ("-options_file options/discs.opts -time_end 3.3e-4", 1, 3, 0.9095),
+    "sides swapped": (HEAD_ON, 1, 2, 0.55),
+    "sides swapped, an odd step": (HEAD_ON, 3, 1, 0.557),
 }
 # What is nothing but round-off in some of these is measured by what it is made of, with a lever or a path of 1 m
 MADE_OF = {

@@ -176,9 +176,6 @@ static PetscErrorCode UnpackRows(Contact contact, Tables tables)
 PetscErrorCode ContactUnpack(Contact contact, Tables tables)
 {
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCheck(contact->pairs[p].dirichlet == 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-               "-contact_swap_sides: a run whose sides are swapped at the checkpoint can be continued on as many ranks as before alone");
   contact->attempt.level = 0; /* each controller step begins whole */
   contact->step          = contact->attempt.whole_step;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyUnpack(contact->bodies[b], tables));

@@ -7,8 +7,9 @@
 #include "schwarzimpl.h"
 #include <checkpoint/tables.h>
 
-/* Numbers that all ranks have alike: a step has been made, active sets have gone round in a cycle, secants there are, and the next one */
-enum { STARTED, CYCLED, N_SECANTS, NEXT_SECANT, N_NUMBERS };
+/* Numbers that all ranks have alike: a step has been made, which side takes displacements, active sets have gone round in a cycle, secants
+ * there are, and the next one */
+enum { STARTED, SIDE, CYCLED, N_SECANTS, NEXT_SECANT, N_NUMBERS };
 
 /* Of each row: the active set that was solved for, and whether the row is held to the end of a cycle */
 enum { SOLVED, KEPT, N_FLAGS };
@@ -134,9 +135,9 @@ PetscErrorCode SchwarzPack(Contact contact, Tables tables)
 
   PetscFunctionBegin;
   GetWhole(schwarz, &secants, &solved_active);
-  PetscCall(
-      TablesAddNumbers(tables, NUMBERS_NAME, N_NUMBERS,
-                       (PetscReal[N_NUMBERS]){schwarz->started, schwarz->rounds.cycled, (PetscReal)secants->n, (PetscReal)secants->next}));
+  PetscCall(TablesAddNumbers(tables, NUMBERS_NAME, N_NUMBERS,
+                             (PetscReal[N_NUMBERS]){schwarz->started, (PetscReal)schwarz->side, schwarz->rounds.cycled,
+                                                    (PetscReal)secants->n, (PetscReal)secants->next}));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, tables));
   PetscCall(CopyTurns(contact, PETSC_FALSE, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -155,6 +156,8 @@ PetscErrorCode SchwarzUnpack(Contact contact, Tables tables)
              PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
              "The checkpoint has a memory of -contact_type schwarz that this run has no room for: it is of another problem");
   schwarz->started       = (PetscBool)(numbers[STARTED] != 0);
+  schwarz->side          = schwarz->swap && numbers[SIDE] != 0;
+  schwarz->levels        = schwarz->side_levels[schwarz->side];
   schwarz->rounds.cycled = (PetscBool)(numbers[CYCLED] != 0);
   schwarz->secants.n     = (PetscInt)numbers[N_SECANTS];
   schwarz->secants.next  = (PetscInt)numbers[NEXT_SECANT] % SCHWARZ_MAX_SECANTS;
