@@ -283,7 +283,11 @@ PetscErrorCode ComplianceUnpack(Compliance c, const char name[], const PetscInt 
   c->ramp_valid = PETSC_FALSE;
   c->state++;
   for (PetscInt j = 0; j < n; j++) {
-    c->rows[j]           = now[(PetscInt)*packed++];
+    const PetscReal row = *packed++;
+
+    PetscCheck(row >= 0 && row < c->global, c->comm, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has a row %g of %" PetscInt_FMT " in '%s'",
+               (double)row, c->global, name);
+    c->rows[j]           = now[(PetscInt)row];
     c->place[c->rows[j]] = j;
   }
   for (PetscInt j = 0; j < n; j++) c->known[j] = (PetscInt)*packed++;

@@ -1,5 +1,6 @@
 /* Set-up, and what contact tells of itself. */
 #include <impakt/private/contactimpl.h>
+#include "contactvisit.h"
 #include <sys/citations.h>
 #include <sys/statusline.h>
 
@@ -201,8 +202,7 @@ PetscErrorCode ContactCheckInitialGap(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTakeState - the same with states that the bodies have from another run: in contact there, they may overlap by what rows of the
-   other side, or other meshes of the partner, leave of depth */
+/* ContactTakeState - the same with states from another run: bodies in contact there may overlap by what rows of the other side leave */
 PetscErrorCode ContactTakeState(Contact contact)
 {
   PetscFunctionBegin;

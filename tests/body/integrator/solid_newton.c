@@ -186,10 +186,10 @@ static void get_result(Body body, PetscInt substeps, Result *result)
     PetscScalar       *level;
 
     ok(VecGetArrayRead(vecs[k], &array));
-    memcpy(result->values[k], array, (size_t)result->n * sizeof(PetscScalar));
+    ok(PetscArraycpy(result->values[k], array, result->n));
     ok(VecRestoreArrayRead(vecs[k], &array));
     ok(TraceGetLevel(traces[k], substeps, &level));
-    memcpy(result->traces[k], level, (size_t)result->rows * sizeof(PetscScalar));
+    ok(PetscArraycpy(result->traces[k], level, result->rows)); /* of no rows there is no array */
   }
 }
 
