@@ -13,7 +13,15 @@ import tempfile
 from pathlib import Path
 from statistics import median
 
-from bench import command_line, execute, measured, print_table, read_summary, report, spread
+from bench import (
+    command_line,
+    execute,
+    measured,
+    print_table,
+    read_summary,
+    report,
+    spread,
+)
 
 STEPS = 2e7  # elements times steps of a run: some tenths of a second
 BOUND = 1.2
