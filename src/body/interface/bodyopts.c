@@ -131,12 +131,12 @@ static PetscErrorCode ReadStatic(Body body)
 . -<body>_mass_redistribute (true|false|near)        - moves the mass of contact nodes to their inner neighbours, default true
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
-. -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step or auto; auto: 0.9 of the stable explicit
-step . -<body>_damping_mass alpha                         - Rayleigh damping by the mass [1/s], default 0 . -<body>_damping_stiffness beta
-- Rayleigh damping by the stiffness [s], default 0 . -<body>_artificial_stiffness part                  - of a static body that contact or
-ties alone hold, default 1e-2, nonlinear 1 . -<body>_probe x,y,z;x,y,z                          - points whose motion and stress are
-observed, see `BodyAddProbe()` . -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's
-trapezoidal rule
+. -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step, or auto where that is unstable
+. -<body>_damping_mass alpha                         - Rayleigh damping by the mass [1/s], default 0
+. -<body>_damping_stiffness beta                     - Rayleigh damping by the stiffness [s], default 0
+. -<body>_artificial_stiffness part                  - of a static body that contact or ties alone hold, default 1e-2, nonlinear 1
+. -<body>_probe x,y,z;x,y,z                          - points whose motion and stress are observed, see `BodyAddProbe()`
+. -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
 - -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
 
   Level: beginner
