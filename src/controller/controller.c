@@ -1,6 +1,7 @@
 /* The class and its time loop. */
 #include "controllerimpl.h"
 #include <sys/resource.h>
+#include <sys/stages.h>
 
 /*@
   ControllerCreate - creates a simulation without bodies
@@ -58,6 +59,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCheck(n, comm, PETSC_ERR_ARG_WRONGSTATE, "There are no bodies: call ControllerAddBody() or ControllerSetFromOptions() first");
   PetscCheck(controller->time_step > 0 || controller->chooses_step, comm, PETSC_ERR_ARG_WRONGSTATE,
              "There are no times: call ControllerSetTimes() or ControllerSetFromOptions() first");
+  PetscCall(StageBegin(STAGE_SETUP));
   PetscCall(PetscTime(&begin));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetUpSurfaces(contact));
@@ -82,6 +84,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(PetscTime(&end));
   controller->setup_seconds += end - begin;
   controller->setup = PETSC_TRUE;
+  PetscCall(StageEnd());
   PetscCall(ControllerViewFromOptions(controller, NULL, "-controller_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

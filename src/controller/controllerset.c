@@ -3,6 +3,7 @@
 #include <sys/names.h>
 #include <sys/package.h>
 #include <sys/statusline.h>
+#include <sys/stages.h>
 
 PetscClassId CONTROLLER_CLASSID = 0;
 
@@ -241,6 +242,7 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscCall(StageBegin(STAGE_SETUP));
   PetscCall(PetscTime(&begin));
   PetscCall(ControllerSetUpTerminal(controller));
   if (!controller->contact) PetscCall(ReadBodies(controller));
@@ -253,6 +255,7 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscCall(ContactSetFromOptions(contact));
   PetscCall(PetscTime(&end));
   controller->setup_seconds = end - begin;
+  PetscCall(StageEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* The observers of a run: who they are, and what they are told after each accepted controller step. */
 #include "controllerimpl.h"
+#include <sys/stages.h>
 
 /*@C
   ControllerMonitorSet - adds an observer, called at the start and after every accepted controller step
@@ -51,6 +52,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .probes             = controller->probes};
 
   PetscFunctionBegin;
+  PetscCall(StageBegin(STAGE_OUTPUT));
   /* not summed up, so that round-off does not pile up over many steps */
   frame.time = controller->time_start + step * controller->time_step;
   PetscCall(ContactGetNumPairs(controller->contact, &frame.n_pairs));
@@ -70,5 +72,6 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)
     PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));
+  PetscCall(StageEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

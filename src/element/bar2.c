@@ -34,6 +34,7 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
 
   PetscFunctionBegin;
   bar->coordinates = coordinates;
+  element->flops   = 6; /* strain 2, stress 1 where it is linear, force 3 */
   PetscCall(MaterialIsLinear(element->material, &bar->linear));
   PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain,
                          element->count, &bar->stress));
@@ -82,6 +83,7 @@ static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScal
     f[nodes[2 * e + 1]] += pull;
   }
   NoteInverted(element, strain, stress);
+  PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

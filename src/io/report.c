@@ -2,6 +2,7 @@
 #include "report.h"
 #include "ranks.h"
 #include <math.h>
+#include <sys/stages.h>
 
 /* Times of first contact below this part of the duration of contact are printed as 0: round-off of start + gap / speed */
 #define ROUND_OFF 1e-12
@@ -206,6 +207,7 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ViewReactions(bodies, results, viewer));
   if (exact) PetscCall(ViewErrors(exact, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));
+  PetscCall(StagesView(PetscObjectComm((PetscObject)controller), viewer));
   PetscCall(RanksView(&ranks, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -67,7 +67,7 @@ def run(arguments, options, ranks, steps, more=(), launcher=()):
         words += ["-log_view", f":{log}:ascii_csv", *more]
         execute([*arguments.mpiexec, *launcher, "-n", str(ranks), arguments.build / "impakt", *words], arguments.time_limit)
         with log.open(encoding="utf-8") as file:
-            events = [row for row in csv.DictReader(file) if row["Event Name"] == "ContactStep"]
+            events = [row for row in csv.DictReader(file) if row["Event Name"] == "ContactStep" and row["Stage Name"] == "Main Stage"]
         counts = [{name: float(row[column]) for name, column in COUNTED.items()} | {"seconds": float(row["Time"])} for row in events]
         return read_summary(summary, f"{ranks} ranks"), counts
 

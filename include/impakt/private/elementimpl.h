@@ -46,6 +46,7 @@ struct _p_Element {
   void            *data;
   /* set-up */
   PetscInt        count;        /* elements of this rank */
+  PetscLogDouble  flops;        /* of the internal force of one element, about, for -log_view */
   const PetscInt *connectivity; /* count x nodes: local node numbers, in VTK's order of vertices; owned by the body */
   PetscBool       setup;
   /* state */

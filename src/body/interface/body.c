@@ -315,6 +315,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(ConstrainedSolverDestroy(&b->mass.solver));
   PetscCall(MatDestroy(&b->model.stiffness));
   PetscCall(MatDestroy(&b->mass.matrix));
+  PetscCall(MatDestroy(&b->mass.product));
   PetscCall(MatDestroy(&b->rows.matrix));
   PetscCall(MatDestroy(&b->rows.free_matrix));
   PetscCall(VecDestroy(&b->rows.free_dofs));

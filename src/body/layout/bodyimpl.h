@@ -46,6 +46,7 @@ typedef struct {
   Vec               row_sum;      /* M 1: the lumped mass */
   Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
   Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
+  Mat               product;      /* the same for products with vectors */
   Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
   ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
   Vec               orphans;      /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
@@ -253,6 +254,7 @@ PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyCreateMassMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyNoteInverted(Body);
 PETSC_INTERN PetscErrorCode BodyFindFirstElement(Body, PetscInt, PetscMPIInt *, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);

@@ -7,6 +7,7 @@
    It is exact for linear bodies. For nonlinear ones it is that of the last effective matrix, or of the undeformed body.
 */
 #include "complianceimpl.h"
+#include <sys/stages.h>
 
 PetscErrorCode BodyDestroyCompliance(Body body)
 {
@@ -100,10 +101,12 @@ PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[]
   PetscCheck(body->compliance, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   for (PetscInt i = 0; i < n; i++) count += !ComplianceKnows(body->compliance->matrices, rows[i]);
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StageBegin(STAGE_INTERFACE));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
   PetscCall(ComplianceReserve(body->compliance->matrices, count));
   PetscCall(ProbeCompliance(body, n, rows));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
+  PetscCall(StageEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -212,10 +215,12 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(StageBegin(STAGE_INTERFACE));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
   if (body->solver) PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
   else PetscCall(VecZeroEntries(displacement));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
+  PetscCall(StageEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

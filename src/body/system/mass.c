@@ -105,7 +105,7 @@ static PetscErrorCode AssembleMass(Body body)
 
   PetscFunctionBegin;
   if (body->mass.type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass.diagonal));
-  else PetscCall(BodyCreateMatrix(body, &body->mass.matrix));
+  else PetscCall(BodyCreateMassMatrix(body, &body->mass.matrix));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall(BodyGetElementMass(body, e, M));
     PetscCall(BodyGetElementDofs(body, e, dofs));
@@ -134,6 +134,30 @@ static PetscErrorCode AddOrphans(Body body)
   PetscCall(VecRestoreArray(body->mass.orphans, &mass));
   if (body->mass.diagonal) PetscCall(VecAXPY(body->mass.diagonal, 1, body->mass.orphans));
   else PetscCall(MatDiagonalSet(body->mass.matrix, body->mass.orphans, ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For products: in two and three dimensions x, y and z of a node have the same masses, so that one number serves for all of them */
+static PetscErrorCode SetUpProduct(Body body)
+{
+  const PetscInt dim = body->mesh.dim;
+  PetscInt       begin;
+  Mat            of_nodes;
+  IS             first;
+
+  PetscFunctionBegin;
+  if (!body->mass.matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  if (dim == 1) {
+    PetscCall(PetscObjectReference((PetscObject)body->mass.matrix));
+    body->mass.product = body->mass.matrix;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MatGetOwnershipRange(body->mass.matrix, &begin, NULL));
+  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->mesh.owned_nodes, begin, dim, &first));
+  PetscCall(MatCreateSubMatrix(body->mass.matrix, first, first, MAT_INITIAL_MATRIX, &of_nodes));
+  PetscCall(ISDestroy(&first));
+  PetscCall(MatCreateMAIJ(of_nodes, dim, &body->mass.product));
+  PetscCall(MatDestroy(&of_nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,6 +195,7 @@ PetscErrorCode BodySetUpMass(Body body)
   }
   PetscCall(AssembleMass(body));
   if (body->mass.orphans) PetscCall(AddOrphans(body));
+  PetscCall(SetUpProduct(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));
@@ -220,7 +245,7 @@ PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
 {
   PetscFunctionBegin;
   if (body->mass.diagonal) PetscCall(VecPointwiseMult(y, body->mass.diagonal, x));
-  else PetscCall(MatMult(body->mass.matrix, x, y));
+  else PetscCall(MatMult(body->mass.product, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,7 +259,7 @@ PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
     PetscCall(VecCopy(body->mass.diagonal, diagonal));
     PetscCall(VecScale(diagonal, scale));
     PetscCall(MatDiagonalSet(A, diagonal, ADD_VALUES));
-  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, SAME_NONZERO_PATTERN));
+  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, body->mesh.dim > 1 ? SUBSET_NONZERO_PATTERN : SAME_NONZERO_PATTERN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

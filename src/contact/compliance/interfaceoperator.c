@@ -1,5 +1,6 @@
 /* S, and its dense form; which rows it has is in interfacerows.c, conjugate gradients are in interfaceiteration.c. */
 #include "interfaceimpl.h"
+#include <sys/stages.h>
 
 PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings *settings, InterfaceOperator *operator)
 {
@@ -167,7 +168,7 @@ PetscErrorCode InterfaceOperatorGather(InterfaceOperator op, const PetscScalar m
 
 /* From now on S is solved on the rows of this rank that are `in` (NULL: all that are to be solved for), with `diagonal` (NULL: zero) added
    to its own: the compliance of springs between both sides */
-PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[], const PetscReal diagonal[])
+static PetscErrorCode Factor(InterfaceOperator op, const PetscBool in[], const PetscReal diagonal[])
 {
   PetscScalar *listed = op->listed[1], *S; /* the first may be what is solved for */
   PetscBool    singular;
@@ -191,6 +192,15 @@ PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[
   PetscCall(DenseFactorCompute(&op->factor, &singular));
   PetscCheck(!singular, PetscObjectComm((PetscObject)op->contact), PETSC_ERR_MAT_LU_ZRPVT,
              "The matrix of the contact forces is singular: contact rows are not independent, and constrain each other");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[], const PetscReal diagonal[])
+{
+  PetscFunctionBegin;
+  PetscCall(StageBegin(STAGE_INTERFACE));
+  PetscCall(Factor(op, in, diagonal));
+  PetscCall(StageEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -231,8 +241,7 @@ static void Scatter(InterfaceOperator op, const PetscScalar all[], PetscScalar m
   }
 }
 
-/* y = (S + diagonal)^{-1} x on this rank's rows that are in, zero on the others; where that is iterated for, y may be the first iterate */
-PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
+static PetscErrorCode Solve(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
 {
   PetscFunctionBegin;
   if (!op->dense) {
@@ -246,6 +255,16 @@ PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[
   PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
   PetscCall(InterfaceOperatorSolveListed(op, op->listed[0]));
   Scatter(op, op->listed[0], y);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = (S + diagonal)^{-1} x on this rank's rows that are in, zero on the others; where that is iterated for, y may be the first iterate */
+PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
+{
+  PetscFunctionBegin;
+  PetscCall(StageBegin(STAGE_INTERFACE));
+  PetscCall(Solve(op, x, y));
+  PetscCall(StageEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

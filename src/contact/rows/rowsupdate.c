@@ -1,5 +1,6 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
 #include <impakt/private/contactimpl.h>
+#include <sys/stages.h>
 
 /* Shifts of gaps may keep surfaces apart for good by this much [edges of the face]. To take all of a shift back loses energy at each
    rebuild, as polygons roll on each other: ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost
@@ -337,14 +338,18 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
+  PetscCall(StageBegin(STAGE_SEARCH));
   PetscCall(ContactMoveSurfaces(contact));
   PetscCall(ContactFindFarPairs(contact, near));
+  PetscCall(StageEnd());
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair     = &contact->pairs[p];
     PetscBool    followed = PETSC_FALSE, rebuilt;
 
     if (pair->bonded || (pair->far && pair->was_far)) continue;
+    PetscCall(StageBegin(STAGE_SEARCH));
     PetscCall(UpdatePair(contact, pair, near, &rebuilt));
+    PetscCall(StageEnd());
     if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
     if (!rebuilt && !followed) continue;
     built = (PetscBool)(built || rebuilt);

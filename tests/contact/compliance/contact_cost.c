@@ -8,15 +8,21 @@ static int factorisations(void)
 {
   static const char *const names[] = {"MatLUFactorNum", "MatCholFctrNum"};
   int                      sum     = 0;
+  PetscInt                 n_stages;
+  PetscLogState            state;
 
+  ok(PetscLogGetState(&state));
+  ok(PetscLogStateGetNumStages(state, &n_stages));
   for (int i = 0; i < 2; i++) {
     PetscEventPerfInfo info;
     PetscLogEvent      event;
 
     ok(PetscLogEventGetId(names[i], &event));
     if (event < 0) continue;
-    ok(PetscLogEventGetPerfInfo(PETSC_DETERMINE, event, &info));
-    sum += info.count;
+    for (PetscLogStage stage = 0; stage < n_stages; stage++) {
+      ok(PetscLogEventGetPerfInfo(stage, event, &info));
+      sum += info.count;
+    }
   }
   return sum;
 }
