@@ -259,7 +259,7 @@ PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
     PetscCall(VecCopy(body->mass.diagonal, diagonal));
     PetscCall(VecScale(diagonal, scale));
     PetscCall(MatDiagonalSet(A, diagonal, ADD_VALUES));
-  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, body->mesh.dim > 1 ? SUBSET_NONZERO_PATTERN : SAME_NONZERO_PATTERN));
+  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, SUBSET_NONZERO_PATTERN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
