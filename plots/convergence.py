@@ -144,7 +144,10 @@ def parse(arguments):
     parser.add_argument("picture", metavar="FIGURE.png")
     parser.add_argument("--against", default="time_step", metavar="OPTION", help="that changes from run to run, default time_step")
     parser.add_argument("--figure", action="append", default=[], metavar="PATH", help="of a number in the summary, such as contact/impulse; may be repeated")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.picture.endswith(".h5"):
+        parser.error(f"the last word is the figure to be drawn, as in convergence.png, and not {options.picture}")
+    return options
 
 
 def main(arguments):

@@ -162,3 +162,8 @@ def test_bad_files(command, launch, tmp_path):
         assert name in run.stderr
         assert "Traceback" not in run.stderr
     assert launch(command, env=ENVIRONMENT).returncode > 0
+
+
+def test_convergence_without_a_figure(launch):
+    run = launch([*CONVERGENCE, "a.h5", "b.h5"], env=ENVIRONMENT)
+    assert run.returncode == 2 and "the last word is the figure" in run.stderr and "b.h5" in run.stderr
