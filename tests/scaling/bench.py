@@ -26,6 +26,8 @@ CASES = (
 )
 DEFAULT_RUN = "options/impact-high-speed.opts"
 DEFAULT_BOUND = 3.0
+STRIKER = "options/striker.opts"  # a mesh ratio of 10, with substeps of one body
+COMMON_STEP = ("-time_step", "1.6e-7")  # of both bodies, in place of them
 PHASES = (("alpha2", "substeps"), ("centraldifference", "substeps"), ("sweeps", "count"))
 
 
@@ -69,11 +71,11 @@ def run_yardstick(build, mode, time_limit):
         raise RunError(f"yardstick --mode {mode}: {error}") from None
 
 
-def run_program(build, options, time_limit):
-    """Return the program's summary of a run."""
+def run_program(build, options, time_limit, more=()):
+    """Return the program's summary of a run of an options file, with more options."""
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / "summary.json"
-        command = [build / "impakt", "-options_file", options, "-output_summary", path, "-progress", "0"]
+        command = [build / "impakt", "-options_file", options, "-output_summary", path, "-progress", "0", *more]
         execute(command, time_limit)
         summary = read_summary(path, options)
     try:
@@ -171,6 +173,16 @@ def report(print_tables, arguments):
     return 0
 
 
+def print_substeps(arguments):
+    """A body of fine elements with substeps of its own, beside one common step of both bodies."""
+    own, common = [], []
+    for _ in range(arguments.repeats):
+        own.append(run_program(arguments.build, STRIKER, arguments.time_limit)["timing"]["cpu"])
+        common.append(run_program(arguments.build, STRIKER, arguments.time_limit, COMMON_STEP)["timing"]["cpu"])
+    measured(arguments, "striker.opts, 10 substeps of the fine body", "s", own, common, "one common step of both bodies")
+    print(f"\nMesh ratio of 10: {spread(own)} s with substeps of the fine body, {spread(common)} s with one common step, {median(common) / median(own):.1f} times.")
+
+
 def print_tables(arguments):
     """Run everything and print the tables."""
     build, limit = arguments.build, arguments.time_limit
@@ -201,6 +213,7 @@ def print_tables(arguments):
         cells.append(spread([1e6 * run["cpu"] / run["substeps"] for run in yardsticks.get(name, [])], 2))
         rows.append([name, *cells])
     print_table(rows)
+    print_substeps(arguments)
 
 
 if __name__ == "__main__":
