@@ -130,7 +130,11 @@ def large(rates, elements=1e8, nodes=1e6, ranks=(100, 1000, 10_000, 100_000)):
 
 
 def messages(arguments):
-    """Latency, bandwidth and time of a reduction between two ranks of this machine."""
+    """Latency, bandwidth and time of a reduction between two ranks of this machine, the best of some runs."""
     command = [*arguments.mpiexec, "-n", "2", str(arguments.build / "yardstick_mpi")]
-    found = json.loads(subprocess.run(command, capture_output=True, text=True, check=True, timeout=arguments.time_limit).stdout)
-    return {"latency": found["latency"], "network_GB_per_s": found["GB_per_s"], "reduction": found["reduction"]}
+    found = [json.loads(subprocess.run(command, capture_output=True, text=True, check=True, timeout=arguments.time_limit).stdout) for _ in range(5)]
+    return {
+        "latency": min(f["latency"] for f in found),
+        "network_GB_per_s": max(f["GB_per_s"] for f in found),
+        "reduction": min(f["reduction"] for f in found),
+    }
