@@ -4,6 +4,8 @@
 
 /* How far a point must be inside an element to say so, as a part of its extent: faces of hexahedra may be warped */
 #define INSIDE 0.05
+/* How far points near corners are on the way to the centre of their element: in one that overlaps it by 0.15 of its width or more */
+#define PULLED 0.2
 /* Distance of nodes that lie on each other, as a part of the extent of the mesh */
 #define SAME 1e-9
 /* Most pairs of elements and points that are looked at, which is far more than in meshes whose elements do not overlap */
@@ -41,7 +43,7 @@ static PetscInt BoxOf(const Boxes *boxes, const PetscReal x[])
   return box;
 }
 
-/* About one point in each box */
+/* About one point in each box; takes the points over */
 static PetscErrorCode BoxesCreate(PetscInt dim, PetscInt n_points, PetscReal x[], Boxes *boxes)
 {
   PetscReal upper[3];
@@ -69,6 +71,15 @@ static PetscErrorCode BoxesCreate(PetscInt dim, PetscInt n_points, PetscReal x[]
     boxes->begin[k] = sum; /* the end of box k, from which filling it takes us to its begin */
   }
   for (PetscInt i = 0; i < n_points; i++) boxes->points[--boxes->begin[BoxOf(boxes, x + i * dim)]] = i;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BoxesDestroy(Boxes *boxes)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(boxes->begin));
+  PetscCall(PetscFree(boxes->points));
+  PetscCall(PetscFree(boxes->x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,9 +122,32 @@ static PetscBool IsInside(const MeshFile *file, const PetscInt cell[], const Pet
   return PETSC_TRUE;
 }
 
-/* Counts the elements that hold a vertex or the centre of another element, and tells of one such pair, whose second number is negative
- * where it is a vertex */
-static PetscErrorCode FindOverlap(const MeshFile *file, const Boxes *boxes, PetscInt *number, PetscInt pair[2])
+/* The vertices, and of each element its centre and `corners` points near its corners (0: none); as many, by elements, behind the vertices
+ */
+static PetscErrorCode CollectPoints(const MeshFile *file, PetscInt corners, PetscInt *n, PetscReal **points)
+{
+  const PetscInt dim = file->dim, of_cell = 1 + corners;
+  PetscReal     *x;
+
+  PetscFunctionBegin;
+  *n = file->n_vertices + file->n_cells * of_cell;
+  PetscCall(PetscCalloc1(*n * dim, points));
+  PetscCall(PetscArraycpy(*points, file->vertices, file->n_vertices * dim));
+  x = *points + file->n_vertices * dim;
+  for (PetscInt c = 0; c < file->n_cells; c++, x += of_cell * dim) {
+    const PetscInt *cell = file->cells + c * file->corners;
+
+    for (PetscInt k = 0; k < file->corners; k++)
+      for (PetscInt d = 0; d < dim; d++) x[d] += file->vertices[cell[k] * dim + d] / (PetscReal)file->corners;
+    for (PetscInt k = 0; k < corners; k++)
+      for (PetscInt d = 0; d < dim; d++) x[(k + 1) * dim + d] = (1 - PULLED) * file->vertices[cell[k] * dim + d] + PULLED * x[d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the elements that hold a vertex or a point of another element, of which there are `of_cell`, and tells of one such pair, whose
+   second number is negative where it is a vertex */
+static PetscErrorCode FindOverlap(const MeshFile *file, const Boxes *boxes, PetscInt of_cell, PetscInt *number, PetscInt pair[2])
 {
   const PetscInt dim   = file->dim;
   PetscInt64     looks = 0;
@@ -144,13 +178,15 @@ static PetscErrorCode FindOverlap(const MeshFile *file, const Boxes *boxes, Pets
             const PetscInt point = boxes->points[q];
 
             looks++;
-            if (point != file->n_vertices + c && IsInside(file, cell, boxes->x + point * dim, extent)) found = point;
+            const PetscBool own = (PetscBool)(point >= file->n_vertices && (point - file->n_vertices) / of_cell == c);
+
+            if (!own && IsInside(file, cell, boxes->x + point * dim, extent)) found = point;
           }
         }
     if (found < 0) continue;
     if (!(*number)++) {
       pair[0] = c;
-      pair[1] = found - file->n_vertices;
+      pair[1] = found < file->n_vertices ? -1 : (found - file->n_vertices) / of_cell;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -216,25 +252,23 @@ static PetscErrorCode Tell(const MeshFile *file, const char where[], const char 
 */
 PetscErrorCode MeshFileDoubt(const MeshFile *file, const char where[])
 {
-  const PetscInt dim = file->dim, n = file->n_vertices + file->n_cells;
-  PetscInt       overlaps, pair[2]  = {0}, pieces, doubles;
-  char           text[512], other[64];
-  PetscReal     *x;
-  Boxes          boxes;
+  PetscInt   n, overlaps, pair[2] = {0}, pieces, doubles, corners = 0;
+  char       text[512], other[64];
+  PetscReal *x;
+  Boxes      boxes;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n * dim, &x));
-  PetscCall(PetscArraycpy(x, file->vertices, file->n_vertices * dim));
-  for (PetscInt c = 0; c < file->n_cells; c++)
-    for (PetscInt k = 0; k < file->corners; k++)
-      for (PetscInt d = 0; d < dim; d++)
-        x[(file->n_vertices + c) * dim + d] += file->vertices[file->cells[c * file->corners + k] * dim + d] / (PetscReal)file->corners;
-  PetscCall(BoxesCreate(dim, n, x, &boxes));
-  PetscCall(FindOverlap(file, &boxes, &overlaps, pair));
+  PetscCall(CollectPoints(file, corners, &n, &x));
+  PetscCall(BoxesCreate(file->dim, n, x, &boxes));
   PetscCall(CountPieces(file, &boxes, &pieces, &doubles));
-  PetscCall(PetscFree(boxes.begin));
-  PetscCall(PetscFree(boxes.points));
-  PetscCall(PetscFree(x));
+  if (pieces > 1) { /* blocks of which the lines of nodes meet may overlap by less than half an element, where no centre is */
+    PetscCall(BoxesDestroy(&boxes));
+    corners = file->corners;
+    PetscCall(CollectPoints(file, corners, &n, &x));
+    PetscCall(BoxesCreate(file->dim, n, x, &boxes));
+  }
+  PetscCall(FindOverlap(file, &boxes, 1 + corners, &overlaps, pair));
+  PetscCall(BoxesDestroy(&boxes));
   if (overlaps) {
     PetscCall(PetscSNPrintf(other, sizeof(other), pair[1] >= 0 ? "element %" PetscInt_FMT : "one that has a node inside it",
                             pair[1] >= 0 ? file->cell_numbers[pair[1]] : 0));

@@ -83,3 +83,13 @@ def test_overlap(shape, shift, tmp_path, impakt):
     path = write_mesh(tmp_path / "m.msh", shape, [*grid(dim, 2), tuple(shift / (d + 1) for d in range(dim))])
     lines = warnings(impakt(f"{OPTIONS} -b_dm_plex_filename {path}", expect_failure=dim == 1))
     assert any("over others" in line and "'b'" in line for line in lines)
+
+
+@pytest.mark.parametrize("overlap", [0.2, pytest.param(0.4, marks=pytest.mark.long)])
+@pytest.mark.parametrize("shape", [shape for shape in SHAPES if SHAPES[shape][1] > 1])
+def test_overlap_at_the_edge(shape, overlap, tmp_path, impakt):
+    """A cell beside the others whose lines go on in it, with no centre of an element where it overlaps them, and no node but on their edges."""
+    dim = SHAPES[shape][1]
+    path = write_mesh(tmp_path / "m.msh", shape, [*grid(dim, 2), (2 - overlap, *[0] * (dim - 1))])
+    lines = warnings(impakt(f"{OPTIONS} -b_dm_plex_filename {path}"))
+    assert any("over others" in line and "'b'" in line for line in lines)
