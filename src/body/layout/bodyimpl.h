@@ -254,7 +254,6 @@ PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
-PETSC_INTERN PetscErrorCode BodyCreateMassMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyNoteInverted(Body);
 PETSC_INTERN PetscErrorCode BodyFindFirstElement(Body, PetscInt, PetscMPIInt *, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);

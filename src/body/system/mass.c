@@ -105,7 +105,7 @@ static PetscErrorCode AssembleMass(Body body)
 
   PetscFunctionBegin;
   if (body->mass.type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass.diagonal));
-  else PetscCall(BodyCreateMassMatrix(body, &body->mass.matrix));
+  else PetscCall(BodyCreateMatrix(body, &body->mass.matrix));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall(BodyGetElementMass(body, e, M));
     PetscCall(BodyGetElementDofs(body, e, dofs));
@@ -137,7 +137,8 @@ static PetscErrorCode AddOrphans(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For products: in two and three dimensions x, y and z of a node have the same masses, so that one number serves for all of them */
+/* For products: in two and three dimensions x, y and z of a node have the same masses, and nothing to do with each other, so that one
+   number serves for all of them */
 static PetscErrorCode SetUpProduct(Body body)
 {
   const PetscInt dim = body->mesh.dim;
@@ -157,6 +158,8 @@ static PetscErrorCode SetUpProduct(Body body)
   PetscCall(MatCreateSubMatrix(body->mass.matrix, first, first, MAT_INITIAL_MATRIX, &of_nodes));
   PetscCall(ISDestroy(&first));
   PetscCall(MatCreateMAIJ(of_nodes, dim, &body->mass.product));
+  /* on several ranks such a matrix takes memory in each product; another without the zeros between components does not */
+  if (body->rows.size > 1) PetscCall(MatConvert(body->mass.product, MATAIJ, MAT_INPLACE_MATRIX, &body->mass.product));
   PetscCall(MatDestroy(&of_nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -259,7 +262,7 @@ PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
     PetscCall(VecCopy(body->mass.diagonal, diagonal));
     PetscCall(VecScale(diagonal, scale));
     PetscCall(MatDiagonalSet(A, diagonal, ADD_VALUES));
-  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, SUBSET_NONZERO_PATTERN));
+  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, SAME_NONZERO_PATTERN)); /* a subset would take memory in each call */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

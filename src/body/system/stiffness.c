@@ -110,9 +110,9 @@ static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
 
 /* An empty matrix with room for what elements couple. DMPLEX's own count goes through the mesh entity by entity, which takes ten times
    as long as that of the graph. */
-static PetscErrorCode CreateMatrix(Body body, PetscBool couples_components, Mat *A)
+PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
 {
-  const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes * dim, of_node = couples_components ? dim : 1;
+  const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes * dim;
   PetscInt       begin, end, *here, *elsewhere;
   Mat            graph;
 
@@ -127,8 +127,8 @@ static PetscErrorCode CreateMatrix(Body body, PetscBool couples_components, Mat 
     PetscCall(MatGetRow(graph, row, &n_columns, &columns, NULL));
     for (PetscInt k = 0; k < n_columns; k++) inside += columns[k] >= begin && columns[k] < end;
     for (PetscInt d = 0; d < dim; d++) {
-      here[(row - begin) * dim + d]      = of_node * inside;
-      elsewhere[(row - begin) * dim + d] = of_node * (n_columns - inside);
+      here[(row - begin) * dim + d]      = dim * inside;
+      elsewhere[(row - begin) * dim + d] = dim * (n_columns - inside);
     }
     PetscCall(MatRestoreRow(graph, row, &n_columns, &columns, NULL));
   }
@@ -143,22 +143,6 @@ static PetscErrorCode CreateMatrix(Body body, PetscBool couples_components, Mat 
   PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatSetOption(*A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
   PetscCall(MatSetOption(*A, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
-  if (!couples_components) PetscCall(MatSetOption(*A, MAT_IGNORE_ZERO_ENTRIES, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
-{
-  PetscFunctionBegin;
-  PetscCall(CreateMatrix(body, PETSC_TRUE, A));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* For a mass matrix, in which the x, y and z of nodes have nothing to do with each other: a third of the numbers to go through */
-PetscErrorCode BodyCreateMassMatrix(Body body, Mat *M)
-{
-  PetscFunctionBegin;
-  PetscCall(CreateMatrix(body, PETSC_FALSE, M));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
