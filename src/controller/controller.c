@@ -51,6 +51,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   MPI_Comm       comm = PetscObjectComm((PetscObject)controller);
   PetscLogDouble begin, end;
   PetscInt       n_pairs, n = controller->n_bodies;
+  PetscBool      logged;
   Contact        contact;
 
   PetscFunctionBegin;
@@ -59,7 +60,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCheck(n, comm, PETSC_ERR_ARG_WRONGSTATE, "There are no bodies: call ControllerAddBody() or ControllerSetFromOptions() first");
   PetscCheck(controller->time_step > 0 || controller->chooses_step, comm, PETSC_ERR_ARG_WRONGSTATE,
              "There are no times: call ControllerSetTimes() or ControllerSetFromOptions() first");
-  PetscCall(StageBegin(STAGE_SETUP));
+  PetscCall(StageBegin(STAGE_SETUP, &logged));
   PetscCall(PetscTime(&begin));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetUpSurfaces(contact));
@@ -84,7 +85,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(PetscTime(&end));
   controller->setup_seconds += end - begin;
   controller->setup = PETSC_TRUE;
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscCall(ControllerViewFromOptions(controller, NULL, "-controller_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

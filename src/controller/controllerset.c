@@ -238,11 +238,12 @@ static PetscErrorCode ReadTimes(Controller controller)
 PetscErrorCode ControllerSetFromOptions(Controller controller)
 {
   PetscLogDouble begin, end;
+  PetscBool      logged;
   Contact        contact;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscCall(StageBegin(STAGE_SETUP));
+  PetscCall(StageBegin(STAGE_SETUP, &logged));
   PetscCall(PetscTime(&begin));
   PetscCall(ControllerSetUpTerminal(controller));
   if (!controller->contact) PetscCall(ReadBodies(controller));
@@ -255,7 +256,7 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscCall(ContactSetFromOptions(contact));
   PetscCall(PetscTime(&end));
   controller->setup_seconds = end - begin;
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -50,9 +50,10 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .supports           = controller->supports,
                            .n_probes           = controller->n_probes,
                            .probes             = controller->probes};
+  PetscBool       logged;
 
   PetscFunctionBegin;
-  PetscCall(StageBegin(STAGE_OUTPUT));
+  PetscCall(StageBegin(STAGE_OUTPUT, &logged));
   /* not summed up, so that round-off does not pile up over many steps */
   frame.time = controller->time_start + step * controller->time_step;
   PetscCall(ContactGetNumPairs(controller->contact, &frame.n_pairs));
@@ -72,6 +73,6 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)
     PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

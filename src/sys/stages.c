@@ -7,14 +7,11 @@ static const char *const names[N_STAGES] = {"Set-up", "Search", "Rows", "Sweeps"
 /* Numbers that PETSc has given to the stages, as events have them */
 static PetscLogStage stages[N_STAGES];
 static PetscBool     StagesInitialized = PETSC_FALSE;
-/* Stages that began while nothing was logged: steps of small bodies take microseconds, of which stages would be 5 % */
-static PetscInt unlogged;
 
 static PetscErrorCode Finalize(void)
 {
   PetscFunctionBegin;
   StagesInitialized = PETSC_FALSE;
-  unlogged          = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,26 +29,22 @@ PetscErrorCode StagesInitialize(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StageBegin(Stage stage)
+/* Begins a stage where anything is logged: steps of small bodies take microseconds, of which stages would be 5 %. `logged` is for
+   StageEnd(), since logging may begin or end in between. */
+PetscErrorCode StageBegin(Stage stage, PetscBool *logged)
 {
-  PetscBool active;
-
   PetscFunctionBegin;
-  PetscCall(PetscLogIsActive(&active));
-  if (!active) {
-    unlogged++;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  PetscCall(PetscLogIsActive(logged));
+  if (!*logged) PetscFunctionReturn(PETSC_SUCCESS);
   if (!StagesInitialized) PetscCall(StagesInitialize());
   PetscCall(PetscLogStagePush(stages[stage]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StageEnd(void)
+PetscErrorCode StageEnd(PetscBool logged)
 {
   PetscFunctionBegin;
-  if (unlogged) unlogged--;
-  else PetscCall(PetscLogStagePop());
+  if (logged) PetscCall(PetscLogStagePop());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,6 +13,6 @@ typedef enum {
 } Stage;
 
 PETSC_INTERN PetscErrorCode StagesInitialize(void);
-PETSC_INTERN PetscErrorCode StageBegin(Stage);
-PETSC_INTERN PetscErrorCode StageEnd(void);
+PETSC_INTERN PetscErrorCode StageBegin(Stage, PetscBool *);
+PETSC_INTERN PetscErrorCode StageEnd(PetscBool);
 PETSC_INTERN PetscErrorCode StagesView(MPI_Comm, PetscViewer);

@@ -94,19 +94,20 @@ static PetscErrorCode ProbeCompliance(Body body, PetscInt n, const PetscInt rows
 @*/
 PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[])
 {
-  PetscInt count = 0;
+  PetscInt  count = 0;
+  PetscBool logged;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->compliance, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   for (PetscInt i = 0; i < n; i++) count += !ComplianceKnows(body->compliance->matrices, rows[i]);
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StageBegin(STAGE_INTERFACE));
+  PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
   PetscCall(ComplianceReserve(body->compliance->matrices, count));
   PetscCall(ProbeCompliance(body, n, rows));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,14 +214,16 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 @*/
 PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
 {
+  PetscBool logged;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(StageBegin(STAGE_INTERFACE));
+  PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
   if (body->solver) PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
   else PetscCall(VecZeroEntries(displacement));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

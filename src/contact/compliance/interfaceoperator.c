@@ -197,10 +197,12 @@ static PetscErrorCode Factor(InterfaceOperator op, const PetscBool in[], const P
 
 PetscErrorCode InterfaceOperatorFactor(InterfaceOperator op, const PetscBool in[], const PetscReal diagonal[])
 {
+  PetscBool logged;
+
   PetscFunctionBegin;
-  PetscCall(StageBegin(STAGE_INTERFACE));
+  PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(Factor(op, in, diagonal));
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -261,10 +263,12 @@ static PetscErrorCode Solve(InterfaceOperator op, const PetscScalar x[], PetscSc
 /* y = (S + diagonal)^{-1} x on this rank's rows that are in, zero on the others; where that is iterated for, y may be the first iterate */
 PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
 {
+  PetscBool logged;
+
   PetscFunctionBegin;
-  PetscCall(StageBegin(STAGE_INTERFACE));
+  PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(Solve(op, x, y));
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

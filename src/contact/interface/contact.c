@@ -166,6 +166,8 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 @*/
 PetscErrorCode ContactStep(Contact contact)
 {
+  PetscBool logged;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
@@ -173,14 +175,14 @@ PetscErrorCode ContactStep(Contact contact)
   contact->counts.sweeps = 0;
   PetscCall(ContactBeginEnergy(contact));
   PetscCall(ContactNoteLevel(contact));
-  PetscCall(StageBegin(STAGE_ROWS));
+  PetscCall(StageBegin(STAGE_ROWS, &logged));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactBond(contact));
   PetscCall(ContactUpdateRows(contact));
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
-  PetscCall(StageEnd());
-  PetscCall(StageBegin(STAGE_SWEEPS));
+  PetscCall(StageEnd(logged));
+  PetscCall(StageBegin(STAGE_SWEEPS, &logged));
   PetscCall(ContactTurn(contact, NULL));
   if (contact->rows.n_all) {
     PetscCall(ContactMakeStep(contact));
@@ -192,7 +194,7 @@ PetscErrorCode ContactStep(Contact contact)
     PetscCall(ContactCompleteBodies(contact));
   }
   contact->counts.total_sweeps += contact->counts.sweeps;
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
   if (!contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -322,7 +322,7 @@ static PetscErrorCode UpdatePair(Contact contact, const ContactPair *pair, Petsc
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
   PetscReal near = 0;
-  PetscBool any = PETSC_FALSE, built = PETSC_FALSE;
+  PetscBool any = PETSC_FALSE, built = PETSC_FALSE, logged;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
@@ -338,18 +338,18 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
-  PetscCall(StageBegin(STAGE_SEARCH));
+  PetscCall(StageBegin(STAGE_SEARCH, &logged));
   PetscCall(ContactMoveSurfaces(contact));
   PetscCall(ContactFindFarPairs(contact, near));
-  PetscCall(StageEnd());
+  PetscCall(StageEnd(logged));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair     = &contact->pairs[p];
     PetscBool    followed = PETSC_FALSE, rebuilt;
 
     if (pair->bonded || (pair->far && pair->was_far)) continue;
-    PetscCall(StageBegin(STAGE_SEARCH));
+    PetscCall(StageBegin(STAGE_SEARCH, &logged));
     PetscCall(UpdatePair(contact, pair, near, &rebuilt));
-    PetscCall(StageEnd());
+    PetscCall(StageEnd(logged));
     if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
     if (!rebuilt && !followed) continue;
     built = (PetscBool)(built || rebuilt);
