@@ -1,5 +1,5 @@
 /* All bodies under given contact forces: the step of methods that know the forces, or guess them until they fit. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* The force on the rows of a body at each of its substeps; it pushes Neumann sides along the rows and Dirichlet sides against them */
 static PetscErrorCode LoadRows(Contact contact, PetscInt b, const PetscReal end[])

@@ -1,5 +1,5 @@
 /* Rows that are let go within a controller step, with a force that falls to zero in the course of it. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Whether a row has been let go in this controller step, and its force is not zero all at once. Bodies of one step take it so by the force
    that their acceleration at the start has in it; one that makes substeps would lose it with the first of them, and momentum with it. */

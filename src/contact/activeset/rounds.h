@@ -1,6 +1,6 @@
 /* The active sets that are tried in one controller step, one after the other, and what ends an alternation. Private to src/contact. */
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Rounds of the active set in one step after which something must be wrong: more than any run of the tests takes, by five times */
 #define ROUNDS_MAX 100

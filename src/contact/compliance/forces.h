@@ -1,6 +1,6 @@
 /* What the methods whose unknowns are the contact forces share: all bodies under given forces. Private to src/contact/impls. */
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 typedef struct {
   Trace      trace;    /* forces over the controller step, of the rows of this rank: its start and its end [N] */

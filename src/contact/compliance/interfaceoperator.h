@@ -7,7 +7,7 @@
    the same on every rank, or by conjugate gradients with products alone. Private to src/contact.
 */
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 typedef struct _n_InterfaceOperator *InterfaceOperator;
 

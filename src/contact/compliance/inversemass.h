@@ -1,5 +1,5 @@
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* The mass matrix that is inverted */
 typedef enum {

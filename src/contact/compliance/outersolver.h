@@ -1,6 +1,6 @@
 /* The SNES on the interface that Schwarz and penalty share. Private to src/contact. */
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <petscsnes.h>
 
 /* Iterations of an outer solver: more of them mean that it does not converge. Newton's method takes 1 to 5, the

@@ -1,6 +1,6 @@
 /* Energy that contact gains and loses. Private to src/contact/energy. */
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 PETSC_INTERN PetscErrorCode ContactComputeWork(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscReal[]);

@@ -1,6 +1,6 @@
 /* What setters of methods have in common. Private to src/contact/impls. */
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* What the method of a contact problem that is not set up yet keeps, into a pointer to it: the method has to be of a type, or of another
    one (NULL: none); `name` is the constant of the type. Call as the first thing in a setter. */

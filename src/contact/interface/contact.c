@@ -1,5 +1,5 @@
 /* The class: creation, type, step, view, destruction. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/stages.h>
 

@@ -1,5 +1,5 @@
 /* Class id and events, apart from the registry: that knows the methods, and the methods know these. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 PetscClassId  CONTACT_CLASSID = 0;
 PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;

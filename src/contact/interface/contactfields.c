@@ -1,5 +1,5 @@
 /* What contact does at each node: force, pressure, gap, whether it touches. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <math.h>
 
 /* Areas that rows bring to a node count as round-off if they are smaller, in parts of the largest area of a row */

@@ -1,5 +1,5 @@
 /* Obstacles of a contact problem. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Pairs find bodies and obstacles by their names */
 PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])

@@ -1,5 +1,5 @@
 /* Contact from the options. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <sys/names.h>
 
 /* What the methods share */

@@ -2,7 +2,7 @@
    The state of contact and of its bodies as tables of nodes, by which a run is continued on another number of ranks: to round-off. Rows
    have other numbers there. So each row brings the number that it had, and what is known by numbers of rows is put in the new order.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <body/interface/bodyvisit.h>
 #include <interface/transfervisit.h>
 #include "contactvisit.h"

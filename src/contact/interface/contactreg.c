@@ -1,5 +1,5 @@
 /* The registry of contact methods, and the package of the class. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <sys/package.h>
 
 PetscFunctionList ContactList = NULL;

@@ -1,5 +1,5 @@
 /* What keeps the energy of a run: steps made again, contact at all shared times, refusals of what is known to be unstable. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /*@
   ContactSetAllowUnstable - whether choices that are known to gain energy run all the same

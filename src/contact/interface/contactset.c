@@ -1,5 +1,5 @@
 /* What programs set of contact beside its options, whatever the method. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};

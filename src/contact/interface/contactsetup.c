@@ -1,5 +1,5 @@
 /* Set-up, and what contact tells of itself. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include "contactvisit.h"
 #include <sys/citations.h>
 #include <sys/statusline.h>

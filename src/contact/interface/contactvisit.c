@@ -2,7 +2,7 @@
    The state of contact and of its bodies, for checkpoints: pairs and rows first, with the matrices that the bodies have of them, then what
    the method remembers, then the bodies, since a method that is set up for a level of cut steps asks them for their compliance.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <body/interface/bodyvisit.h>
 #include <interface/transfervisit.h>
 #include "contactvisit.h"

@@ -1,5 +1,5 @@
 /* The energy that contact takes in a controller step. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Of the energy of the system: contact may take or bring so much in a step before it is made again in halves */
 #define ENERGY_TOLERANCE 1e-3

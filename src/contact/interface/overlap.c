@@ -1,5 +1,5 @@
 /* Bodies that are inside each other. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Depth from which on bodies are inside each other, in parts of a contact element: what penalty springs, and faces that do not match, leave
    of depth is less where they do what they should */

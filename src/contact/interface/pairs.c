@@ -1,9 +1,6 @@
-/* Contact pairs: from their names to surfaces of bodies, and which side takes displacements. */
-#include <impakt/private/contactimpl.h>
+/* Contact pairs: from their names to surfaces of bodies; all bodies with each other. */
+#include <contact/parts.h>
 #include <sys/names.h>
-
-/* Mean elements of two bodies are alike if the ratio of their edges is above this, so that round-off does not choose the sides */
-#define ALIKE 0.999
 
 /* Finds body and surface of one side of a pair by its name. The second side may be an obstacle: its body is one past the last. */
 static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)
@@ -40,95 +37,6 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What decides which of two bodies takes displacements */
-typedef struct {
-  PetscBool is_explicit;
-  PetscInt  substeps; /* of explicit bodies, about */
-  PetscReal size;     /* edge of its mean element, or of the largest that is alike [m] */
-} Preference;
-
-/* Time that a plane wave takes through an element of a body [s] */
-static PetscErrorCode GetTransit(Body body, PetscReal size, PetscReal *transit)
-{
-  PetscReal density, impedance, cross_section;
-  Material  material;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetMaterial(body, &material));
-  PetscCall(MaterialGetDensity(material, &density));
-  PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(BodyGetCrossSection(body, &cross_section));
-  *transit = impedance > 0 ? size * density * cross_section / impedance : 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* About how many substeps explicit bodies will make. A controller step that is still to be chosen lies between the times in which waves
-   cross the elements of both sides, see ContactGetResolvedStep(). */
-static PetscErrorCode EstimateSubsteps(Contact contact, const PetscReal size[], Preference preferences[])
-{
-  PetscReal *transit, step, least = PETSC_MAX_REAL, most = 0;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_bodies, &transit));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(GetTransit(contact->bodies[b], size[b], &transit[b]));
-    if (!preferences[b].is_explicit || !(transit[b] > 0)) continue;
-    least = PetscMin(least, transit[b]);
-    most  = PetscMax(most, transit[b]);
-  }
-  PetscCall(BodyGetControllerStep(contact->bodies[0], &step));
-  if (!(step > 0)) step = PetscSqrtReal(least) * PetscSqrtReal(most);
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyEstimateSubsteps(contact->bodies[b], transit[b], step, &preferences[b].substeps));
-  PetscCall(PetscFree(transit));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The preferences of all bodies. Sizes are compared with the largest that is alike, not two by two: of three bodies each could be alike to
-   the next, and the first not to the last, so that the order could go round in a circle. */
-static PetscErrorCode GetPreferences(Contact contact, Preference preferences[])
-{
-  PetscReal *size, level = PETSC_MAX_REAL;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_bodies, &size));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
-    PetscCall(BodyGetElementSize(contact->bodies[b], &size[b]));
-    preferences[b].size = -1;
-  }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscInt largest = -1;
-
-    for (PetscInt c = 0; c < contact->n_bodies; c++)
-      if (preferences[c].size < 0 && (largest < 0 || size[c] > size[largest])) largest = c;
-    if (size[largest] < ALIKE * level) level = size[largest];
-    preferences[largest].size = level;
-  }
-  PetscCall(EstimateSubsteps(contact, size, preferences));
-  PetscCall(PetscFree(size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether the second of two bodies is to take displacements. An implicit body does rather than an explicit one. Of two explicit bodies the
-   one with fewer substeps does: the compliance of rows on a body with substeps is found by integrating that body under a unit force on
-   each, so that the fewer such rows the better. If both are alike in that, the one with the finer mesh: of two discs without friction that
-   hit each other off-centre the coarser one as the first side has 1.5 to 5 times the spin. If both are alike in that too, the one that is
-   named first does. */
-static PetscBool ChooseSides(const Preference *a, const Preference *b, const char **why)
-{
-  if (a->is_explicit != b->is_explicit) {
-    *why = "implicit body first";
-    return a->is_explicit;
-  }
-  if (a->substeps != b->substeps) {
-    *why = "fewer substeps first";
-    return (PetscBool)(b->substeps < a->substeps);
-  }
-  *why = a->size == b->size ? "alike, as named" : "finer mesh first";
-  return (PetscBool)(b->size < a->size);
-}
-
 /* Adds a pair without bodies yet */
 static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair **pair)
 {
@@ -146,12 +54,12 @@ static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair
 /* Adds a pair that is given with a tilde: the sides are the user's, which of them is the first is not */
 static PetscErrorCode AddTilde(Contact contact, const char pair[], const char left[], const char right[])
 {
-  Preference *preferences;
-  PetscInt    body[2];
-  PetscBool   turn;
-  Obstacle    obstacle = NULL;
-  char       *surface, ordered[512];
-  const char *why = "obstacle second";
+  ContactPreference *preferences;
+  PetscInt           body[2];
+  PetscBool          turn;
+  Obstacle           obstacle = NULL;
+  char              *surface, ordered[512];
+  const char        *why = "obstacle second";
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
@@ -160,8 +68,8 @@ static PetscErrorCode AddTilde(Contact contact, const char pair[], const char le
     PetscCall(PetscFree(surface));
   }
   PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
-  PetscCall(GetPreferences(contact, preferences));
-  turn = obstacle ? PETSC_FALSE : ChooseSides(&preferences[body[0]], &preferences[body[1]], &why);
+  PetscCall(ContactGetPreferences(contact, preferences));
+  turn = obstacle ? PETSC_FALSE : ContactChooseSides(&preferences[body[0]], &preferences[body[1]], &why);
   PetscCall(PetscFree(preferences));
   PetscCall(PetscSNPrintf(ordered, sizeof(ordered), "%s:%s", turn ? right : left, turn ? left : right));
   PetscCall(ContactAddPair(contact, ordered));
@@ -251,10 +159,10 @@ PetscErrorCode ContactDestroyPairs(Contact contact)
 }
 
 /* Adds a pair of whole bodies whose sides the user has not chosen */
-static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const Preference preferences[])
+static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const ContactPreference preferences[])
 {
   const char     *why;
-  const PetscBool turn    = ChooseSides(&preferences[first], &preferences[second], &why);
+  const PetscBool turn    = ContactChooseSides(&preferences[first], &preferences[second], &why);
   const PetscInt  body[2] = {turn ? second : first, turn ? first : second};
   ContactPair    *pair;
   char            name[256];
@@ -324,14 +232,14 @@ PetscErrorCode ContactFindDimension(Contact contact)
 /* All bodies with each other and with all obstacles */
 PetscErrorCode ContactAddAllPairs(Contact contact)
 {
-  Preference *preferences;
-  PetscBool   hidden;
+  ContactPreference *preferences;
+  PetscBool          hidden;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
   PetscCall(ContactFindDimension(contact));
   PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
-  PetscCall(GetPreferences(contact, preferences));
+  PetscCall(ContactGetPreferences(contact, preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt b = a + 1; b < contact->n_bodies; b++) {
       PetscCall(IsHidden(contact, a, b, NULL, &hidden));
@@ -354,53 +262,5 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
       pair->obstacle = contact->obstacles[o];
       pair->chosen   = PETSC_TRUE;
     }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* As many bodies as can be in an order in which every Dirichlet side comes before its Neumann side. Methods that prescribe nothing have the
-   user's order. */
-static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
-{
-  PetscBool moved = PETSC_TRUE, *placed;
-
-  PetscFunctionBegin;
-  *done = 0;
-  PetscCall(PetscCalloc1(contact->n_bodies, &placed));
-  while (*done < contact->n_bodies && moved) {
-    moved = PETSC_FALSE;
-    for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      PetscBool ready = (PetscBool)!placed[b];
-
-      for (PetscInt p = 0; p < contact->n_pairs; p++) {
-        const ContactPair *pair  = &contact->pairs[p];
-        const PetscInt     first = pair->turned && !contact->prescribes ? 1 : 0;
-
-        if (pair->body[1 - first] == b && !placed[pair->body[first]]) ready = PETSC_FALSE;
-      }
-      if (!ready) continue;
-      contact->order[(*done)++] = b;
-      placed[b] = moved = PETSC_TRUE;
-    }
-  }
-  PetscCall(PetscFree(placed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Bodies in an order in which every Dirichlet side comes before its Neumann side. Pairs that have been turned round for their finer
-   surface, and form a circle by that, are turned back, the last one first. */
-PetscErrorCode ContactOrderBodies(Contact contact)
-{
-  PetscInt done, last;
-
-  PetscFunctionBegin;
-  PetscCall(FindOrder(contact, &done));
-  for (last = contact->n_pairs - 1; done < contact->n_bodies && last >= 0; last--) {
-    if (!contact->pairs[last].turned || contact->pairs[last].row_side != CONTACT_ROW_SIDE_FINER) continue;
-    ContactTurnPair(&contact->pairs[last]);
-    PetscCall(FindOrder(contact, &done));
-  }
-  PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a "
-             "instead of a:b, or another side in -contact_rows)");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

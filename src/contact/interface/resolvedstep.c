@@ -4,7 +4,7 @@
    an oscillator of two masses, the contact elements of both sides, with a spring between them, the layers of both sides one behind the
    other. For equal sides this is the time that a wave takes through a contact element.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Part of a contact element by which the bodies may close in a step */
 #define CLOSING 0.25

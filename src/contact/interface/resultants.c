@@ -1,5 +1,5 @@
 /* What the contact forces of each pair amount to: resultant, moment, impulse, area. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <checkpoint/checkpoint.h>
 #include <checkpoint/tables.h>
 

@@ -2,7 +2,7 @@
    The size of the problem. Tolerances on lengths and forces have defaults in parts of it, so that a problem given in other units, or made
    smaller as a whole, is solved in the same sweeps and steps and has the same figures but for their scale.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Diameter of the ball about the mean of a body's nodes that has all of them in it [m]: the length of a bar, however it lies in space */
 static PetscErrorCode GetExtent(Body body, PetscReal *extent)

@@ -1,5 +1,5 @@
 /* What part of contact is a rank's own. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /*@
   ContactGetShare - how much of contact lies on this rank

@@ -1,5 +1,5 @@
 /* What is done against chatter, whatever the method: the naive stabilisation. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <sys/citations.h>
 
 const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilized", "ContactStabilization", "CONTACT_STABILIZATION_", NULL};

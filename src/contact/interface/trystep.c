@@ -1,5 +1,5 @@
 /* Controller steps that may fail, and be made again in halves. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 enum { MOST_PAIRS = 3 }; /* that a message names */
 

@@ -1,5 +1,5 @@
 /* Whether forces have the same sum along the normals of both sides. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Chords of angles between the normals of two nodes of a face: from 18 degrees on the face is beside an edge; faces that bend by more than
    11.5 degrees are too coarse: discs of 32 edges keep half of their spin or more */

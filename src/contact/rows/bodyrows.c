@@ -2,7 +2,7 @@
    The rows of each body. A body has rows for its own pairs alone, with numbers of its own, so that what it stores and does goes with these,
    not with the rows of all bodies. On every rank they are in the order of the rows of contact; so both numbers ascend together.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* How many rows each body has on all ranks, and which */
 static PetscErrorCode ListRows(Contact contact)

@@ -4,7 +4,7 @@
    normal row closed with a compressive force, all rows of the node become ties, with the positions that they have there: nothing jumps, so
    that no energy is lost by it. A pair with such a node does not slide any more, and its rows are not built again.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* The direction of row k of a node: its normal, then unit vectors across it */
 void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscReal direction[3])

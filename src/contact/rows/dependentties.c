@@ -7,7 +7,7 @@
    is singular. Only rows that share a node with rows of another pair can be such: of these G is factored row by row, and rows that leave
    nothing of their diagonal are dependent.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* What a dependent row leaves of its diagonal is round-off; a row that differs from others by an angle of 1e-4 leaves this */
 #define DEPENDENT 1e-8

@@ -3,7 +3,7 @@
    from each other than bodies can come in the next controller steps, their rows have no partner: they are neither built again nor looked
    at, and nothing is put aside of them.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Boxes that are farther apart, beyond the reach of a controller step, are far [edges of the contact elements] */
 #define FAR 4

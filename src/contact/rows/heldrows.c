@@ -12,7 +12,7 @@
    The gap of such a row is a mean. If rows may open, the mean must not hide that one of its parts is closed: only rows between parallel
    surfaces are merged, and held nodes without neighbours of that kind are left out.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Surfaces are parallel between two nodes if their gaps differ by less than this part of the distance of the nodes: by half a degree */
 #define PARALLEL 0.01

@@ -1,5 +1,5 @@
 /* The surfaces of a pair, which of their nodes may touch, and the transfer between them. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
 #define FORCE_ROUND_OFF 1e-9

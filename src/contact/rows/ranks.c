@@ -1,5 +1,5 @@
 /* What all ranks agree on. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* A flag that is 1 on any rank becomes 1 on all ranks; it is 0 or 1 before */
 PetscErrorCode ContactOr(Contact contact, int *flag)

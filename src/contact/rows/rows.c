@@ -1,5 +1,5 @@
 /* The rows of all pairs: from surfaces and transfers to matrices. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
 #define NO_COMPONENT 1e-9

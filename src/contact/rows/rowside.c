@@ -1,6 +1,6 @@
 /* Which body of a pair has the contact rows: a row for each of its nodes. Pairs whose second body has them are turned round here, once and
    for all; what users and files see stays in the order in which the user has named the bodies. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Two surfaces are alike if the ratio of the distances between their nodes is above this, so that round-off does not choose the side */
 #define ALIKE 0.999

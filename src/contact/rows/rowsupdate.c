@@ -1,5 +1,5 @@
 /* Rows that are built again as bodies slide and turn, and what becomes of their gaps. */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <sys/stages.h>
 
 /* Shifts of gaps may keep surfaces apart for good by this much [edges of the face]. To take all of a shift back loses energy at each

@@ -7,7 +7,7 @@
    have changed, and find it again. That is the same to the last bit where the rows that change in the halves are those that did in the
    whole step; where the whole step changes more of them, to the round-off of their compliance.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 PetscErrorCode ContactSetUpSavedRows(Contact contact)
 {

@@ -14,7 +14,7 @@
    Otherwise rows that depend on each other are prescribed by least squares, weighted by the areas that the partners cover: see
    BodySetRowWeights(). Of several obstacles with the same normal at a node only the nearest counts.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Squared sine of the angle between a normal and the span of others below which the normal depends on them. For obstacles 0.006 degrees,
    since their rows are let go, and must be closed by the others; for bodies 6 degrees, since two prescribed displacements along normals

@@ -4,7 +4,7 @@
    than it would be to the next node, is neither clearly tied nor clearly apart: it is an error, as are surfaces that overlap and pairs
    that tie nothing.
 */
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 
 /* Nodes farther from the partner than this belong to another part of the surface and are left alone [edges of the face]. A node that is
    nearer and yet not within the tie distance is an error. */

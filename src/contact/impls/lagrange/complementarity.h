@@ -1,7 +1,7 @@
 /* A linear complementarity problem on all rows: 0 <= gaps + C forces, forces >= 0, one of them zero; C is sparse. Private to
    src/contact/impls. */
 #pragma once
-#include <impakt/private/contactimpl.h>
+#include <contact/parts.h>
 #include <contact/activeset/rounds.h>
 #include <contact/compliance/interfaceoperator.h>
 

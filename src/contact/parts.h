@@ -1,0 +1,123 @@
+/* What the folders of src/contact have of each other. Implementations of methods by others need <impakt/private/contactimpl.h> alone. */
+#pragma once
+#include <impakt/private/contactimpl.h>
+
+/* For setters */
+#define ContactCheckNotSetUp(contact)                                                                                                      \
+  PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
+             PETSC_FUNCTION_NAME)
+#define ContactCheckPair(contact, pair)                                                                                                    \
+  PetscCheck((pair) >= 0 && (pair) < (contact)->n_pairs, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_OUTOFRANGE,                \
+             "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, (contact)->n_pairs)
+
+/* What decides which of two bodies takes displacements */
+typedef struct {
+  PetscBool is_explicit;
+  PetscInt  substeps; /* of explicit bodies, about */
+  PetscReal size;     /* edge of its mean element, or of the largest that is alike [m] */
+} ContactPreference;
+
+PETSC_INTERN PetscFunctionList ContactList;
+
+PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
+PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
+PETSC_INTERN PetscErrorCode ContactRefuseInside(Contact, const ContactPair *, PetscReal);
+PETSC_INTERN PetscErrorCode ContactRefuseTurned(Contact, const ContactPair *);
+PETSC_INTERN PetscErrorCode ContactWarnOfObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
+PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactGetPreferences(Contact, ContactPreference[]);
+PETSC_INTERN PetscBool      ContactChooseSides(const ContactPreference *, const ContactPreference *, const char **);
+PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpRows(Contact);
+PETSC_INTERN PetscErrorCode ContactCheckNear(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
+PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactFindSharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroySharedNodes(Contact);
+PETSC_INTERN PetscErrorCode ContactLeaveOutObstacles(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
+PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
+PETSC_INTERN void           ContactArrangeShared(Contact);
+PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
+PETSC_INTERN PetscErrorCode ContactLetTouch(Contact, PetscBool);
+PETSC_INTERN PetscErrorCode ContactSetUpBalance(Contact, ContactPair *);
+PETSC_INTERN PetscErrorCode ContactSetUpTurns(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyTurns(Contact);
+PETSC_INTERN PetscErrorCode ContactTurn(Contact, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactAcceptTurns(Contact);
+PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactTie(Contact);
+PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
+PETSC_INTERN PetscErrorCode ContactTurnMatrix(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode ContactBond(Contact);
+PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
+PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
+PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
+PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
+PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
+PETSC_INTERN PetscErrorCode ContactMoveSurfaces(Contact);
+PETSC_INTERN PetscErrorCode ContactFindFarPairs(Contact, PetscReal);
+PETSC_INTERN PetscErrorCode ContactCreateSurfaces(Contact, ContactPair *, PetscReal *);
+PETSC_INTERN PetscErrorCode ContactChooseRowSide(Contact, ContactPair *);
+PETSC_INTERN void           ContactTurnPair(ContactPair *);
+PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
+PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyBodyRows(Contact);
+PETSC_INTERN void           ContactAffectAll(Contact);
+PETSC_INTERN void           ContactForgetMatrices(Contact);
+PETSC_INTERN PetscErrorCode ContactCopyAreas(Contact);
+PETSC_INTERN PetscErrorCode ContactUpdateBodies(Contact, const PetscBool[]);
+PETSC_INTERN PetscErrorCode ContactCreateRowVec(Contact, Vec *);
+PETSC_INTERN PetscErrorCode ContactCreateRowMatrix(Contact, Mat *);
+PETSC_INTERN PetscErrorCode ContactAddBodyMatrix(Contact, PetscInt, Mat, Mat);
+PETSC_INTERN PetscErrorCode ContactMarkNodes(Contact, const ContactPair *);
+PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
+PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
+PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
+PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSavedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroySavedRows(Contact);
+PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
+PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
+PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
+PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
+PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact);
+PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);
+PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
+
+PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactNoteRebuild(Contact);
+PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactNoteLevel(Contact);
+PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpFloating(Contact);
+PETSC_INTERN PetscErrorCode ContactMakeStep(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyFloating(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
+PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
+PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
+PETSC_INTERN PetscErrorCode ContactVisitImpulses(Contact, Checkpoint);
+PETSC_INTERN PetscErrorCode ContactPackImpulses(Contact, Tables);
+PETSC_INTERN PetscErrorCode ContactUnpackImpulses(Contact, Tables);
+PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
+
+PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
+PETSC_INTERN PetscErrorCode ContactRefuseUnstable(Contact, PetscBool, const char[]);
+PETSC_INTERN PetscErrorCode ContactHasMass(Contact, PetscBool, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactStabilize(Contact);
+
+PETSC_INTERN PetscErrorCode ContactCreate_Schwarz(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_Penalty(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_Lagrange(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_AugmentedLagrangian(Contact);
