@@ -69,7 +69,28 @@ PetscErrorCode MeshReadContact(MPI_Comm comm, const char prefix[], const char na
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the sides of a box that may touch another body. A name that no side has is left to those who look for the surface in the mesh. */
+/* Surfaces that the user has named must be there, on any number of ranks */
+PetscErrorCode MeshCheckContact(DM dm, const char prefix[])
+{
+  char   **names;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(NamesRead(prefix, "-mesh_contact_surfaces", &n, &names, NULL));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool has;
+
+    PetscCall(MeshHasSurface(dm, names[i], &has));
+    PetscCheck(has, PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,
+               "-%smesh_contact_surfaces: the mesh has no surface '%s'; give names of surfaces as in -contact_pairs, with commas between "
+               "them",
+               prefix, names[i]);
+  }
+  PetscCall(NamesDestroy(n, &names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the sides of a box that may touch another body. Names that the mesh does not have MeshCheckContact() finds. */
 PetscErrorCode MeshBoxMarkContact(MPI_Comm comm, const char prefix[], const char name[], MeshBox *box)
 {
   const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};

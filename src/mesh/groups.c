@@ -191,6 +191,19 @@ PetscErrorCode MeshMarkSides(DM dm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a mesh has a surface of that name, with faces on its boundary or not */
+PetscErrorCode MeshHasSurface(DM dm, const char name[], PetscBool *has)
+{
+  Selection selection = {.side = -1};
+  PetscInt  dim;
+
+  PetscFunctionBegin;
+  PetscCall(FindLabel(dm, name, "Face Sets", &selection, has));
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  for (PetscInt side = 0; side < 2 * dim && !*has; side++) PetscCall(PetscStrcmp(name, sides[side], has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
   MeshGetSurface - faces of a mesh's boundary by the name of a surface
 

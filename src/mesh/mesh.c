@@ -183,6 +183,7 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   PetscCall(DMSetFromOptions(*dm)); /* distributes it */
   PetscCall(PetscObjectSetName((PetscObject)*dm, name));
   if (!from_file) PetscCall(MeshMarkSides(*dm));
+  PetscCall(MeshCheckContact(*dm, prefix));
   PetscCall(MeshPlace(*dm, prefix, name));
   PetscCall(DMViewFromOptions(*dm, NULL, "-dm_view"));
   PetscFunctionReturn(PETSC_SUCCESS);

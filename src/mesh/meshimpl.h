@@ -91,6 +91,8 @@ PETSC_INTERN PetscErrorCode MeshOnFirstRank(MPI_Comm, PetscErrorCode (*)(void *)
 PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], DM *, PetscBool *);
 PETSC_INTERN PetscInt       MeshBoxSideNumber(PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode MeshHasSurface(DM, const char[], PetscBool *);
+PETSC_INTERN PetscErrorCode MeshCheckContact(DM, const char[]);
 PETSC_INTERN PetscErrorCode MeshReadContact(MPI_Comm, const char[], const char[], PetscInt *, char ***, PetscReal *);
 PETSC_INTERN PetscErrorCode MeshFindSurface(DM, const char[], PetscBool, PetscInt *, PetscInt *[]);
 PETSC_INTERN PetscErrorCode MeshSpreadContact(DM, const char[], const char[], PetscBool);

@@ -58,7 +58,8 @@ LONG = [
     ("-options_file options/bouncing-bar.opts", 2, 0.55),
     ("-options_file options/cantilever-tied.opts", 1, 0.55),
     ("-options_file options/impact-solids.opts", 1, 0.55),
-    ("-options_file options/peer-bars.opts", 3, 0.55),
+    # divided such that no node lies on three ranks, where sums of matrices are as they come; else the run says that bits are not kept
+    ("-options_file options/peer-bars.opts -left_mesh_contact_cost 0 -right_mesh_contact_cost 0", 3, 0.55),
     ("-options_file options/sliding-flat.opts", 1, 0.55),
     ("-options_file options/hertz-cylinder.opts", 1, 0.55),
     ("-options_file options/stack.opts -time_end 0.05", 2, 0.55),

@@ -164,7 +164,7 @@ PetscErrorCode BodyEstimateSubsteps(Body body, PetscReal transit, PetscReal step
   if (!is_explicit || !(transit > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   substep = body->time.requested_step;
   if (substep <= 0) substep = step <= STABLE_PART * transit && substep == 0 ? step : 0.9 * STABLE_PART * transit;
-  if (step / substep < PETSC_INT_MAX / 2) *substeps = PetscMax(1, (PetscInt)PetscCeilReal(step / substep * (1 - 1e-6)));
+  if (step / substep < 0.5 * PETSC_INT_MAX) *substeps = PetscMax(1, (PetscInt)PetscCeilReal(step / substep * (1 - 1e-6)));
   else *substeps = PETSC_INT_MAX / 2;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
