@@ -72,21 +72,22 @@ PetscErrorCode MeshReadContact(MPI_Comm comm, const char prefix[], const char na
 /* Surfaces that the user has named must be there, on any number of ranks */
 PetscErrorCode MeshCheckContact(DM dm, const char prefix[])
 {
-  char   **names;
+  char   **names, missing[PETSC_MAX_OPTION_NAME] = "";
   PetscInt n;
 
   PetscFunctionBegin;
   PetscCall(NamesRead(prefix, "-mesh_contact_surfaces", &n, &names, NULL));
-  for (PetscInt i = 0; i < n; i++) {
+  for (PetscInt i = 0; i < n && !missing[0]; i++) {
     PetscBool has;
 
     PetscCall(MeshHasSurface(dm, names[i], &has));
-    PetscCheck(has, PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,
-               "-%smesh_contact_surfaces: the mesh has no surface '%s'; give names of surfaces as in -contact_pairs, with commas between "
-               "them",
-               prefix, names[i]);
+    if (!has) PetscCall(PetscStrncpy(missing, names[i], sizeof(missing)));
   }
   PetscCall(NamesDestroy(n, &names));
+  PetscCheck(
+      !missing[0], PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,
+      "-%smesh_contact_surfaces: the mesh has no surface '%s'; give names of surfaces as in -contact_pairs, with commas between them",
+      prefix, missing);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

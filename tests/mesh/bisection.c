@@ -61,14 +61,12 @@ static void options_go_first(void **state)
   ok(DMDestroy(&dm));
 }
 
-/* All around a ball normals look everywhere, and a surface that there is not is left to whoever asks for it: both are divided as a graph.
-   Cells fewer than ranks are too. */
+/* All around a ball normals look everywhere: it is divided as a graph, and so are cells fewer than ranks */
 static void others_are_graphs(void **state)
 {
   const char *const ways[]  = {"-dm_plex_shape ball -ball_divisions 2 -mesh_contact_surfaces surface",
-                               "-dm_plex_shape ball -ball_divisions 2 -mesh_contact_surfaces nowhere,7,depth",
                                "-dm_plex_shape box -dm_plex_simplex 1 -dm_plex_box_faces 1,1 -mesh_contact_surfaces xmin"};
-  const PetscInt    cells[] = {12, 12, 2};
+  const PetscInt    cells[] = {12, 2};
 
   (void)state;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(ways); i++) {
@@ -80,12 +78,23 @@ static void others_are_graphs(void **state)
   }
 }
 
+/* A surface that there is not, a name of PETSc's own labels among them, is named, on any number of ranks and on any mesh */
+static void surfaces_must_be_there(void **state)
+{
+  (void)state;
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_contact_surfaces|no surface 'nowhere'|-contact_pairs",
+               "-dm_plex_dim 2 -dm_plex_shape ball -ball_divisions 2 -mesh_contact_surfaces surface,nowhere");
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_contact_surfaces|no surface '7'", "-dm_plex_dim 2 -mesh_contact_surfaces 7");
+  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_contact_surfaces|no surface 'depth'", "-dm_plex_dim 3 -mesh_contact_surfaces zmax,depth");
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(faces_of_a_bar_are_spread),
       cmocka_unit_test(options_go_first),
       cmocka_unit_test(others_are_graphs),
+      cmocka_unit_test(surfaces_must_be_there),
   };
 
   return impakt_main(argc, argv, tests);
