@@ -109,6 +109,7 @@ PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
+PETSC_EXTERN PetscErrorCode BodyGetComplianceMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
 PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);

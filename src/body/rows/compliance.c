@@ -258,6 +258,36 @@ PetscErrorCode BodyGetLayerMatrices(Body body, Mat *stiffness, Mat *rows)
 }
 
 /*@
+  BodyGetComplianceMatrices - what makes up the compliance of the rows of a body with one substep
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ matrix - A, the effective matrix of an implicit body or the stiffness of the layer by which an explicit one answers [N/m]; `NULL` where
+           rows answer otherwise
+- rows   - B, the rows on its dofs, without held ones; or `NULL`
+
+  Level: developer
+
+  Note:
+  The compliance is B A^{-1} B^T. Both matrices are owned by the body, as those of `BodyGetLayerMatrices()` are.
+
+.seealso: `Body`, `BodyApplyCompliance()`, `BodyGetLayerMatrices()`
+@*/
+PetscErrorCode BodyGetComplianceMatrices(Body body, Mat *matrix, Mat *rows)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (matrix) *matrix = NULL;
+  if (rows) *rows = NULL;
+  if (body->solver && body->time.substeps == 1) PetscCall(ConstrainedSolverGetMatrices(body->solver, matrix, rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyCountUnknown - how many of some rows its compliance does not know yet
 
   Not Collective

@@ -5,7 +5,8 @@
 
 #define INTERFACE_MAPS 4
 
-typedef struct _n_InterfaceDirect *InterfaceDirect;
+typedef struct _n_InterfaceDirect         *InterfaceDirect;
+typedef struct _n_InterfacePreconditioner *InterfacePreconditioner;
 
 struct _n_InterfaceOperator {
   Contact           contact; /* borrowed */
@@ -31,9 +32,10 @@ struct _n_InterfaceOperator {
   PetscScalar    *diagonal; /* added to that of S, less than 0 on rows that are not solved for at present */
   InterfaceDirect direct;   /* sparse factors; NULL: the bodies do not answer by massless layers alone, or factors are not wanted */
   /* conjugate gradients */
-  KSP            iterative;
-  Vec            unknown, rhs;
-  Vec           *on_bodies;                         /* per body two, of its rows; NULL where it does not feel forces */
+  InterfacePreconditioner preconditioner; /* NULL: the diagonal alone */
+  KSP                     iterative;
+  Vec                     unknown, rhs;
+  Vec                    *on_bodies;                /* per body two, of its rows; NULL where it does not feel forces */
   PetscLogDouble product_flops, spent, dense_flops; /* of one product; of all iterations so far; of dense matrices that are put off, or 0 */
 };
 
@@ -42,11 +44,17 @@ PETSC_INTERN PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator, Pet
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceDirectCreate(InterfaceOperator, InterfaceDirect *);
 PETSC_INTERN PetscErrorCode InterfaceDirectDestroy(InterfaceDirect *);
 PETSC_INTERN void           InterfaceDirectForget(InterfaceDirect);
 PETSC_INTERN PetscErrorCode InterfaceDirectSolve(InterfaceOperator, const PetscScalar[], PetscScalar[], PetscBool *);
+
+PETSC_INTERN PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator, InterfacePreconditioner *);
+PETSC_INTERN PetscErrorCode InterfacePreconditionerDestroy(InterfacePreconditioner *);
+PETSC_INTERN PetscErrorCode InterfacePreconditionerUpdate(InterfaceOperator);
+PETSC_INTERN PetscErrorCode InterfacePreconditionerApply(PC, Vec, Vec);
 
 PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceOperator, Checkpoint);
 

@@ -21,6 +21,7 @@ PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator op)
 {
   PetscFunctionBegin;
   PetscCall(KSPDestroy(&op->iterative));
+  PetscCall(InterfacePreconditionerDestroy(&op->preconditioner));
   PetscCall(VecDestroy(&op->unknown));
   PetscCall(VecDestroy(&op->rhs));
   for (PetscInt k = 0; op->on_bodies && k < 2 * op->contact->n_bodies; k++) PetscCall(VecDestroy(&op->on_bodies[k]));
@@ -112,7 +113,8 @@ static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateIterative(InterfaceOperator op)
+/* In the set-up, so that its options are read there */
+PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator op)
 {
   const Contact contact = op->contact;
   MPI_Comm      comm    = PetscObjectComm((PetscObject)contact);
@@ -129,7 +131,14 @@ static PetscErrorCode CreateIterative(InterfaceOperator op)
   PetscCall(KSPSetOperators(op->iterative, shell, shell));
   PetscCall(KSPSetType(op->iterative, KSPCG));
   PetscCall(KSPGetPC(op->iterative, &pc));
-  PetscCall(PCSetType(pc, PCJACOBI));
+  if (op->settings.precondition && !op->matrix && contact->rows.n_all > op->settings.dense_limit)
+    PetscCall(InterfacePreconditionerCreate(op, &op->preconditioner));
+  if (op->preconditioner) {
+    PetscCall(PCSetType(pc, PCSHELL));
+    PetscCall(PCShellSetContext(pc, op));
+    PetscCall(PCShellSetApply(pc, InterfacePreconditionerApply));
+    PetscCall(PCShellSetName(pc, "what the Dirichlet sides answer with, near the surface"));
+  } else PetscCall(PCSetType(pc, PCJACOBI));
   PetscCall(KSPSetNormType(op->iterative, KSP_NORM_UNPRECONDITIONED));
   PetscCall(KSPSetInitialGuessNonzero(op->iterative, op->settings.warm));
   PetscCall(KSPSetTolerances(op->iterative, op->settings.tolerance, 0, PETSC_CURRENT, MAX_ITERATIONS));
@@ -170,7 +179,8 @@ PetscErrorCode InterfaceOperatorIterate(InterfaceOperator op, const PetscScalar 
   PetscScalar       *values;
 
   PetscFunctionBegin;
-  if (!op->iterative) PetscCall(CreateIterative(op));
+  if (!op->iterative) PetscCall(InterfaceOperatorCreateIterative(op));
+  PetscCall(InterfacePreconditionerUpdate(op));
   PetscCall(VecGetArrayWrite(op->rhs, &values));
   for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = InterfaceIsIn(op, i) ? x[i] : 0;
   PetscCall(VecRestoreArrayWrite(op->rhs, &values));

@@ -14,6 +14,7 @@ PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings 
   PetscCall(PetscCalloc3(contact->rows.n, &op->marks, contact->rows.n, &op->diagonal, contact->n_bodies, &op->feels));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
   if (settings->direct) PetscCall(InterfaceDirectCreate(op, &op->direct));
+  if (contact->rows.n_all > PetscMin(settings->few, settings->dense_limit)) PetscCall(InterfaceOperatorCreateIterative(op));
   *operator= op;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

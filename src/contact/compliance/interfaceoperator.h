@@ -29,7 +29,9 @@ typedef struct {
   PetscInt    few;         /* up to which they are so from the start */
   PetscReal   at_once;     /* the same where they cost no more than so many products */
   PetscBool   warm;        /* conjugate gradients begin with what the solution is before */
-  PetscBool   direct;      /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
+  PetscBool
+      precondition; /* conjugate gradients by what the Dirichlet sides answer with, where these are linear and rows beyond dense_limit */
+  PetscBool direct; /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
 } InterfaceSettings;
 
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreate(Contact, const InterfaceSettings *, InterfaceOperator *);

@@ -91,23 +91,33 @@ static PetscErrorCode MarkUnshared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether both sides of a pair answer by massless layers alone */
-static PetscErrorCode AnswersByLayers(Contact contact, const ContactPair *pair, PetscBool *answers)
+/* Whether the forces of a pair are to be unknowns: both sides answer by massless layers alone, or are linear bodies of one substep whose
+   rows are too many for dense matrices */
+static PetscErrorCode PairPrefersForces(Contact contact, const ContactPair *pair, PetscBool *prefers)
 {
-  PetscFunctionBegin;
-  *answers = PETSC_TRUE;
-  for (PetscInt side = 0; side < 2; side++) {
-    Mat K;
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  PetscBool      large   = (PetscBool)(contact->rows.n_all > schwarz->dense_limit);
 
-    PetscCall(BodyGetLayerMatrices(contact->bodies[pair->body[side]], &K, NULL));
-    if (!K) *answers = PETSC_FALSE;
+  PetscFunctionBegin;
+  *prefers = PETSC_TRUE;
+  for (PetscInt side = 0; side < 2; side++) {
+    const Body body = contact->bodies[pair->body[side]];
+    Mat        K;
+    PetscBool  exact, feels;
+    PetscInt   substeps;
+
+    PetscCall(BodyGetLayerMatrices(body, &K, NULL));
+    PetscCall(BodyComplianceIsExact(body, &exact));
+    PetscCall(BodyFeelsEndForce(body, &feels));
+    PetscCall(BodyGetSubsteps(body, &substeps));
+    if (!K && !(large && exact && feels && substeps == 1)) *prefers = PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's method finds forces as well as displacements. Where there are many rows, a massless layer under given forces takes one solution
-   with its factors, and one with prescribed displacements as many as conjugate gradients make: there the forces of pairs of layers become
-   the unknowns. */
+/* Newton's method finds forces as well as displacements. Where there are many rows, a body under given forces takes one solution with its
+   factors, or with those of its massless layer, and one with prescribed displacements as many as conjugate gradients make: there forces
+   become the unknowns. */
 PetscErrorCode SchwarzPreferForces(Contact contact)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
@@ -120,7 +130,7 @@ PetscErrorCode SchwarzPreferForces(Contact contact)
     ContactPair *pair = &contact->pairs[p];
 
     if (pair->obstacle || pair->by_force) continue;
-    PetscCall(AnswersByLayers(contact, pair, &pair->by_force));
+    PetscCall(PairPrefersForces(contact, pair, &pair->by_force));
     for (PetscInt i = pair->begin; i < pair->end; i++) contact->rows.by_force[i] = pair->by_force;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

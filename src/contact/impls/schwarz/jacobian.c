@@ -355,12 +355,13 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 PetscErrorCode SchwarzCreateJacobian(Contact contact)
 {
   Schwarz                *schwarz  = (Schwarz *)contact->data;
-  const InterfaceSettings settings = {.prefix      = "schwarz_interface_",
-                                      .tolerance   = FORCE_TOLERANCE,
-                                      .dense_limit = schwarz->dense_limit,
-                                      .few         = PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit),
-                                      .at_once     = AT_ONCE,
-                                      .direct      = PETSC_TRUE};
+  const InterfaceSettings settings = {.prefix       = "schwarz_interface_",
+                                      .tolerance    = FORCE_TOLERANCE,
+                                      .dense_limit  = schwarz->dense_limit,
+                                      .few          = PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit),
+                                      .at_once      = AT_ONCE,
+                                      .precondition = PETSC_TRUE,
+                                      .direct       = PETSC_TRUE};
 
   PetscFunctionBegin;
   schwarz->stale = PETSC_TRUE;
