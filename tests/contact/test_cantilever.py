@@ -217,7 +217,7 @@ SWEEPS = {
     "aitken-massless-finer": (f"-schwarz_relaxation aitken {MASSLESS} {FINER}", 24),
     "aitken-unequal": ("-schwarz_relaxation aitken -clamped_ts_time_step 5e-7", 30),
     "aitken-unequal-mixed": (f"-schwarz_relaxation aitken {PAIRINGS['IE']} -clamped_ts_time_step 5e-7", 30),
-    "robin-unequal": ("-schwarz_transmission robin -clamped_ts_time_step 5e-7", 12),
+    "robin-unequal": ("-schwarz_transmission robin -clamped_ts_time_step 5e-7 -contact_allow_unstable true", 12),
     "robin": ("-schwarz_transmission robin", 8),
     "robin-finer": (f"-schwarz_transmission robin {FINER}", 13),
     "robin-massless": (f"-schwarz_transmission robin {MASSLESS}", 13),

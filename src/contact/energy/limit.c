@@ -13,7 +13,8 @@
    1. rows that leave start with x = s l0, the largest s in [0, 1] that keeps the energy within the room;
    2. where s = 0 does not, x of all rows goes to l1, which gives dE = l1 dg - 1/2 (l1 - l0) C (l1 - l0) <= 0 at any step. As l1 answers to
       x, it is approached by halves: the answer is minus a part of x between 0 and 1, so that what is missing at least halves each time;
-   3. the last half may take far more energy than has been too much. So x goes back towards the half before, as far as the room allows.
+   3. the last half may take far more energy than has been too much. So x goes back towards the half before until the step takes nothing,
+      and leaves the room to later steps: with all of it used up at once more of them were limited, and for some there was no start.
 
    Any x is a step in which the gaps hold at the end, and momentum. So the first attempt that is within the room is as good as the limit. In
    the energies themselves, which attempts are compared by, the errors of the bodies' own integrators cancel.
@@ -146,10 +147,10 @@ static void StartHalfWay(Contact contact, PetscInt g)
 }
 
 /* Where to look next: energies are nearly a parabola, so that a secant finds its way; well inside the bracket */
-static PetscReal NextPart(const ContactSearch *search, PetscReal room)
+static PetscReal NextPart(const ContactSearch *search, PetscReal aim)
 {
   const PetscReal slope = (search->gain[1] - search->gain[0]) / (search->high - search->low);
-  const PetscReal part = search->low + (room - search->gain[0]) / slope * (1 - 0.5 * PART_LEFT), width = search->high - search->low;
+  const PetscReal part = search->low + (aim - search->gain[0]) / slope * (1 - 0.5 * PART_LEFT), width = search->high - search->low;
 
   return PetscMin(PetscMax(part, search->low + 0.05 * width), search->high - 0.05 * width);
 }
@@ -173,21 +174,22 @@ static PetscErrorCode TakeMoreAway(Contact contact, PetscInt g)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Looks between a start that is within the room and one that is not, in the last attempt with `part`, for the one that leaves least of the
-   room */
-static void LookBetween(Contact contact, PetscInt g, void (*start)(Contact, PetscInt, PetscReal))
+/* Looks between a start with which contact gains at most `aim` and one with which it gains more, in the last attempt with `part`, for the
+   one that comes nearest to it from below */
+static void LookBetween(Contact contact, PetscInt g, PetscReal aim, void (*start)(Contact, PetscInt, PetscReal))
 {
-  ContactSearch  *search = &contact->energy.search[g];
-  const PetscReal room = ContactGroupRoom(contact, g), gain = contact->energy.group_work[g];
-  const PetscBool too_much = GainsTooMuch(contact, g);
-  const PetscReal excess   = search->gain[1] - room;
+  ContactSearch  *search   = &contact->energy.search[g];
+  const PetscReal gain     = contact->energy.group_work[g];
+  const PetscBool too_much = (PetscBool)(gain > aim + ROUND_OFF * contact->energy.scale);
+  const PetscReal excess   = search->gain[1] - aim;
 
   search->gain[too_much ? 1 : 0]             = gain;
   *(too_much ? &search->high : &search->low) = search->part;
-  if (search->tries < MAX_PARTS && (too_much || room - gain > PART_LEFT * excess)) (*start)(contact, g, NextPart(search, room));
+  if (search->tries < MAX_PARTS && (too_much || aim - gain > PART_LEFT * excess)) (*start)(contact, g, NextPart(search, aim));
   else if (too_much && search->tries <= MAX_PARTS) (*start)(contact, g, search->low);
-  else if (too_much) { /* with other groups that have joined this one, `low` is no longer within the room */ search->stage = 2;
-    search->tries                                                                                                          = 0;
+  else if (GainsTooMuch(contact, g)) { /* with other groups that have joined this one, `low` is no longer within the room */
+    search->stage = 2;
+    search->tries = 0;
     StartHalfWay(contact, g);
   } else search->done = PETSC_TRUE;
 }
@@ -209,16 +211,16 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
     PetscCall(TakeMoreAway(contact, g));
   } else if (search->stage == 1) {
     if (search->low < 0 && too_much) PetscCall(TakeMoreAway(contact, g));
-    else LookBetween(contact, g, StartWithPart);
+    else LookBetween(contact, g, ContactGroupRoom(contact, g), StartWithPart);
   } else if (search->stage == 2 && too_much) {
     search->gain[1] = gain;
     if (search->tries < MAX_HALVES) StartHalfWay(contact, g);
     else search->done = PETSC_TRUE;
   } else if (search->stage == 2 && !search->returned) {
     *search = (ContactSearch){.stage = 3, .high = 1, .gain = {gain, search->gain[1]}, .returned = PETSC_TRUE};
-    LookBetween(contact, g, StartOnWayBack);
+    LookBetween(contact, g, 0, StartOnWayBack);
   } else if (search->stage == 3) {
-    LookBetween(contact, g, StartOnWayBack);
+    LookBetween(contact, g, 0, StartOnWayBack);
   } else search->done = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
