@@ -144,16 +144,16 @@ def test_start_as_told(shared_run):
     assert loss[1] == pytest.approx(-3.7e-3, rel=0.1) and np.abs(loss[1:] - loss[1]).max() <= 1e-12
 
 
-# Substeps of one half where the other makes the controller step of 1e-6 s; bound on the energy in 50 steps. Measured: 2e-12 (implicit), 1.1e-6, 1.3e-6 and
-# 4e-7 (explicit), whose staggered energy is not that of the force's mean
+# Substeps of one half where the other makes the controller step of 1e-6 s; bound on the energy in 50 steps. Measured: 2e-12 (implicit) and 1e-8
+# (explicit), whose staggered energy sways with the force's mean, by terms of the fourth order of the step
 UNEQUAL = {
     "II-clamped-2": ("-clamped_ts_time_step 5e-7", 1e-10),
     "II-clamped-4": ("-clamped_ts_time_step 2.5e-7", 1e-10),
     "II-free-3": ("-free_ts_time_step 3.3333333333333335e-7", 1e-10),
-    "IE-clamped-2": (f"{PAIRINGS['IE']} -clamped_ts_time_step 5e-7", 1e-5),
+    "IE-clamped-2": (f"{PAIRINGS['IE']} -clamped_ts_time_step 5e-7", 1e-7),
     "EI-clamped-2": (f"{PAIRINGS['EI']} -clamped_ts_time_step 5e-7", 1e-10),
-    "EE-clamped-2": (f"{PAIRINGS['EE']} -clamped_ts_time_step 5e-7", 1e-5),
-    "EI-free-2": (f"{PAIRINGS['EI']} -free_ts_time_step 5e-7", 1e-5),
+    "EE-clamped-2": (f"{PAIRINGS['EE']} -clamped_ts_time_step 5e-7", 1e-7),
+    "EI-free-2": (f"{PAIRINGS['EI']} -free_ts_time_step 5e-7", 1e-7),
 }
 
 
@@ -164,7 +164,7 @@ def test_unequal_steps(case, pairs, shared_run):
     options, bound = UNEQUAL[case]
     run = shared_run(f"{TIED} {options} -contact_pairs {pairs} -time_end 5e-5")
     change = energy_changes(run)
-    assert np.abs(change).max() <= bound and change.max() <= 1e-7
+    assert np.abs(change).max() <= bound
     if pairs == PAIRS[0]:
         assert momentum_gap(run) <= 1e-11
     assert run.summary["schwarz"]["max"] <= 6
@@ -187,11 +187,20 @@ def test_finest_mesh(kind, step, impakt):
     assert np.abs(energy_changes(run)).max() <= 5e-12
 
 
-# Measured: 7e-11 in 10 ms (II); what explicit substeps take, 8e-4 in 10 ms, never anything that they bring
-@pytest.mark.parametrize("case, end, bound", long(("II-clamped-2", 2e-3, 1e-9), ("EE-clamped-2", 1e-2, 1e-3), ("EI-free-2", 1e-2, 1e-3)))
+# Measured: 7e-11 in 10 ms (II), 1.5e-6 (EE), 1.1e-6 (EI), reached within 2 ms, and 1.8e-9 (EE) in 2 ms at a fifth of the step
+@pytest.mark.parametrize("case, end, bound", long(("II-clamped-2", 2e-3, 1e-9), ("EE-clamped-2", 1e-2, 3e-6), ("EI-free-2", 1e-2, 3e-6)))
 def test_unequal_steps_for_long(case, end, bound, impakt):
     change = energy_changes(impakt(f"{TIED} {UNEQUAL[case][0]} -time_end {end}", timeout=1800))
-    assert np.abs(change).max() <= bound and change.max() <= 1e-6
+    assert np.abs(change).max() <= bound
+
+
+def test_unequal_explicit_steps_converge(shared_run):
+    """What the energy of explicit halves sways by falls with the fourth power of the step."""
+    changes = []
+    for step in (1e-6, 5e-7):
+        run = shared_run(f"{TIED} {PAIRINGS['EE']} -time_step {step} -clamped_ts_time_step {step / 2} -time_end 2e-4")
+        changes.append(np.abs(energy_changes(run)).max())
+    assert changes[0] <= 5e-7 and changes[1] <= changes[0] / 10  # measured: 3.3e-7 and 2e-8
 
 
 def test_first_state(shared_run):
@@ -217,7 +226,7 @@ SWEEPS = {
     "aitken-massless-finer": (f"-schwarz_relaxation aitken {MASSLESS} {FINER}", 24),
     "aitken-unequal": ("-schwarz_relaxation aitken -clamped_ts_time_step 5e-7", 30),
     "aitken-unequal-mixed": (f"-schwarz_relaxation aitken {PAIRINGS['IE']} -clamped_ts_time_step 5e-7", 30),
-    "robin-unequal": ("-schwarz_transmission robin -clamped_ts_time_step 5e-7", 12),
+    "robin-unequal": ("-schwarz_transmission robin -clamped_ts_time_step 5e-7 -contact_allow_unstable true", 12),
     "robin": ("-schwarz_transmission robin", 8),
     "robin-finer": (f"-schwarz_transmission robin {FINER}", 13),
     "robin-massless": (f"-schwarz_transmission robin {MASSLESS}", 13),

@@ -21,7 +21,7 @@ METHODS = {
     "anderson": f"{AVERAGED} -schwarz_snes_type anderson",
     "nrichardson": f"{AVERAGED} -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5",
     "robin": f"{AVERAGED} -schwarz_transmission robin",
-    "impedance-IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED} -schwarz_transmission impedance",
+    "impedance-IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED} -schwarz_transmission impedance -contact_allow_unstable true",
     "paper": f"{WITH_MASS} -schwarz_snes_type nrichardson",
     "penalty": f"{AVERAGED} -contact_type penalty -contact_penalty {{penalty}}",
     "penalty-explicit": f"{BOTH_EXPLICIT} -contact_type penalty -contact_penalty {{penalty}}",

@@ -45,7 +45,9 @@ def test_other_steps(step, sides, shared_run):
     assert run.summary["bodies"]["striker"]["substeps"] > run.summary["bodies"]["target"]["substeps"]
     assert run.summary["system"]["momentum_error_max"] <= 1e-12
     assert run.summary["system"]["energy_error_max"] <= 2e-3
-    # at 1.9e-6 s the row that leaves last would gain energy: that step begins with less force, which costs 2.7 % of the impulse and 3.7 % of the energy
-    limited = run.summary["schwarz"]["limited_steps"]
-    assert limited <= 1
-    assert run.summary["contact"]["impulse"] == pytest.approx(1.361, rel=0.03 if limited else 0.01)
+    # from 1.9e-6 s on the first step would gain energy, and others after it, which then begin with as little less force as is needed; measured: 1 to 11
+    # of them, 0.4 % of the impulse at most, and 0.82 % of the energy
+    assert run.summary["schwarz"]["limited_steps"] <= 12
+    assert run.summary["schwarz"]["unlimited_steps"] == 0
+    assert worst_energy_error(run.summary) <= 0.01
+    assert run.summary["contact"]["impulse"] == pytest.approx(1.361, rel=0.01)

@@ -237,10 +237,11 @@ typedef struct {
 
 /* The search for a start of the step that keeps the energy of a group of bodies within its room, see src/contact/energy/limit.c */
 typedef struct {
-  PetscInt  stage;     /* 0: not limited; 1: rows that leave start with less force; 2: all rows start with what they end with */
+  PetscInt  stage;     /* see limit.c */
   PetscInt  tries;     /* of this stage */
   PetscBool done;      /* the last attempt is the step */
-  PetscReal part;      /* of the force that leaving rows start with in the last attempt */
+  PetscBool returned;  /* it has been looked for between the last two halves already */
+  PetscReal part;      /* of the force that leaving rows start with in the last attempt, or of the way back to the half before */
   PetscReal low, high; /* parts with which the energy stays within the room, and does not */
   PetscReal gain[2];   /* energy that contact has brought with them [J] */
 } ContactSearch;
@@ -277,6 +278,8 @@ typedef struct {
   PetscReal     *last_stored;             /* per row: what springs had stored then [J] */
   PetscReal     *start_force;             /* per row: that with which the step begins instead [N] */
   PetscReal     *rest;                    /* per row: the part that remains of what goes over from it as it was before it changed */
+  PetscReal     *half_force, *half_rest;  /* per row: the same in the last attempt by halves that is within the room */
+  PetscReal     *gain_force, *gain_rest;  /* per row: the same in the one before, which has gained too much */
   PetscReal     *last, *now;              /* work space, per row */
   PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                  /* per group, by its first body */

@@ -38,6 +38,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
     PetscCall(BodyCheckSubstep(body));
     if (body->failure.reason < 0) break;
+    if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyEndMeanForce(body));
     PetscCall((*body->integrator->ops.finishsubstep)(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));
     if (body->time.substeps > 1) {

@@ -318,6 +318,7 @@ PETSC_INTERN PetscErrorCode BodySetHandoverRest(Body, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyAddStoppedHandover(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyTurnToMeanForce(Body);
+PETSC_INTERN PetscErrorCode BodyEndMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);

@@ -12,7 +12,9 @@
 
    1. rows that leave start with x = s l0, the largest s in [0, 1] that keeps the energy within the room;
    2. where s = 0 does not, x of all rows goes to l1, which gives dE = l1 dg - 1/2 (l1 - l0) C (l1 - l0) <= 0 at any step. As l1 answers to
-      x, it is approached by halves: the answer is minus a part of x between 0 and 1, so that what is missing at least halves each time.
+      x, it is approached by halves: the answer is minus a part of x between 0 and 1, so that what is missing at least halves each time;
+   3. the last half may take far more energy than has been too much. So x goes back towards the half before until the step takes nothing,
+      and leaves the room to later steps: with all of it used up at once more of them were limited, and for some there was no start.
 
    Any x is a step in which the gaps hold at the end, and momentum. So the first attempt that is within the room is as good as the limit. In
    the energies themselves, which attempts are compared by, the errors of the bodies' own integrators cancel.
@@ -112,6 +114,19 @@ static void StartWithPart(Contact contact, PetscInt g, PetscReal part)
     }
 }
 
+/* All rows of a group start a part of the way from the last attempt by halves to the one before */
+static void StartOnWayBack(Contact contact, PetscInt g, PetscReal part)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  energy->search[g].part = part;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g) {
+      energy->start_force[i] = energy->half_force[i] + part * (energy->gain_force[i] - energy->half_force[i]);
+      energy->rest[i]        = energy->half_rest[i] + part * (energy->gain_rest[i] - energy->half_rest[i]);
+    }
+}
+
 /* All rows of a group start half way from what they have started with to what they have ended with, but for a pull on rows that are not
    tied, and with half of what goes over from the rows as they were */
 static void StartHalfWay(Contact contact, PetscInt g)
@@ -122,64 +137,91 @@ static void StartHalfWay(Contact contact, PetscInt g)
     if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g) {
       const PetscReal end = contact->rows.tied[i] ? contact->end.force[i] : PetscMax(contact->end.force[i], 0);
 
+      energy->gain_force[i] = energy->start_force[i];
+      energy->gain_rest[i]  = energy->rest[i];
       energy->start_force[i] += 0.5 * (end - energy->start_force[i]);
       energy->rest[i] *= 0.5;
+      energy->half_force[i] = energy->start_force[i];
+      energy->half_rest[i]  = energy->rest[i];
     }
 }
 
 /* Where to look next: energies are nearly a parabola, so that a secant finds its way; well inside the bracket */
-static PetscReal NextPart(const ContactSearch *search, PetscReal room)
+static PetscReal NextPart(const ContactSearch *search, PetscReal aim)
 {
   const PetscReal slope = (search->gain[1] - search->gain[0]) / (search->high - search->low);
-  const PetscReal part = search->low + (room - search->gain[0]) / slope * (1 - 0.5 * PART_LEFT), width = search->high - search->low;
+  const PetscReal part = search->low + (aim - search->gain[0]) / slope * (1 - 0.5 * PART_LEFT), width = search->high - search->low;
 
   return PetscMin(PetscMax(part, search->low + 0.05 * width), search->high - 0.05 * width);
 }
 
-/* The next start of a group whose energy has to be kept, from how the last attempt went; done: it is the step */
+/* After rows that leave have started with no force, which is not enough: those that have left in the meantime do so too, or else all rows
+   start half way */
+static PetscErrorCode TakeMoreAway(Contact contact, PetscInt g)
+{
+  ContactSearch *search = &contact->energy.search[g];
+  PetscBool      any    = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(MarkLeaving(contact, g, &any));
+  if (any) StartWithPart(contact, g, 0);
+  else {
+    search->gain[1] = contact->energy.group_work[g];
+    search->stage   = 2;
+    search->tries   = 0;
+    StartHalfWay(contact, g);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Looks between a start with which contact gains at most `aim` and one with which it gains more, in the last attempt with `part`, for the
+   one that comes nearest to it from below */
+static void LookBetween(Contact contact, PetscInt g, PetscReal aim, void (*start)(Contact, PetscInt, PetscReal))
+{
+  ContactSearch  *search   = &contact->energy.search[g];
+  const PetscReal gain     = contact->energy.group_work[g];
+  const PetscBool too_much = (PetscBool)(gain > aim + ROUND_OFF * contact->energy.scale);
+  const PetscReal excess   = search->gain[1] - aim;
+
+  search->gain[too_much ? 1 : 0]             = gain;
+  *(too_much ? &search->high : &search->low) = search->part;
+  if (search->tries < MAX_PARTS && (too_much || aim - gain > PART_LEFT * excess)) (*start)(contact, g, NextPart(search, aim));
+  else if (too_much && search->tries <= MAX_PARTS) (*start)(contact, g, search->low);
+  else if (GainsTooMuch(contact, g)) { /* with other groups that have joined this one, `low` is no longer within the room */
+    search->stage = 2;
+    search->tries = 0;
+    StartHalfWay(contact, g);
+  } else search->done = PETSC_TRUE;
+}
+
+/* The next start of a group whose energy has to be kept, from how the last attempt went; done: it is the step. Stages: 0, not limited; 1,
+   rows that leave start with a part of their force; 2, all rows start half way to what they end with; 3, on the way back. */
 static PetscErrorCode SearchOn(Contact contact, PetscInt g)
 {
-  ContactEnergy  *energy = &contact->energy;
-  ContactSearch  *search = &energy->search[g];
-  const PetscReal room = ContactGroupRoom(contact, g), gain = energy->group_work[g];
+  ContactEnergy  *energy   = &contact->energy;
+  ContactSearch  *search   = &energy->search[g];
+  const PetscReal gain     = energy->group_work[g];
   const PetscBool too_much = GainsTooMuch(contact, g);
-  PetscBool       any;
 
   PetscFunctionBegin;
   search->tries++;
   if (search->stage == 0) {
     if (!too_much) PetscFunctionReturn(PETSC_SUCCESS);
     *search = (ContactSearch){.stage = 1, .low = -1, .high = 1, .gain = {0, gain}};
-    PetscCall(MarkLeaving(contact, g, &any));
-    if (any) StartWithPart(contact, g, 0);
-    else {
-      search->stage = 2;
-      StartHalfWay(contact, g);
-    }
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (search->stage == 1 && search->low < 0 && too_much) { /* s = 0 is not enough for the rows that have left so far */
-    PetscCall(MarkLeaving(contact, g, &any));
-    if (any) StartWithPart(contact, g, 0);
-    else {
-      search->stage = 2;
-      search->tries = 0;
-      StartHalfWay(contact, g);
-    }
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (search->stage == 1) {
-    const PetscReal excess = search->gain[1] - room;
-
-    search->gain[too_much ? 1 : 0]             = gain;
-    *(too_much ? &search->high : &search->low) = search->part;
-    if (search->tries < MAX_PARTS && (too_much || room - gain > PART_LEFT * excess)) StartWithPart(contact, g, NextPart(search, room));
-    else if (too_much) StartWithPart(contact, g, search->low);
+    PetscCall(TakeMoreAway(contact, g));
+  } else if (search->stage == 1) {
+    if (search->low < 0 && too_much) PetscCall(TakeMoreAway(contact, g));
+    else LookBetween(contact, g, ContactGroupRoom(contact, g), StartWithPart);
+  } else if (search->stage == 2 && too_much) {
+    search->gain[1] = gain;
+    if (search->tries < MAX_HALVES) StartHalfWay(contact, g);
     else search->done = PETSC_TRUE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (too_much && search->tries < MAX_HALVES) StartHalfWay(contact, g);
-  else search->done = PETSC_TRUE;
+  } else if (search->stage == 2 && !search->returned) {
+    *search = (ContactSearch){.stage = 3, .high = 1, .gain = {gain, search->gain[1]}, .returned = PETSC_TRUE};
+    LookBetween(contact, g, 0, StartOnWayBack);
+  } else if (search->stage == 3) {
+    LookBetween(contact, g, 0, StartOnWayBack);
+  } else search->done = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -189,6 +189,7 @@ PetscErrorCode ContactSetUpEnergy(Contact contact)
   PetscCall(PetscCalloc6(rows, &energy->last_force, rows, &energy->start_force, rows, &energy->last, rows, &energy->now, rows,
                          &energy->leaves, n, &energy->search));
   PetscCall(PetscCalloc3(2 * contact->n_pairs, &energy->first_springs, 2 * contact->n_pairs, &energy->springs, rows, &energy->rest));
+  PetscCall(PetscCalloc4(rows, &energy->half_force, rows, &energy->half_rest, rows, &energy->gain_force, rows, &energy->gain_rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -221,5 +222,6 @@ PetscErrorCode ContactDestroyEnergy(Contact contact)
   PetscCall(PetscFree6(energy->room, energy->group, energy->group_work, energy->pair_sums, energy->first_energy, energy->energies));
   PetscCall(PetscFree6(energy->last_force, energy->start_force, energy->last, energy->now, energy->leaves, energy->search));
   PetscCall(PetscFree3(energy->first_springs, energy->springs, energy->rest));
+  PetscCall(PetscFree4(energy->half_force, energy->half_rest, energy->gain_force, energy->gain_rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,7 +17,8 @@
 
   Note:
   Refused otherwise, where contact nodes have mass: Robin and impedance conditions, Lagrange multipliers at the end of the step without a
-  stabilization, and in two and three dimensions `-schwarz_traction reaction` over several substeps. To compare with.
+  stabilization, and in two and three dimensions `-schwarz_traction reaction` over several substeps. Robin and impedance conditions are
+  refused as well where two bodies make unequal substeps. To compare with.
 
 .seealso: `Contact`, `ContactGetAllowUnstable()`, `ContactSetEnergyCap()`
 @*/

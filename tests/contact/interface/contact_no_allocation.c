@@ -246,7 +246,7 @@ static void schwarz_with_aitken(void **state)
 
 static void robin_conditions(void **state)
 {
-  expect_nothing((Simulation *)*state, 3, "-schwarz_transmission robin");
+  expect_nothing((Simulation *)*state, 3, "-schwarz_transmission robin -contact_allow_unstable 1");
 }
 
 static void gap_rate(void **state)

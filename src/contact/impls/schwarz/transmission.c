@@ -108,17 +108,25 @@ static PetscErrorCode CheckBodies(Contact contact)
 }
 
 /* Robin conditions have a mixture of force and displacement go linearly between the times that both sides share. Where one side has more
-   substeps, its force does not: it brings another impulse and other work than the partner's. */
-static PetscErrorCode FindUnshared(Contact contact)
+   substeps, its force does not: it brings another impulse and other work than the partner's. Two bars lose 6.6e-5 of their momentum with 2
+   and 1 substeps to a step of 1e-6 s and 1.4e-2 to one of 5e-5 s, where they gain 0.7 % of energy; tied blocks 4.2e-2, and gain 1.9 %. */
+static PetscErrorCode RefuseUnshared(Contact contact)
 {
+  PetscBool unshared = PETSC_FALSE;
+
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscInt substeps[2];
 
+    if (contact->pairs[p].obstacle) continue;
     for (PetscInt side = 0; side < 2; side++) PetscCall(BodyGetSubsteps(contact->bodies[contact->pairs[p].body[side]], &substeps[side]));
-    if (substeps[0] != substeps[1])
-      contact->energy.not_always = "Robin and impedance conditions over unequal substeps keep neither momentum nor energy";
+    if (substeps[0] != substeps[1]) unshared = PETSC_TRUE;
   }
+  PetscCall(
+      ContactRefuseUnstable(contact, unshared,
+                            "-schwarz_transmission robin and impedance keep neither momentum nor energy where two bodies make unequal "
+                            "substeps; give both the same -<body>_ts_time_step, or choose -schwarz_transmission dirichlet_neumann"));
+  if (unshared) contact->energy.not_always = "Robin and impedance conditions over unequal substeps keep neither momentum nor energy";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -149,7 +157,7 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc3(contact->rows.n, &schwarz->weight, contact->rows.n, &schwarz->mass[0], contact->rows.n, &schwarz->mass[1]));
   if (robin) PetscCall(CheckBodies(contact));
-  if (robin) PetscCall(FindUnshared(contact));
+  if (robin) PetscCall(RefuseUnshared(contact));
   PetscCall(PetscCalloc1(contact->rows.n, &stiffness));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal impedance;

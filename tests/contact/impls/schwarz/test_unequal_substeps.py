@@ -7,11 +7,14 @@ WITH_MASS = "-left_mass_type lumped -right_mass_type lumped -left_mass_redistrib
 
 
 @pytest.mark.parametrize("transmission", ["robin", "impedance"])
-def test_robin_conditions_tell_what_they_lose(transmission, impakt):
-    """Under a mixture that is linear over the substeps the forces of both sides bring other impulses: 19 % of the momentum at a step of 1e-4 s (robin). With equal
-    substeps nothing is lost."""
+def test_robin_conditions_are_refused(transmission, impakt):
+    """Under a mixture that is linear over the substeps the forces of both sides bring other impulses: 19 % of the momentum at a step of 1e-4 s (robin). Bodies tied to
+    each other, and bars, are refused too. With equal substeps nothing is lost."""
     options = f"{BLOCKS} -time_step 1e-4 -time_end 1e-3 -schwarz_transmission {transmission} -contact_view"
-    run = impakt(f"{options} -left_ts_time_step 5e-5")
+    run = impakt(f"{options} -left_ts_time_step 5e-5", expect_failure=True)
+    assert "robin and impedance keep neither momentum nor energy where two bodies make unequal substeps" in run.stderr
+    assert "-contact_allow_unstable true" in run.stderr
+    run = impakt(f"{options} -left_ts_time_step 5e-5 -contact_allow_unstable true")
     assert run.summary["system"]["momentum_error_max"] > 1e-2
     assert "not in every step, since Robin and impedance conditions over unequal substeps keep neither momentum nor energy" in run.stdout
     assert any("momentum error" in text and "choose equal substeps" in text for text in run.summary["warnings"])
@@ -20,9 +23,18 @@ def test_robin_conditions_tell_what_they_lose(transmission, impakt):
     assert "not in every step" not in run.stdout and not any("momentum" in text for text in run.summary["warnings"])
 
 
+@pytest.mark.parametrize(
+    "options",
+    ["options/bars-high-speed.opts -left_ts_time_step 1e-8", "options/cantilever-tied.opts -clamped_ts_time_step 5e-7", "options/striker.opts"],
+)
+def test_robin_conditions_are_refused_in_all_cases(options, impakt):
+    run = impakt(f"-options_file {options} -schwarz_transmission robin", expect_failure=True)
+    assert "choose -schwarz_transmission dirichlet_neumann" in run.stderr
+
+
 def test_steps_that_gain_are_told(impakt):
     """One step of these gains more than it may: the summary counts it, and the last lines of the run say it."""
-    run = impakt(f"{BLOCKS} -time_step 1e-4 -time_end 3e-3 -schwarz_transmission robin -left_ts_time_step 5e-5")
+    run = impakt(f"{BLOCKS} -time_step 1e-4 -time_end 3e-3 -schwarz_transmission robin -left_ts_time_step 5e-5 -contact_allow_unstable true")
     assert run.summary["schwarz"]["unlimited_steps"] == 1
     assert "1 step gained more energy at contact than -contact_energy_excess allows" in run.stderr
 
