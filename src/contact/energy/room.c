@@ -175,20 +175,41 @@ PetscErrorCode ContactBookWork(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode DestroyRowEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree4(energy->last_stored, energy->accepted_force, energy->last_force, energy->start_force));
+  PetscCall(PetscFree4(energy->last, energy->now, energy->leaves, energy->rest));
+  PetscCall(PetscFree3(energy->pair_sums, energy->first_springs, energy->springs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for what is kept of each pair and row */
+PetscErrorCode ContactSetUpRowEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+  const PetscInt rows = contact->rows.n, pairs = contact->n_pairs;
+
+  PetscFunctionBegin;
+  PetscCall(DestroyRowEnergy(contact));
+  PetscCall(PetscCalloc4(rows, &energy->last_stored, rows, &energy->accepted_force, rows, &energy->last_force, rows, &energy->start_force));
+  PetscCall(PetscCalloc4(rows, &energy->last, rows, &energy->now, rows, &energy->leaves, rows, &energy->rest));
+  PetscCall(PetscCalloc3(2 * pairs, &energy->pair_sums, 2 * pairs, &energy->first_springs, 2 * pairs, &energy->springs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Room for what is kept of each body, pair and row */
 PetscErrorCode ContactSetUpEnergy(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
-  const PetscInt n = contact->n_bodies, rows = contact->rows.n;
+  const PetscInt n      = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc5(n, &energy->change, n, &energy->start_energy, n, &energy->first_work, rows, &energy->last_stored, rows,
-                         &energy->accepted_force));
-  PetscCall(PetscCalloc6(n, &energy->room, n, &energy->group, n, &energy->group_work, 2 * contact->n_pairs, &energy->pair_sums, n,
-                         &energy->first_energy, n, &energy->energies));
-  PetscCall(PetscCalloc6(rows, &energy->last_force, rows, &energy->start_force, rows, &energy->last, rows, &energy->now, rows,
-                         &energy->leaves, n, &energy->search));
-  PetscCall(PetscCalloc3(2 * contact->n_pairs, &energy->first_springs, 2 * contact->n_pairs, &energy->springs, rows, &energy->rest));
+  PetscCall(PetscCalloc5(n, &energy->change, n, &energy->start_energy, n, &energy->first_work, n, &energy->room, n, &energy->group));
+  PetscCall(PetscCalloc4(n, &energy->group_work, n, &energy->first_energy, n, &energy->energies, n, &energy->search));
+  PetscCall(ContactSetUpRowEnergy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,9 +238,8 @@ PetscErrorCode ContactDestroyEnergy(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree5(energy->change, energy->start_energy, energy->first_work, energy->last_stored, energy->accepted_force));
-  PetscCall(PetscFree6(energy->room, energy->group, energy->group_work, energy->pair_sums, energy->first_energy, energy->energies));
-  PetscCall(PetscFree6(energy->last_force, energy->start_force, energy->last, energy->now, energy->leaves, energy->search));
-  PetscCall(PetscFree3(energy->first_springs, energy->springs, energy->rest));
+  PetscCall(DestroyRowEnergy(contact));
+  PetscCall(PetscFree5(energy->change, energy->start_energy, energy->first_work, energy->room, energy->group));
+  PetscCall(PetscFree4(energy->group_work, energy->first_energy, energy->energies, energy->search));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
