@@ -64,6 +64,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTold(Contact);
 PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactTellStates(Contact, ContactPairState[]);
+PETSC_INTERN PetscErrorCode ContactTellState(Contact, PetscInt, ContactPairState *);
 PETSC_INTERN void           ContactGetTold(Contact, PetscInt, PetscInt *, PetscInt *);
 PETSC_INTERN PetscErrorCode ContactVisitTold(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactPackTold(Contact, PetscBool, Tables);

@@ -283,6 +283,7 @@ typedef struct {
   PetscReal     *last, *now;              /* work space, per row */
   PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                  /* per group, by its first body */
+  PetscReal     *of_group;                /* work space: three numbers per group, by its first body */
 } ContactEnergy;
 /* How the controller step is being made */
 typedef struct {

@@ -299,14 +299,8 @@ PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairSt
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(state, 3);
   ContactCheckPair(contact, pair);
-  if (contact->neighbours.come_and_go) {
-    ContactPairState *states;
-
-    PetscCall(PetscMalloc1(contact->neighbours.told.n, &states));
-    PetscCall(ContactTellStates(contact, states));
-    *state = states[pair];
-    PetscCall(PetscFree(states));
-  } else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
+  if (contact->neighbours.come_and_go) PetscCall(ContactTellState(contact, pair, state));
+  else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -105,6 +105,13 @@ static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairStat
   sum->beyond_impulse += state->beyond_impulse;
 }
 
+/* What pairs that have gone have done */
+static void BeginState(const PetscReal sums[], ContactPairState *state)
+{
+  *state = (ContactPairState){.gap = CONTACT_NO_GAP, .normal_impulse = sums[6], .beyond_impulse = sums[8]};
+  for (PetscInt d = 0; d < 3; d++) state->impulse[d] = sums[d];
+}
+
 /* States of all that is told; collective */
 PetscErrorCode ContactTellStates(Contact contact, ContactPairState states[])
 {
@@ -121,18 +128,36 @@ PetscErrorCode ContactTellStates(Contact contact, ContactPairState states[])
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, told->sums, (PetscMPIInt)(CONTACT_IMPULSES * told->n), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
-  for (PetscInt p = 0; p < told->n; p++) {
-    const PetscReal *sums = told->sums + CONTACT_IMPULSES * p;
-
-    states[p] = (ContactPairState){.gap = CONTACT_NO_GAP, .normal_impulse = sums[6], .beyond_impulse = sums[8]};
-    for (PetscInt d = 0; d < 3; d++) states[p].impulse[d] = sums[d];
-  }
+  for (PetscInt p = 0; p < told->n; p++) BeginState(told->sums + CONTACT_IMPULSES * p, &states[p]);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     if (pair->obstacle)
       AddState(&states[ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)], 1, &told->states[p]);
     for (PetscInt side = 0; side < 2 && !pair->obstacle; side++) AddState(&states[pair->body[side]], side ? -1 : 1, &told->states[p]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of one that is told */
+PetscErrorCode ContactTellState(Contact contact, PetscInt p, ContactPairState *state)
+{
+  PetscReal sums[CONTACT_IMPULSES];
+  PetscInt  body, obstacle;
+
+  PetscFunctionBegin;
+  ContactGetTold(contact, p, &body, &obstacle);
+  PetscCallMPI(MPIU_Allreduce(contact->neighbours.told.gone + CONTACT_IMPULSES * p, sums, CONTACT_IMPULSES, MPIU_REAL, MPIU_SUM,
+                              PetscObjectComm((PetscObject)contact)));
+  BeginState(sums, state);
+  for (PetscInt q = 0; q < contact->n_pairs; q++) {
+    const ContactPair *pair = &contact->pairs[q];
+    const PetscInt     sign = pair->body[0] == body ? 1 : pair->body[1] == body ? -1 : 0;
+    ContactPairState   of_pair;
+
+    if (!sign || pair->obstacle != (obstacle < 0 ? NULL : contact->obstacles[obstacle])) continue;
+    PetscCall(ContactComputePairStates(contact, q, q + 1, &of_pair));
+    AddState(state, sign, &of_pair);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
