@@ -7,15 +7,33 @@
   PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
              PETSC_FUNCTION_NAME)
 #define ContactCheckPair(contact, pair)                                                                                                    \
-  PetscCheck((pair) >= 0 && (pair) < (contact)->n_pairs, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_OUTOFRANGE,                \
+  PetscCheck((pair) >= 0 && (pair) < ((contact)->neighbours.come_and_go ? (contact)->neighbours.told.n : (contact)->n_pairs),              \
+             PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_OUTOFRANGE,                                                            \
              "There is no pair %" PetscInt_FMT "; there are %" PetscInt_FMT, pair, (contact)->n_pairs)
 
 /* What decides which of two bodies takes displacements */
-typedef struct {
+typedef struct ContactPreference {
   PetscBool is_explicit;
   PetscInt  substeps; /* of explicit bodies, about */
   PetscReal size;     /* edge of its mean element, or of the largest that is alike [m] */
 } ContactPreference;
+
+/* What is kept of a pair from step to step: its impulse and the force at the end of the last step, 3 numbers each, and the same of the
+   normal forces, one number each; the impulse of nodes beyond the end of the partner */
+#define CONTACT_IMPULSES 9
+
+/* What checkpoints have of a row; the last number is that of the row among those of all ranks */
+#define CONTACT_ROW_NUMBERS 25
+
+/* The number of the second body of a pair, or the number of bodies and that of the obstacle */
+static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pair)
+{
+  PetscInt o = 0;
+
+  if (!pair->obstacle) return pair->body[1];
+  while (contact->obstacles[o] != pair->obstacle) o++;
+  return contact->n_bodies + o;
+}
 
 PETSC_INTERN PetscFunctionList ContactList;
 
@@ -26,6 +44,34 @@ PETSC_INTERN PetscErrorCode ContactRefuseTurned(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactWarnOfObstacles(Contact);
 PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactAddEachPair(Contact);
+PETSC_INTERN PetscErrorCode ContactChooseAllPairs(Contact);
+PETSC_INTERN PetscErrorCode ContactAppendNeighbours(Contact, PetscInt, PetscInt, ContactPair **);
+PETSC_INTERN PetscErrorCode ContactDestroyPair(ContactPair *);
+PETSC_INTERN PetscErrorCode ContactHasMany(Contact, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactSuitsNeighbours(Contact, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactSetUpNeighbours(Contact, ContactPreference[]);
+PETSC_INTERN PetscErrorCode ContactMeasureNeighbours(Contact);
+PETSC_INTERN PetscErrorCode ContactFindNeighbours(Contact, PetscReal, PetscInt *);
+PETSC_INTERN PetscBool      ContactNeighboursUsed(Contact, PetscReal);
+PETSC_INTERN PetscErrorCode ContactDestroyNeighbours(Contact);
+PETSC_INTERN PetscReal      ContactBoxDistance(const PetscReal[], const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactLayOutRows(Contact);
+PETSC_INTERN PetscErrorCode ContactReplacePairs(Contact, PetscInt, const PetscInt[]);
+PETSC_INTERN PetscErrorCode ContactRenewNeighbours(Contact, PetscReal, PetscBool, PetscBool *);
+PETSC_INTERN void           ContactCopyRow(Contact, PetscInt, PetscBool, PetscReal *);
+PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyTold(Contact);
+PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactTellStates(Contact, ContactPairState[]);
+PETSC_INTERN PetscErrorCode ContactTellState(Contact, PetscInt, ContactPairState *);
+PETSC_INTERN void           ContactGetTold(Contact, PetscInt, PetscInt *, PetscInt *);
+PETSC_INTERN PetscErrorCode ContactVisitTold(Contact, Checkpoint);
+PETSC_INTERN PetscErrorCode ContactPackTold(Contact, PetscBool, Tables);
+PETSC_INTERN PetscErrorCode ContactComputePairStates(Contact, PetscInt, PetscInt, ContactPairState[]);
+PETSC_INTERN PetscErrorCode ContactSetUpPairResultants(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpRowEnergy(Contact);
+PETSC_INTERN PetscErrorCode ContactTakeFirstNeighbours(Contact, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactGetPreferences(Contact, ContactPreference[]);
 PETSC_INTERN PetscBool      ContactChooseSides(const ContactPreference *, const ContactPreference *, const char **);
 PETSC_INTERN PetscErrorCode ContactOrderBodies(Contact);

@@ -28,12 +28,72 @@ static PetscErrorCode ChooseColumns(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All that goes with the rows: none of them is constrained, and no column is there */
+static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B, Compliance compliance)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)s->ksp);
+  PetscMPIInt local, total = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectReference((PetscObject)B));
+  s->B = B;
+  PetscCall(MatCreateVecs(B, NULL, &s->row));
+  PetscCall(MatGetLocalSize(B, &s->local, NULL));
+  PetscCall(MatGetSize(B, &s->global, NULL));
+  PetscCall(MatGetOwnershipRange(B, &s->begin, NULL));
+  PetscCall(PetscMalloc2(s->size, &s->counts, s->size, &s->offsets));
+  PetscCall(PetscMPIIntCast(s->local, &local));
+  PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < s->size; total += s->counts[r++]) s->offsets[r] = total;
+  PetscCall(
+      PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
+  PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));
+  PetscCall(ChooseColumns(s));
+  PetscCall(ConstrainedSolverChooseBlock(s));
+  s->room = s->keeps ? s->global : FEW_ROWS;
+  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
+  for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
+  s->n          = 0;
+  s->dense      = PETSC_FALSE;
+  s->shares     = (PetscBool)(compliance != NULL);
+  s->compliance = compliance;
+  if (!compliance) PetscCall(ComplianceCreate(comm, s->local, s->begin, s->global, 1, &s->compliance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroyRows(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  if (!s->shares) PetscCall(ComplianceDestroy(&s->compliance));
+  for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
+  PetscCall(PetscFree5(s->mine, s->constrained, s->rows, s->columns, s->fresh));
+  PetscCall(PetscFree3(s->changes, s->coefficients, s->column));
+  PetscCall(PetscFree3(s->gathered, s->force, s->used));
+  PetscCall(PetscFree2(s->counts, s->offsets));
+  PetscCall(DenseFactorDestroy(&s->factor));
+  PetscCall(KSPDestroy(&s->iterative));
+  PetscCall(VecDestroy(&s->force_vec));
+  PetscCall(VecDestroy(&s->gap_vec));
+  PetscCall(VecDestroy(&s->row));
+  PetscCall(MatDestroy(&s->B));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Other rows, of another number: the factors of A stay, and what is known of the rows goes. A compliance that is shared belongs to these.
+ */
+PetscErrorCode ConstrainedSolverReplaceRows(ConstrainedSolver s, Mat B, Compliance compliance)
+{
+  PetscFunctionBegin;
+  PetscCall(DestroyRows(s));
+  PetscCall(CreateRows(s, B, compliance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A is the matrix of a body in `dim` dimensions; `compliance`: where W is kept, or NULL for one of the solver's own */
 PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
 {
   ConstrainedSolver s;
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
-  PetscMPIInt       local, total = 0;
   PetscBool         direct;
 
   PetscFunctionBegin;
@@ -51,29 +111,9 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   if (direct) PetscCall(KSPGetPC(s->ksp, &s->direct));
   PetscCall(ConstrainedSolverCountFlops(s, A));
 
-  PetscCall(PetscObjectReference((PetscObject)B));
-  s->B = B;
-  PetscCall(MatCreateVecs(B, NULL, &s->row));
   PetscCall(MatCreateVecs(A, NULL, &s->rhs));
   PetscCall(VecDuplicate(s->rhs, &s->product));
-  PetscCall(MatGetLocalSize(B, &s->local, NULL));
-  PetscCall(MatGetSize(B, &s->global, NULL));
-  PetscCall(MatGetOwnershipRange(B, &s->begin, NULL));
-  PetscCall(PetscMalloc2(s->size, &s->counts, s->size, &s->offsets));
-  PetscCall(PetscMPIIntCast(s->local, &local));
-  PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < s->size; total += s->counts[r++]) s->offsets[r] = total;
-  PetscCall(
-      PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
-  PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));
-  PetscCall(ChooseColumns(s));
-  PetscCall(ConstrainedSolverChooseBlock(s));
-  s->room = s->keeps ? s->global : FEW_ROWS;
-  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
-  for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
-  s->shares     = (PetscBool)(compliance != NULL);
-  s->compliance = compliance;
-  if (!compliance) PetscCall(ComplianceCreate(comm, s->local, s->begin, s->global, 1, &s->compliance));
+  PetscCall(CreateRows(s, B, compliance));
   *solver = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -84,20 +124,9 @@ PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *solver)
 
   PetscFunctionBegin;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!s->shares) PetscCall(ComplianceDestroy(&s->compliance));
-  for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
-  PetscCall(PetscFree5(s->mine, s->constrained, s->rows, s->columns, s->fresh));
-  PetscCall(PetscFree3(s->changes, s->coefficients, s->column));
-  PetscCall(PetscFree3(s->gathered, s->force, s->used));
-  PetscCall(PetscFree2(s->counts, s->offsets));
-  PetscCall(DenseFactorDestroy(&s->factor));
-  PetscCall(KSPDestroy(&s->iterative));
-  PetscCall(VecDestroy(&s->force_vec));
-  PetscCall(VecDestroy(&s->gap_vec));
+  PetscCall(DestroyRows(s));
   PetscCall(VecDestroy(&s->product));
-  PetscCall(VecDestroy(&s->row));
   PetscCall(VecDestroy(&s->rhs));
-  PetscCall(MatDestroy(&s->B));
   PetscCall(KSPDestroy(&s->ksp));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);

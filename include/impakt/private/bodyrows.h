@@ -69,6 +69,8 @@ PETSC_EXTERN PetscErrorCode BodyGetHeldDofs(Body, PetscInt *, const PetscInt *[]
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
 PETSC_EXTERN PetscErrorCode BodyUpdateInterface(Body, Mat, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodyExpectRows(Body);
+PETSC_EXTERN PetscErrorCode BodyReplaceInterface(Body, Mat, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyHandOver(Body, const PetscReal[], const PetscReal[], const PetscInt[], PetscInt);
 PETSC_EXTERN PetscErrorCode BodySetRowWeights(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);

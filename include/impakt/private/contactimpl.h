@@ -27,6 +27,9 @@ struct _ContactOps {
      another number of ranks; and back, after rowschanged() */
   PetscErrorCode (*pack)(Contact, Tables);
   PetscErrorCode (*unpack)(Contact, Tables);
+  /* (NULL) whether pairs may come and go in the course of a run; then `reset` undoes `setup`, which follows if there are rows */
+  PetscBool (*mayreplacerows)(Contact);
+  PetscErrorCode (*reset)(Contact);
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
@@ -283,6 +286,7 @@ typedef struct {
   PetscReal     *last, *now;              /* work space, per row */
   PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                  /* per group, by its first body */
+  PetscReal     *of_group;                /* work space: three numbers per group, by its first body */
 } ContactEnergy;
 /* How the controller step is being made */
 typedef struct {
@@ -325,6 +329,33 @@ typedef struct {
   PetscBool       *start_active;       /* the same, in contact */
   PetscReal        time;               /* at which the step begins [s] */
 } ContactFloating;
+
+/* What is told of pairs that come and go, see src/contact/interface/told.c */
+typedef struct {
+  PetscInt          n;
+  char            **names;
+  PetscReal        *gone;   /* what pairs that have gone have done: this rank's shares, see resultants.c */
+  PetscReal        *sums;   /* work space */
+  PetscInt          room;   /* of the following */
+  ContactPairState *states; /* work space, per pair */
+} ContactTold;
+
+/* Which bodies are near each other where pairs come and go, see src/contact/rows/neighbours.c */
+typedef struct {
+  PetscBool                 all;          /* the program is to choose all pairs, and has not yet */
+  PetscBool                 come_and_go;  /* pairs have rows while their bodies are near */
+  struct ContactPreference *preferences;  /* per body */
+  PetscInt                 *place;        /* per body: its place in the order of the bodies */
+  PetscReal                *edge;         /* per body: of its contact elements [m] */
+  PetscReal                *boxes;        /* per body: lower corner, and the upper one with its sign changed [m] */
+  PetscReal                 near;         /* how far apart bodies may touch in a step, when pairs were looked for last [m] */
+  PetscReal                 room_left;    /* by which bodies that are no pair may come nearer until they are looked for again [m] */
+  PetscInt                  layouts;      /* how often pairs have come or gone */
+  PetscInt                  room, *found; /* pairs found: two numbers each */
+  PetscReal                *lower;        /* work space, per body */
+  PetscInt                 *sorted;       /* the same */
+  ContactTold               told;
+} ContactNeighbours;
 
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
@@ -382,6 +413,7 @@ struct _p_Contact {
   ContactAttempt    attempt;
   ContactFloating   floating;
   ContactWork       work;
+  ContactNeighbours neighbours;
   PetscBool parallel_factors; /* the interface has factors that several ranks make together, perhaps not twice the same to the last bit */
   PetscBool surfaces_known;   /* ContactSetUpSurfaces() has been called */
   PetscBool setup;            /* ContactSetUp() has been called */

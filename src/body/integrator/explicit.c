@@ -306,8 +306,8 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionBegin;
   PetscCall(BodyAnyRank(body, &layer));
   if (layer) PetscCall(LayerBalanceCreate(body, &explicit->layer));
-  integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && body->rows.global && !body->rows.have_mass &&
-                                             !body->rows.tied_mass);
+  integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && (body->rows.global || body->rows.expected) &&
+                                             !body->rows.have_mass && !body->rows.tied_mass);
   /* dashpots of a nonlinear body act by where the layer is, and by its velocity at mid-step */
   explicit->layer_alone = (PetscBool)(integrator->answers_by_layer && (body->model.linear || !BodyIsDamped(body)));
   if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));

@@ -88,7 +88,7 @@ static PetscErrorCode SetUp(Body body)
   body->integrator->depends_on_step = PETSC_TRUE;
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
   /* the force that acts in the substep is that at the stage; with a linear body it is the mean of those at the ends */
-  if (!body->model.linear && implicit->alpha_f != 1 && body->rows.global &&
+  if (!body->model.linear && implicit->alpha_f != 1 && (body->rows.global || body->rows.expected) &&
       (!body->rows.have_mass || body->rows.traction == BODY_TRACTION_REACTION)) {
     body->rows.stage = implicit->alpha_f;
     PetscCall(BodyCreateVec(body, &body->rows.stage_balance));

@@ -120,23 +120,11 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateTraces(Body body)
-{
-  Trace *traces[] = {&body->traces.displacement_in, &body->traces.velocity_in, &body->traces.acceleration_in, &body->traces.force_in,
-                     &body->traces.displacement,    &body->traces.velocity,    &body->traces.acceleration,    &body->traces.reaction};
-
-  PetscFunctionBegin;
-  for (PetscInt t = 0; t < 8; t++) PetscCall(TraceCreate(body->rows.local, body->time.substeps, traces[t]));
-  PetscCall(PetscCalloc1(4 * body->time.substeps * body->rows.local, &body->rows.kept_traces));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A body without contact has an interface without rows */
 static PetscErrorCode SetUpRows(Body body)
 {
-  BodyRows   *rows = &body->rows;
-  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
-  PetscMPIInt four, total = 0;
+  BodyRows *rows = &body->rows;
+  MPI_Comm  comm = PetscObjectComm((PetscObject)body);
 
   PetscFunctionBegin;
   if (!body->rows.matrix) {
@@ -149,17 +137,8 @@ static PetscErrorCode SetUpRows(Body body)
     PetscCall(BodySetInterface(body, empty));
     PetscCall(MatDestroy(&empty));
   }
-  PetscCall(MatGetOwnershipRange(body->rows.matrix, &rows->begin, NULL));
-  PetscCall(PetscMalloc2(rows->size, &rows->counts, rows->size, &rows->offsets));
-  PetscCall(PetscMPIIntCast(4 * rows->local, &four));
-  PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
-  PetscCall(PetscCalloc4(rows->local, &body->rows.conditions, rows->local, &body->rows.constrained, rows->local, &body->rows.flexibility,
-                         rows->local, &body->rows.robin));
-  PetscCall(PetscMalloc1(rows->global, &rows->changed));
-  PetscCall(BodyHandoverCreate(rows->local, &rows->handover));
-  for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(body->rows.matrix, NULL, &body->work.rows[k]));
-  body->rows.have_mass = (PetscBool)(rows->global > 0 && !body->mass.redistribute && !body->rows.tied_mass &&
+  PetscCall(BodyCreateRowArrays(body));
+  body->rows.have_mass = (PetscBool)((rows->global > 0 || rows->expected) && !body->mass.redistribute && !body->rows.tied_mass &&
                                      body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -186,11 +165,11 @@ PetscErrorCode BodySetUpSteps(Body body)
   if (body->time.substeps) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySetUpDiscretization(body));
   PetscCall(SetUpRows(body));
-  if (body->mass.redistribute && body->rows.global) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
+  if (body->mass.redistribute && (body->rows.global || body->rows.expected)) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
   PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));
   PetscCall(BodyStateCreate(body, PETSC_FALSE, &body->saved));
   for (PetscInt k = 0; k < 3; k++) PetscCall(BodyCreateVec(body, &body->work.nodes[k]));
-  if (body->rows.global) { /* else nobody repeats a step */
+  if (body->rows.global || body->rows.expected) { /* else nobody repeats a step */
     PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->kept));
     PetscCall(BodyCreateVec(body, &body->iterate.u));
   }
@@ -250,7 +229,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySetUpSteps(body));
-  PetscCall(CreateTraces(body));
+  PetscCall(BodyCreateTraces(body));
   PetscCall(BodyCreateCompliance(body));
   PetscCall(BodySetUpDamping(body));
   PetscCall(BodySetUpPoints(body));
@@ -294,12 +273,9 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec       *vecs[]   = {&b->start.a,       &b->iterate.u,     &b->rows.stage_balance, &b->mesh.positions, &b->mass.row_sum,
-                           &b->mass.orphans,  &b->mass.diagonal, &b->mass.inverse,       &b->work.nodes[0],  &b->work.nodes[1],
-                           &b->work.nodes[2], &b->work.rows[0],  &b->work.rows[1],       &b->work.rows[2],   &b->start.change};
+    Vec *vecs[] = {&b->start.a,       &b->iterate.u,    &b->rows.stage_balance, &b->mesh.positions, &b->mass.row_sum,  &b->mass.orphans,
+                   &b->mass.diagonal, &b->mass.inverse, &b->work.nodes[0],      &b->work.nodes[1],  &b->work.nodes[2], &b->start.change};
     BodyState *states[] = {&b->state, &b->saved, &b->kept, &b->substep_start};
-    Trace     *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
-                           &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
 
     PetscCall(BodyDestroyRepeat(b));
     PetscCall(BodyIntegratorDestroy(b));
@@ -310,19 +286,15 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscCall(BodyDestroyPoints(b));
     for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
     for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) PetscCall(BodyStateDestroy(states[i]));
-    for (size_t i = 0; i < sizeof(traces) / sizeof(traces[0]); i++) PetscCall(TraceDestroy(traces[i]));
+    PetscCall(BodyDestroyTraces(b));
+    PetscCall(BodyDestroyRowArrays(b));
   }
   PetscCall(ConstrainedSolverDestroy(&b->mass.solver));
   PetscCall(MatDestroy(&b->model.stiffness));
   PetscCall(MatDestroy(&b->mass.matrix));
   PetscCall(MatDestroy(&b->mass.product));
   PetscCall(MatDestroy(&b->rows.matrix));
-  PetscCall(MatDestroy(&b->rows.free_matrix));
   PetscCall(VecDestroy(&b->rows.free_dofs));
-  PetscCall(RowPatternDestroy(&b->rows.pattern));
-  PetscCall(PetscFree(b->rows.changed));
-  PetscCall(BodyGramDestroy(&b->rows.gram));
-  PetscCall(BodyHandoverDestroy(&b->rows.handover));
   PetscCall(TSDestroy(&b->time.ts));
   PetscCall(BodyLayerSolverDestroy(&b->layer.solver));
   PetscCall(BodyLayerElementsDestroy(&b->layer.elements));
@@ -330,10 +302,6 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(ElementDestroy(&b->model.linearized_element));
   PetscCall(MaterialDestroy(&b->model.material));
   PetscCall(MaterialDestroy(&b->model.linearized_material));
-  PetscCall(PetscFree2(b->rows.counts, b->rows.offsets));
-  PetscCall(PetscFree(b->rows.kept_traces));
-  PetscCall(PetscFree(b->rows.by_mean));
-  PetscCall(PetscFree4(b->rows.conditions, b->rows.constrained, b->rows.flexibility, b->rows.robin));
   PetscCall(PetscFree(b->mass.factor));
   PetscCall(PetscFree(b->layer.dofs));
   PetscCall(PetscFree(b->layer.contains));

@@ -63,7 +63,9 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(
       viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name,
       dofs, (double)body->mass.total, BodyMassTypes[body->mass.type],
-      body->mass.redistribute && body->rows.global ? (body->rows.tied_mass ? ", tied nodes keep theirs" : ", contact layer massless") : "",
+      body->mass.redistribute && (body->rows.global || body->rows.expected)
+          ? (body->rows.tied_mass ? ", tied nodes keep theirs" : ", contact layer massless")
+          : "",
       type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscCall(ViewLayer(body, viewer));

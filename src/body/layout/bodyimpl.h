@@ -122,6 +122,7 @@ typedef struct {
   PetscMPIInt     *changed;      /* work space, per row of all ranks */
   PetscMPIInt      size;         /* ranks */
   PetscInt         local, global, begin;
+  PetscBool        expected;         /* rows may come in the course of the run */
   PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
   BodyGram         gram;             /* of prescribed rows that are not orthonormal */
   PetscBool        any_oblique;      /* on any rank there are rows of one node that are not orthonormal */
@@ -334,6 +335,10 @@ PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
+PETSC_INTERN PetscErrorCode BodyCreateTraces(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyTraces(Body);
+PETSC_INTERN PetscErrorCode BodyCreateRowArrays(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyRowArrays(Body);
 PETSC_INTERN PetscErrorCode RowPatternNote(RowPattern *, Mat, PetscBool *);
 PETSC_INTERN PetscErrorCode RowPatternDestroy(RowPattern *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);

@@ -228,8 +228,13 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
 /* Whether any group has gained more than it has room for */
 static PetscBool AnyGainsTooMuch(Contact contact)
 {
+  const ContactEnergy *energy = &contact->energy;
+  PetscReal           *room   = energy->of_group;
+
+  for (PetscInt g = 0; g < contact->n_bodies; g++) room[g] = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) room[energy->group[b]] += energy->room[b] - energy->change[b];
   for (PetscInt g = 0; g < contact->n_bodies; g++)
-    if (contact->energy.group[g] == g && GainsTooMuch(contact, g)) return PETSC_TRUE;
+    if (energy->group[g] == g && energy->group_work[g] > PetscMax(room[g], 0) + ROUND_OFF * energy->scale) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -272,29 +277,30 @@ static PetscErrorCode Attempt(Contact contact)
 static PetscErrorCode MeasureGroupWork(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
+  PetscReal     *work = energy->of_group, *touches = work + contact->n_bodies, *inexact = touches + contact->n_bodies;
 
   PetscFunctionBegin;
   PetscCall(ContactComputeEnergies(contact, energy->energies, energy->springs));
   for (PetscInt g = 0; g < contact->n_bodies; g++) {
-    PetscReal work  = 0;
-    PetscBool alone = PETSC_TRUE, all_exact = PETSC_TRUE;
-
-    if (energy->group[g] != g) continue;
-    for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      PetscBool exact;
-
-      if (energy->group[b] != g) continue;
-      PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
-      all_exact = (PetscBool)(all_exact && exact);
-      work += energy->energies[b] - energy->start_energy[b];
-    }
-    for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      if (energy->group[contact->pairs[p].body[0]] != g || energy->pair_sums[2 * p + 1] == 0) continue;
-      alone = PETSC_FALSE;
-      work += energy->springs[2 * p];
-    }
-    if (!alone) energy->group_work[g] = all_exact ? work : PetscMax(work, energy->group_work[g]);
+    work[g]    = 0;
+    touches[g] = inexact[g] = 0;
   }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool exact;
+
+    PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
+    if (!exact) inexact[energy->group[b]] = 1;
+    work[energy->group[b]] += energy->energies[b] - energy->start_energy[b];
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const PetscInt g = energy->group[contact->pairs[p].body[0]];
+
+    if (energy->pair_sums[2 * p + 1] == 0) continue;
+    touches[g] = 1;
+    work[g] += energy->springs[2 * p];
+  }
+  for (PetscInt g = 0; g < contact->n_bodies; g++)
+    if (touches[g] > 0) energy->group_work[g] = inexact[g] > 0 ? PetscMax(work[g], energy->group_work[g]) : work[g];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

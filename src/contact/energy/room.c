@@ -97,15 +97,18 @@ static PetscErrorCode BookLevel(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
 
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] -= energy->change[b];
-  for (PetscInt g = 0; g < contact->n_bodies; g++) {
-    PetscReal owed = 0, has = 0;
+  PetscReal *owed = energy->of_group, *has = owed + contact->n_bodies;
 
-    for (PetscInt b = 0; b < contact->n_bodies; b++)
-      if (energy->group[b] == g) *(energy->room[b] < 0 ? &owed : &has) += PetscAbsReal(energy->room[b]);
-    for (PetscInt b = 0; b < contact->n_bodies && owed > 0; b++)
-      if (energy->group[b] == g) energy->room[b] = energy->room[b] < 0 || has <= owed ? 0 : energy->room[b] * (1 - owed / has);
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(owed, 2 * contact->n_bodies));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    energy->room[b] -= energy->change[b];
+    (energy->room[b] < 0 ? owed : has)[energy->group[b]] += PetscAbsReal(energy->room[b]);
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const PetscInt g = energy->group[b];
+
+    if (owed[g] > 0) energy->room[b] = energy->room[b] < 0 || has[g] <= owed[g] ? 0 : energy->room[b] * (1 - owed[g] / has[g]);
   }
   PetscCall(PetscArrayzero(energy->change, contact->n_bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,6 +139,7 @@ static PetscErrorCode GrowRoom(Contact contact)
 PetscErrorCode ContactBookWork(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
+  PetscReal     *room = energy->of_group, *members = room + contact->n_bodies, *lost = members + contact->n_bodies;
 
   PetscFunctionBegin;
   energy->rebuilt = PETSC_FALSE;
@@ -144,34 +148,59 @@ PetscErrorCode ContactBookWork(Contact contact)
   PetscCall(PetscArraycpy(energy->accepted_force, contact->end.force, contact->rows.n));
   PetscCall(BookLevel(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) energy->last_stored[i] = (*contact->ops->stored)(contact, i, contact->end.gap[i]);
-  for (PetscInt g = 0; g < contact->n_bodies; g++) {
-    const PetscReal work = energy->group_work[g];
-    PetscReal       lost = 0, room;
-
-    if (energy->group[g] != g || work == 0) continue;
-    energy->work += work;
-    if (work > 0) {
-      room = ContactGroupRoom(contact, g);
-      for (PetscInt b = 0; b < contact->n_bodies; b++)
-        if (energy->group[b] == g) energy->room[b] *= room > 0 ? PetscMax(1 - work / room, 0) : 0;
-      continue;
-    }
-    for (PetscInt p = 0; p < contact->n_pairs; p++)
-      if (energy->group[contact->pairs[p].body[0]] == g) lost += PetscMax(-energy->pair_sums[2 * p], 0);
-    for (PetscInt b = 0, n = 0; lost == 0 && b < contact->n_bodies; b++) /* not by a pair: to all of the group alike */
-      if (energy->group[b] == g) {
-        for (PetscInt c = n = 0; c < contact->n_bodies; c++) n += energy->group[c] == g;
-        energy->room[b] -= work / n;
-      }
-    for (PetscInt p = 0; lost > 0 && p < contact->n_pairs; p++) {
-      const ContactPair *pair  = &contact->pairs[p];
-      const PetscReal    share = -work * PetscMax(-energy->pair_sums[2 * p], 0) / lost;
-
-      if (energy->group[pair->body[0]] != g) continue;
-      energy->room[pair->body[0]] += pair->obstacle ? share : 0.5 * share;
-      if (!pair->obstacle) energy->room[pair->body[1]] += 0.5 * share;
-    }
+  PetscCall(PetscArrayzero(room, 2 * contact->n_bodies));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    room[energy->group[b]] += energy->room[b];
+    members[energy->group[b]] += 1;
+    if (energy->group[b] == b) energy->work += energy->group_work[b];
   }
+  PetscCall(PetscArrayzero(lost, contact->n_bodies));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    lost[energy->group[contact->pairs[p].body[0]]] += PetscMax(-energy->pair_sums[2 * p], 0);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const PetscInt  g    = energy->group[b];
+    const PetscReal work = energy->group_work[g];
+
+    if (work > 0) energy->room[b] *= room[g] > 0 ? PetscMax(1 - work / room[g], 0) : 0;
+    else if (work < 0 && lost[g] == 0) energy->room[b] -= work / members[g]; /* not by a pair: to all of the group alike */
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscInt     g    = energy->group[pair->body[0]];
+    PetscReal          share;
+
+    if (!(energy->group_work[g] < 0) || !(lost[g] > 0)) continue;
+    share = -energy->group_work[g] * PetscMax(-energy->pair_sums[2 * p], 0) / lost[g];
+    energy->room[pair->body[0]] += pair->obstacle ? share : 0.5 * share;
+    if (!pair->obstacle) energy->room[pair->body[1]] += 0.5 * share;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroyRowEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree4(energy->last_stored, energy->accepted_force, energy->last_force, energy->start_force));
+  PetscCall(PetscFree4(energy->last, energy->now, energy->leaves, energy->rest));
+  PetscCall(PetscFree4(energy->half_force, energy->half_rest, energy->gain_force, energy->gain_rest));
+  PetscCall(PetscFree3(energy->pair_sums, energy->first_springs, energy->springs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for what is kept of each pair and row */
+PetscErrorCode ContactSetUpRowEnergy(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+  const PetscInt rows = contact->rows.n, pairs = contact->n_pairs;
+
+  PetscFunctionBegin;
+  PetscCall(DestroyRowEnergy(contact));
+  PetscCall(PetscCalloc4(rows, &energy->last_stored, rows, &energy->accepted_force, rows, &energy->last_force, rows, &energy->start_force));
+  PetscCall(PetscCalloc4(rows, &energy->last, rows, &energy->now, rows, &energy->leaves, rows, &energy->rest));
+  PetscCall(PetscCalloc4(rows, &energy->half_force, rows, &energy->half_rest, rows, &energy->gain_force, rows, &energy->gain_rest));
+  PetscCall(PetscCalloc3(2 * pairs, &energy->pair_sums, 2 * pairs, &energy->first_springs, 2 * pairs, &energy->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,17 +208,13 @@ PetscErrorCode ContactBookWork(Contact contact)
 PetscErrorCode ContactSetUpEnergy(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
-  const PetscInt n = contact->n_bodies, rows = contact->rows.n;
+  const PetscInt n      = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc5(n, &energy->change, n, &energy->start_energy, n, &energy->first_work, rows, &energy->last_stored, rows,
-                         &energy->accepted_force));
-  PetscCall(PetscCalloc6(n, &energy->room, n, &energy->group, n, &energy->group_work, 2 * contact->n_pairs, &energy->pair_sums, n,
-                         &energy->first_energy, n, &energy->energies));
-  PetscCall(PetscCalloc6(rows, &energy->last_force, rows, &energy->start_force, rows, &energy->last, rows, &energy->now, rows,
-                         &energy->leaves, n, &energy->search));
-  PetscCall(PetscCalloc3(2 * contact->n_pairs, &energy->first_springs, 2 * contact->n_pairs, &energy->springs, rows, &energy->rest));
-  PetscCall(PetscCalloc4(rows, &energy->half_force, rows, &energy->half_rest, rows, &energy->gain_force, rows, &energy->gain_rest));
+  PetscCall(PetscCalloc5(n, &energy->change, n, &energy->start_energy, n, &energy->first_work, n, &energy->room, n, &energy->group));
+  PetscCall(PetscCalloc5(n, &energy->group_work, n, &energy->first_energy, n, &energy->energies, n, &energy->search, 3 * n,
+                         &energy->of_group));
+  PetscCall(ContactSetUpRowEnergy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,10 +243,8 @@ PetscErrorCode ContactDestroyEnergy(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree5(energy->change, energy->start_energy, energy->first_work, energy->last_stored, energy->accepted_force));
-  PetscCall(PetscFree6(energy->room, energy->group, energy->group_work, energy->pair_sums, energy->first_energy, energy->energies));
-  PetscCall(PetscFree6(energy->last_force, energy->start_force, energy->last, energy->now, energy->leaves, energy->search));
-  PetscCall(PetscFree3(energy->first_springs, energy->springs, energy->rest));
-  PetscCall(PetscFree4(energy->half_force, energy->half_rest, energy->gain_force, energy->gain_rest));
+  PetscCall(DestroyRowEnergy(contact));
+  PetscCall(PetscFree5(energy->change, energy->start_energy, energy->first_work, energy->room, energy->group));
+  PetscCall(PetscFree5(energy->group_work, energy->first_energy, energy->energies, energy->search, energy->of_group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

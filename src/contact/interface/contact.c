@@ -350,6 +350,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     if (c->nodes.dofs) PetscCall(PetscFree(c->nodes.dofs[b]));
   }
   PetscCall(ContactDestroyRows(c));
+  PetscCall(ContactDestroyNeighbours(c));
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));

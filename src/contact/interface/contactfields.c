@@ -22,7 +22,28 @@ struct _n_ContactFields {
   Vec      *rows;     /* per body: one number for each row of it */
   Vec      *nodes;    /* per body: N_CARRIED vectors of its displacements' layout */
   PetscReal smallest; /* smaller areas are round-off [m^2] */
+  PetscInt  layouts;  /* how often pairs had come or gone when room was made for the rows */
 };
+
+/* Room for the rows that there are now */
+static PetscErrorCode MakeRoom(ContactFields f)
+{
+  Contact   contact = f->contact;
+  MPI_Comm  comm    = PetscObjectComm((PetscObject)contact);
+  PetscReal largest = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(VecDestroy(&f->rows[b]));
+    PetscCall(VecCreateMPI(comm, contact->body_rows[b].n, PETSC_DETERMINE, &f->rows[b]));
+  }
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    largest = PetscMax(largest, contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
+  f->smallest = NO_AREA * largest;
+  f->layouts  = contact->neighbours.layouts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   ContactFieldsCreate - what is needed to compute nodal fields of contact
@@ -41,14 +62,12 @@ struct _n_ContactFields {
 @*/
 PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
 {
-  MPI_Comm      comm    = PetscObjectComm((PetscObject)contact);
-  PetscReal     largest = 0;
   ContactFields f;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(fields, 2);
-  PetscCheck(contact->setup, comm, PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetUp() first");
+  PetscCheck(contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetUp() first");
   PetscCall(PetscNew(&f));
   *fields    = f;
   f->contact = contact;
@@ -56,14 +75,10 @@ PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec positions;
 
-    PetscCall(VecCreateMPI(comm, contact->body_rows[b].n, PETSC_DETERMINE, &f->rows[b]));
     PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
     for (PetscInt k = 0; k < N_CARRIED; k++) PetscCall(VecDuplicate(positions, &f->nodes[N_CARRIED * b + k]));
   }
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    largest = PetscMax(largest, contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
-  f->smallest = NO_AREA * largest;
+  PetscCall(MakeRoom(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -95,19 +110,19 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(fields->rows[b], &values));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    const PetscInt     sign = ContactSign(pair, b);
-    TransferRows       rows;
+  for (PetscInt j = 0; j < contact->body_rows[b].n; j++) {
+    const PetscInt     i    = contact->body_rows[b].rows[j];
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+    const PetscInt     node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+    PetscReal          along = k == 0;
 
-    if (!sign) continue;
-    PetscCall(TransferGetRows(pair->transfer, &rows));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
-      const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0;
+    if (contact->options.law == CONTACT_LAW_TIED) {
+      TransferRows rows;
 
-      values[i - pair->shift[sign > 0 ? 1 : 0]] = sign * RowValue(contact, i, along, kind);
+      PetscCall(TransferGetRows(pair->transfer, &rows));
+      along = rows.normals[contact->dim * node + k];
     }
+    values[j] = ContactSign(pair, b) * RowValue(contact, i, along, kind);
   }
   PetscCall(VecRestoreArrayWrite(fields->rows[b], &values));
   PetscCall(MatMultTranspose(contact->interfaces[b], fields->rows[b], fields->nodes[N_CARRIED * b + kind]));
@@ -160,6 +175,7 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   PetscAssertPointer(fields, 1);
   PetscCheck(body >= 0 && body < contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no body %" PetscInt_FMT "; there are %" PetscInt_FMT, body, contact->n_bodies);
+  if (fields->layouts != contact->neighbours.layouts) PetscCall(MakeRoom(fields));
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(VecGetLocalSize(nodes[0], &n));
   for (Carried k = 0; k < N_CARRIED; k++) {

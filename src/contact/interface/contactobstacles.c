@@ -130,6 +130,12 @@ PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(i, 3);
   ContactCheckPair(contact, pair);
+  if (contact->neighbours.come_and_go) {
+    PetscInt body;
+
+    ContactGetTold(contact, pair, &body, i);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   *i = contact->pairs[pair].obstacle ? contact->n_obstacles - 1 : -1;
   while (*i >= 0 && contact->obstacles[*i] != contact->pairs[pair].obstacle) (*i)--;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -179,6 +185,7 @@ PetscErrorCode ContactRefuseTurned(Contact contact, const ContactPair *pair)
 PetscErrorCode ContactWarnOfObstacles(Contact contact)
 {
   PetscFunctionBegin;
+  if (contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS); /* whoever comes near will */
   for (PetscInt o = 0; o < contact->n_obstacles; o++) {
     PetscInt    pairs = 0;
     int         rows  = 0;

@@ -94,8 +94,9 @@ static PetscErrorCode ReadPairs(Contact contact)
   PetscCall(error);
   if (!set && !contact->n_pairs) all = (PetscBool)(contact->n_bodies == 2 || (contact->n_bodies == 1 && contact->n_obstacles));
   if (all) PetscCall(ContactAddAllPairs(contact));
-  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || none, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none", contact->n_bodies);
+  PetscCheck(contact->n_bodies < 2 || contact->n_pairs || contact->neighbours.all || none, PetscObjectComm((PetscObject)contact),
+             PETSC_ERR_USER_INPUT, "There are %" PetscInt_FMT " bodies; say which may touch: -contact_pairs a:b,b:c, or auto, or none",
+             contact->n_bodies);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,6 +104,7 @@ static PetscErrorCode ReadPairs(Contact contact)
 static PetscErrorCode TakeRowSides(Contact contact, PetscInt n, char *names[])
 {
   PetscFunctionBegin;
+  if (n != 1 && contact->neighbours.all) PetscCall(ContactAddEachPair(contact));
   PetscCheck(n == 1 || n == contact->n_pairs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_rows has %" PetscInt_FMT " values for %" PetscInt_FMT " pairs; give one for all, or one for each", n,
              contact->n_pairs);

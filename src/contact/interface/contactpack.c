@@ -8,9 +8,10 @@
 #include "contactvisit.h"
 
 /* Numbers of a row; the last of them is its own among those of all ranks */
-enum { N_ROW = 25, ROW_NUMBER = N_ROW - 1 };
+enum { N_ROW = CONTACT_ROW_NUMBERS, ROW_NUMBER = N_ROW - 1 };
 
-static void CopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *packed)
+/* What is kept of a row, to `packed` or back */
+void ContactCopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *packed)
 {
   ContactState *const states[] = {&contact->start, &contact->end};
 
@@ -67,7 +68,7 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
       const PetscInt at     = pair->begin + i * components + k;
       PetscReal     *number = line + TABLES_KEY + k * N_ROW + ROW_NUMBER;
 
-      CopyRow(contact, at, back, line + TABLES_KEY + k * N_ROW);
+      ContactCopyRow(contact, at, back, line + TABLES_KEY + k * N_ROW);
       if (back && was) was[at] = (PetscInt)*number;
       if (!back) *number = (PetscReal)(contact->rows.begin + at);
     }
@@ -96,6 +97,7 @@ PetscErrorCode ContactPack(Contact contact, Tables tables)
   }
   if (contact->rows.n_all) PetscTryTypeMethod(contact, pack, tables);
   PetscCall(ContactPackImpulses(contact, tables));
+  PetscCall(ContactPackTold(contact, PETSC_FALSE, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,6 +189,7 @@ PetscErrorCode ContactUnpack(Contact contact, Tables tables)
     for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, NULL, tables));
   }
   PetscCall(ContactUnpackImpulses(contact, tables));
+  PetscCall(ContactPackTold(contact, PETSC_TRUE, tables));
   contact->attempt.again = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

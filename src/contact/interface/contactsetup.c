@@ -35,7 +35,7 @@ static PetscErrorCode ShareControllerStep(Contact contact)
       substeps = rest;
     }
   }
-  if (!contact->options.shared_times || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->options.shared_times || (!contact->n_pairs && !contact->neighbours.come_and_go)) PetscFunctionReturn(PETSC_SUCCESS);
   contact->parts = common;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyShareControllerStep(contact->bodies[b], common));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,6 +89,7 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
+  PetscCall(ContactChooseAllPairs(contact));
   PetscCall(ContactOrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StatusLineTell("elements of body %s", ((PetscObject)contact->bodies[b])->name);
@@ -153,22 +154,28 @@ PetscErrorCode ContactSetUp(Contact contact)
 /* The present states are the start; `of_state`: they come from another run */
 static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
 {
+  ContactPairState *states;
+  PetscBool         renewed;
+
   PetscFunctionBegin;
+  PetscCall(ContactRenewNeighbours(contact, 0, PETSC_TRUE, &renewed)); /* initial displacements count */
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactTie(contact));
   PetscCall(ContactDropShared(contact));
   PetscCall(ContactLetTouch(contact, of_state));
+  PetscCall(PetscMalloc1(contact->n_pairs, &states));
+  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    ContactPairState   state;
+    const ContactPair     *pair  = &contact->pairs[p];
+    const ContactPairState state = states[p];
 
-    PetscCall(ContactGetPairState(contact, p, &state));
     if (pair->obstacle && state.gap < -contact->options.tolerance) PetscCall(ContactRefuseInside(contact, pair, -state.gap));
     PetscCheck(pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
                ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   }
+  PetscCall(PetscFree(states));
   PetscCall(ContactSetMeanForces(contact));
   PetscCall(ContactBalanceStart(contact));
   PetscCall(ContactStartTies(contact));
@@ -230,7 +237,7 @@ PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(n, 2);
-  *n = contact->n_pairs;
+  *n = contact->neighbours.come_and_go ? contact->neighbours.told.n : contact->n_pairs;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,6 +258,10 @@ PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
   Level: intermediate
 
   Note:
+  Of many pairs that the program has chosen those alone have rows whose bodies are near. Then a pair is what all other bodies together do to
+a body, `body:others`, of which that body is both the first and the second, or a body and an obstacle: first all of the former, in the order
+of the bodies.
+
   The first body takes displacements and has the contact rows, the second one takes tractions, unless `ContactSetRowSide()` has turned that
   round: see `ContactGetPairRowSide()`.
 
@@ -263,6 +274,15 @@ PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[]
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   ContactCheckPair(contact, pair);
+  if (contact->neighbours.come_and_go) {
+    PetscInt body, obstacle;
+
+    ContactGetTold(contact, pair, &body, &obstacle);
+    if (name) *name = contact->neighbours.told.names[pair];
+    if (dirichlet) *dirichlet = contact->bodies[body];
+    if (neumann) *neumann = obstacle < 0 ? contact->bodies[body] : NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   first = contact->pairs[pair].turned ? 1 : 0;
   if (name) *name = contact->pairs[pair].name;
   if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[first]];
@@ -292,6 +312,10 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(normal, 3);
   ContactCheckPair(contact, pair);
+  if (contact->neighbours.come_and_go) { /* there is none */
+    for (PetscInt d = 0; d < 3; d++) normal[d] = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt d = 0; d < 3; d++) normal[d] = ContactPairSign(&contact->pairs[pair]) * contact->pairs[pair].normal[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -153,7 +153,7 @@ static PetscErrorCode VisitObstacleTraces(Contact contact, Checkpoint checkpoint
 PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
 {
   PetscFunctionBegin;
-  *has = (PetscBool)(contact->ops->visit || !contact->rows.n_all);
+  *has = (PetscBool)(contact->ops->visit || (!contact->rows.n_all && !contact->neighbours.come_and_go));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,13 +166,44 @@ PetscErrorCode ContactRepeatsBits(Contact contact, PetscBool *repeats)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Pairs that come and go: those that there are, and when they are looked for again */
+static PetscErrorCode VisitNeighbours(Contact contact, Checkpoint checkpoint)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+  PetscInt           n          = contact->n_pairs, *list;
+
+  PetscFunctionBegin;
+  if (!neighbours->come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitInts(checkpoint, "pairs that are near", 1, &n));
+  PetscCheck(n >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has %" PetscInt_FMT " pairs", n);
+  PetscCall(PetscMalloc1(2 * n, &list));
+  for (PetscInt p = 0; p < n && !CheckpointLoads(checkpoint); p++) {
+    list[2 * p]     = contact->pairs[p].body[0];
+    list[2 * p + 1] = ContactPairPartner(contact, &contact->pairs[p]);
+  }
+  PetscCall(CheckpointVisitInts(checkpoint, "their bodies", 2 * n, list));
+  for (PetscInt p = 0; p < n; p++)
+    PetscCheck(list[2 * p] >= 0 && list[2 * p] < contact->n_bodies && list[2 * p + 1] >= 0 &&
+                   list[2 * p + 1] < contact->n_bodies + contact->n_obstacles && list[2 * p] != list[2 * p + 1],
+               PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
+               "The checkpoint has a pair of bodies that are not there: it is of another problem");
+  PetscCall(CheckpointVisitReals(checkpoint, "near", 1, &neighbours->near));
+  PetscCall(CheckpointVisitReals(checkpoint, "room left", 1, &neighbours->room_left));
+  if (CheckpointLoads(checkpoint)) PetscCall(ContactReplacePairs(contact, n, list));
+  PetscCall(PetscFree(list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactVisitShared - what all ranks have of the state of contact and of its bodies, to or from a checkpoint */
 PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
 {
-  const PetscInt sizes[] = {contact->n_bodies, contact->n_pairs, contact->rows.n_all, contact->parts};
+  PetscInt sizes[] = {contact->n_bodies, contact->n_pairs, contact->rows.n_all, contact->parts};
 
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, "contact"));
+  PetscCall(VisitNeighbours(contact, checkpoint));
+  sizes[1] = contact->n_pairs;
+  sizes[2] = contact->rows.n_all;
   PetscCall(CheckpointCheckInts(checkpoint, "bodies, pairs, rows and parts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
   PetscCall(VisitNumbers(contact, checkpoint));
   PetscCall(VisitEnergy(contact, checkpoint));
@@ -221,6 +252,7 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
   PetscCall(VisitRowStates(contact, checkpoint));
   PetscCall(ContactVisitImpulses(contact, checkpoint));
+  PetscCall(ContactVisitTold(contact, checkpoint));
   PetscCall(VisitObstacleTraces(contact, checkpoint));
   if (contact->turns.n) PetscCall(CheckpointVisitReals(checkpoint, "turned", contact->rows.n, contact->turns.turned));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));

@@ -75,7 +75,10 @@ PetscErrorCode ContactGetOverlap(Contact contact, PetscInt pair, PetscReal *dept
   PetscAssertPointer(inside, 4);
   PetscCall(ContactGetPairState(contact, pair, &state));
   *depth = PetscMax(-state.gap, 0);
-  PetscCall(LeastElement(contact, &contact->pairs[pair], &least));
+  if (contact->neighbours.come_and_go) {
+    least = PETSC_MAX_REAL;
+    for (PetscInt b = 0; b < contact->n_bodies; b++) least = PetscMin(least, contact->neighbours.edge[b]);
+  } else PetscCall(LeastElement(contact, &contact->pairs[pair], &least));
   *inside = (PetscBool)(contact->options.law != CONTACT_LAW_TIED && *depth > INSIDE * least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -136,20 +136,24 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees what a pair has */
+PetscErrorCode ContactDestroyPair(ContactPair *pair)
+{
+  PetscFunctionBegin;
+  PetscCall(TransferDestroy(&pair->transfer));
+  for (PetscInt side = 0; side < 2; side++) {
+    PetscCall(SurfaceDestroy(&pair->surfaces[side]));
+    PetscCall(PetscFree(pair->surface[side]));
+  }
+  PetscCall(PetscFree(pair->name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Frees pairs and obstacles */
 PetscErrorCode ContactDestroyPairs(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    PetscCall(TransferDestroy(&pair->transfer));
-    for (PetscInt side = 0; side < 2; side++) {
-      PetscCall(SurfaceDestroy(&pair->surfaces[side]));
-      PetscCall(PetscFree(pair->surface[side]));
-    }
-    PetscCall(PetscFree(pair->name));
-  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactDestroyPair(&contact->pairs[p]));
   for (PetscInt s = 0; s < contact->n_surfaces; s++) PetscCall(SurfaceDestroy(&contact->surfaces[s].surface));
   PetscCall(PetscFree(contact->surfaces));
   for (PetscInt o = 0; o < contact->n_obstacles; o++) PetscCall(ObstacleDestroy(&contact->obstacles[o]));
@@ -229,15 +233,68 @@ PetscErrorCode ContactFindDimension(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All bodies with each other and with all obstacles */
+/* All bodies with each other and with all obstacles. If these are many it is left to the set-up whether they come and go. */
 PetscErrorCode ContactAddAllPairs(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
+  PetscCall(ContactFindDimension(contact));
+  PetscCall(ContactHasMany(contact, &contact->neighbours.all));
+  if (contact->n_pairs) contact->neighbours.all = PETSC_FALSE; /* others have been added */
+  if (!contact->neighbours.all) PetscCall(ContactAddEachPair(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the program is to choose all pairs, and there are many: those that are near, if pairs can come and go, or all */
+PetscErrorCode ContactChooseAllPairs(Contact contact)
+{
+  ContactPreference *preferences;
+  PetscBool          suits;
+
+  PetscFunctionBegin;
+  if (!contact->neighbours.all) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactSuitsNeighbours(contact, &suits));
+  if (!suits || contact->n_pairs) {
+    PetscCall(ContactAddEachPair(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  contact->neighbours.all = PETSC_FALSE;
+  PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
+  PetscCall(ContactGetPreferences(contact, preferences));
+  PetscCall(ContactSetUpNeighbours(contact, preferences));
+  PetscCall(PetscFree(preferences));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds a pair that is near; `second`: a body, or the number of bodies and that of an obstacle. The first body comes before it in the order
+   of the bodies. */
+PetscErrorCode ContactAppendNeighbours(Contact contact, PetscInt first, PetscInt second, ContactPair **pair)
+{
+  const PetscInt o    = second - contact->n_bodies;
+  const char    *name = NULL;
+  char           names[256];
+
+  PetscFunctionBegin;
+  if (o >= 0) PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+  else name = ((PetscObject)contact->bodies[second])->name;
+  PetscCall(PetscSNPrintf(names, sizeof(names), "%s:%s", ((PetscObject)contact->bodies[first])->name, name));
+  PetscCall(AppendPair(contact, names, pair));
+  (*pair)->body[0] = first;
+  (*pair)->body[1] = PetscMin(second, contact->n_bodies);
+  (*pair)->chosen  = PETSC_TRUE;
+  if (o >= 0) (*pair)->obstacle = contact->obstacles[o];
+  else (void)ContactChooseSides(&contact->neighbours.preferences[first], &contact->neighbours.preferences[second], &(*pair)->why);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All bodies with each other and with all obstacles, for the whole run */
+PetscErrorCode ContactAddEachPair(Contact contact)
 {
   ContactPreference *preferences;
   PetscBool          hidden;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
-  PetscCall(ContactFindDimension(contact));
+  contact->neighbours.all = PETSC_FALSE;
   PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
   PetscCall(ContactGetPreferences(contact, preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)

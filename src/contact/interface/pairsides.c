@@ -115,6 +115,28 @@ static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static int ComparePreferences(const void *a, const void *b, void *context)
+{
+  const ContactPreference *preferences = (const ContactPreference *)context;
+  const PetscInt           i = *(const PetscInt *)a, j = *(const PetscInt *)b;
+  const char              *why;
+
+  if (i == j) return 0;
+  return ContactChooseSides(&preferences[PetscMin(i, j)], &preferences[PetscMax(i, j)], &why) ? (i < j ? 1 : -1) : (i < j ? -1 : 1);
+}
+
+/* Where pairs come and go, the order of the bodies is that in which any two of them would have their sides */
+static PetscErrorCode OrderByPreference(Contact contact)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->order[b] = b;
+  PetscCall(PetscTimSort(contact->n_bodies, contact->order, sizeof(PetscInt), ComparePreferences, neighbours->preferences));
+  for (PetscInt k = 0; k < contact->n_bodies; k++) neighbours->place[contact->order[k]] = k;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Bodies in an order in which every Dirichlet side comes before its Neumann side. Pairs that have been turned round for their finer
    surface, and form a circle by that, are turned back, the last one first. */
 PetscErrorCode ContactOrderBodies(Contact contact)
@@ -122,6 +144,10 @@ PetscErrorCode ContactOrderBodies(Contact contact)
   PetscInt done, last;
 
   PetscFunctionBegin;
+  if (contact->neighbours.come_and_go) {
+    PetscCall(OrderByPreference(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(FindOrder(contact, &done));
   for (last = contact->n_pairs - 1; done < contact->n_bodies && last >= 0; last--) {
     if (!contact->pairs[last].turned || contact->pairs[last].row_side != CONTACT_ROW_SIDE_FINER) continue;

@@ -63,6 +63,36 @@ static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The step of all pairs that may come and go, or less: that of two unequal sides lies between those of two equal ones, and no two bodies
+   close faster than the two fastest */
+static PetscErrorCode GetNeighboursStep(Contact contact, PetscReal *step, size_t size, char reason[])
+{
+  PetscReal   first = 0, second = 0, smallest = PETSC_MAX_REAL;
+  const char *name = "";
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal speed = 0;
+    Side      side;
+
+    PetscCall(GetSide(contact->bodies[b], &side));
+    for (PetscInt d = 0; d < 3; d++) speed += PetscSqr(side.velocity[d]);
+    speed    = PetscSqrtReal(speed);
+    second   = PetscMax(second, PetscMin(first, speed));
+    first    = PetscMax(first, speed);
+    smallest = PetscMin(smallest, side.size);
+    if (side.transit >= *step) continue;
+    *step = side.transit;
+    name  = ((PetscObject)contact->bodies[b])->name;
+  }
+  PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g s", name, (double)*step));
+  if (!((first + second) * *step > CLOSING * smallest)) PetscFunctionReturn(PETSC_SUCCESS);
+  *step = CLOSING * smallest / (first + second);
+  PetscCall(PetscSNPrintf(reason, size, "the two fastest bodies close at %.3g m/s at most, by %g of a contact element in it",
+                          (double)(first + second), CLOSING));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGetResolvedStep - the largest controller step that resolves contact
 
@@ -83,6 +113,8 @@ static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, Pets
 of the elements with a contact node and M the modulus of plane waves, the step is sqrt((1/k_1 + 1/k_2) / (1/m_1 + 1/m_2)): between equal
 sides the time that a wave takes through a contact element.
 
+  Where pairs come and go it is that of the body through whose contact elements waves go fastest.
+
   It is less where the bodies, at their mean velocities at the start, would close by more than a quarter of a contact element.
 
 .seealso: `Contact`, `ContactSetUpSurfaces()`, `ControllerSetTimes()`
@@ -96,6 +128,10 @@ PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t s
   *step     = PETSC_INFINITY;
   reason[0] = 0;
   if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS); /* no row joins or leaves */
+  if (contact->neighbours.come_and_go) {
+    PetscCall(GetNeighboursStep(contact, step, size, reason));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair    = &contact->pairs[p];
     PetscBool          inertia = PETSC_TRUE;

@@ -16,26 +16,33 @@ enum {
   N_SUMS             = SUM_BEYOND + 1
 };
 
-/* What is kept of a pair from step to step: its impulse and the force at the end of the last step, 3 numbers each, and the same of the
-   normal forces, one number each; the impulse of nodes beyond the end of the partner */
-#define N_KEPT 9
+#define N_KEPT CONTACT_IMPULSES
 
 /* Of what the largest value of a pair's rows is found */
 enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
 
-/* Makes room for the resultants, and notes cross-sections and controller step. The bodies must have been set up. */
+/* Makes room for the resultants of all pairs, and notes cross-sections */
+PetscErrorCode ContactSetUpPairResultants(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactDestroyResultants(contact));
+  PetscCall(PetscCalloc4(contact->n_pairs, &contact->resultants.cross_section, N_SUMS * contact->n_pairs, &contact->resultants.sums,
+                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, N_KEPT * contact->n_pairs,
+                         &contact->resultants.impulse));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->resultants.cross_section[p]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for the resultants, and notes the controller step. The bodies must have been set up. */
 PetscErrorCode ContactSetUpResultants(Contact contact)
 {
   PetscInt substeps;
   TS       ts;
 
   PetscFunctionBegin;
-  if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc4(contact->n_pairs, &contact->resultants.cross_section, N_SUMS * contact->n_pairs, &contact->resultants.sums,
-                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, N_KEPT * contact->n_pairs,
-                         &contact->resultants.impulse));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->resultants.cross_section[p]));
+  if (!contact->n_pairs && !contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactSetUpPairResultants(contact));
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTimeStep(ts, &contact->step));
   PetscCall(BodyGetSubsteps(contact->bodies[0], &substeps));
@@ -238,7 +245,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
 }
 
 /* States of the pairs `begin` to `end` - 1 */
-static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt end, ContactPairState states[])
+PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscInt end, ContactPairState states[])
 {
   PetscReal *sums = contact->resultants.sums, *maxima = contact->resultants.maxima;
 
@@ -292,7 +299,8 @@ PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairSt
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(state, 3);
   ContactCheckPair(contact, pair);
-  PetscCall(ComputeStates(contact, pair, pair + 1, state));
+  if (contact->neighbours.come_and_go) PetscCall(ContactTellState(contact, pair, state));
+  else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -316,6 +324,7 @@ PetscErrorCode ContactGetPairStates(Contact contact, ContactPairState states[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->n_pairs) PetscAssertPointer(states, 2);
-  PetscCall(ComputeStates(contact, 0, contact->n_pairs, states));
+  if (contact->neighbours.come_and_go) PetscCall(ContactTellStates(contact, states));
+  else PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

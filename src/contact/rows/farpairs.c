@@ -34,13 +34,23 @@ static PetscErrorCode GetBoxes(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Distance of two boxes [m] */
-static PetscReal Distance(const PetscReal a[], const PetscReal b[])
+/* Where pairs come and go, there are those alone whose bodies are near; but some are not yet so near that they need rows with partners */
+static PetscErrorCode FindFarNeighbours(Contact contact, PetscReal near)
 {
-  PetscReal square = 0;
+  const PetscReal *boxes, *edge = contact->neighbours.edge;
 
-  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(a[d] + b[3 + d], b[d] + a[3 + d])));
-  return PetscSqrtReal(square);
+  PetscFunctionBegin;
+  if (!contact->work.boxes) PetscCall(PetscMalloc1(6 * contact->n_surfaces, &contact->work.boxes));
+  PetscCall(GetBoxes(contact));
+  boxes = contact->work.boxes;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    if (pair->obstacle) continue;
+    pair->distance = ContactBoxDistance(boxes + 6 * pair->place[0], boxes + 6 * pair->place[1]);
+    pair->far      = (PetscBool)(pair->distance > near + PetscMax(edge[pair->body[0]], edge[pair->body[1]]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Which pairs are far. `near`: surfaces that far apart may touch in the next controller step [m]. Call with the surfaces where they are. */
@@ -50,6 +60,10 @@ PetscErrorCode ContactFindFarPairs(Contact contact, PetscReal near)
   PetscInt  chosen  = 0;
 
   PetscFunctionBegin;
+  if (contact->neighbours.come_and_go) {
+    PetscCall(FindFarNeighbours(contact, near));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt p = 0; p < contact->n_pairs && chosen <= FEW_PAIRS; p++) chosen += contact->pairs[p].chosen && !contact->pairs[p].obstacle;
   if (chosen <= FEW_PAIRS) PetscFunctionReturn(PETSC_SUCCESS);
   if (!contact->work.boxes) PetscCall(PetscMalloc1(6 * contact->n_surfaces, &contact->work.boxes));
@@ -64,7 +78,7 @@ PetscErrorCode ContactFindFarPairs(Contact contact, PetscReal near)
     ContactPair *pair = &contact->pairs[p];
 
     if (!pair->chosen || pair->obstacle || pair->bonded) continue;
-    pair->distance = Distance(contact->work.boxes + 6 * pair->place[0], contact->work.boxes + 6 * pair->place[1]);
+    pair->distance = ContactBoxDistance(contact->work.boxes + 6 * pair->place[0], contact->work.boxes + 6 * pair->place[1]);
     pair->far      = (PetscBool)(pair->distance > near + FAR * largest);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -56,17 +56,34 @@ PetscErrorCode ContactCheckNear(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The contact position and velocity of a body in the history are those of the first surface that it has */
+static PetscErrorCode NoteNodes(Contact contact, PetscInt body, Surface surface)
+{
+  const SurfaceData *data;
+  PetscInt           rstart;
+  Vec                positions;
+
+  PetscFunctionBegin;
+  if (contact->nodes.n_all[body]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SurfaceGetData(surface, &data));
+  PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->nodes.n_all[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+  PetscCall(VecGetOwnershipRange(positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(data->n_owned, &contact->nodes.dofs[body]));
+  for (PetscInt i = 0; i < data->n_owned; i++) contact->nodes.dofs[body][i] = data->dofs[i] - rstart;
+  contact->nodes.n[body] = data->n_owned;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any of them may
    come to lie opposite to the partner as bodies slide; none of a pair whose nodes are tied and keep their mass */
 PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    const SurfaceData *data;
-    const PetscInt    *vertices;
-    PetscInt           n, rstart, body = pair->body[side];
-    PetscBool          near;
-    Vec                positions;
+    const PetscInt *vertices;
+    PetscInt        n, body = pair->body[side];
+    PetscBool       near;
 
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
     PetscCall(BodyGetMassRedistributeNear(contact->bodies[body], &near));
@@ -74,15 +91,7 @@ PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
       if (near) PetscCall(MarkNearNodes(contact, pair, side));
       else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
     }
-    if (contact->nodes.n_all[body]) continue;
-    /* the contact position and velocity of a body in the history are those of its first pair */
-    PetscCall(SurfaceGetData(pair->surfaces[side], &data));
-    PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->nodes.n_all[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-    PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
-    PetscCall(VecGetOwnershipRange(positions, &rstart, NULL));
-    PetscCall(PetscMalloc1(data->n_owned, &contact->nodes.dofs[body]));
-    for (PetscInt i = 0; i < data->n_owned; i++) contact->nodes.dofs[body][i] = data->dofs[i] - rstart;
-    contact->nodes.n[body] = data->n_owned;
+    PetscCall(NoteNodes(contact, body, pair->surfaces[side]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,6 +146,13 @@ static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt s
   DM              dm;
 
   PetscFunctionBegin;
+  if (contact->neighbours.come_and_go) { /* all bodies have theirs from the start, in their order */
+    entry = &contact->surfaces[pair->body[side]];
+    PetscCall(PetscObjectReference((PetscObject)entry->surface));
+    pair->surfaces[side] = entry->surface;
+    pair->place[side]    = pair->body[side];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt s = 0; s < contact->n_surfaces && shared; s++) {
     PetscBool same;
 
@@ -162,6 +178,43 @@ static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt s
   PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
   PetscCall(PetscObjectReference((PetscObject)entry->surface));
   pair->surfaces[side] = entry->surface;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where pairs come and go: the surfaces of all bodies, whose nodes may all touch; then the pairs that are near. `extent` becomes the
+   largest coordinate of the meshes, without sign, if it was smaller [m]. */
+PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
+{
+  PetscInt n_found;
+
+  PetscFunctionBegin;
+  contact->n_surfaces = contact->max_surfaces = contact->n_bodies;
+  PetscCall(PetscCalloc1(contact->n_bodies, &contact->surfaces));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactSurface *entry = &contact->surfaces[b];
+    const PetscInt *vertices;
+    PetscReal       lower[3], upper[3];
+    PetscInt        n, dim;
+    DM              dm;
+
+    *entry = (ContactSurface){.body = b, .shared = PETSC_TRUE};
+    PetscCall(BodyGetDM(contact->bodies[b], &dm));
+    PetscCall(SurfaceCreate(dm, NULL, &entry->surface));
+    PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
+    PetscCall(SurfaceGetVertices(entry->surface, &n, &vertices));
+    PetscCall(BodySetContactNodes(contact->bodies[b], n, vertices));
+    PetscCall(NoteNodes(contact, b, entry->surface));
+    PetscCall(DMGetCoordinateDim(dm, &dim));
+    PetscCall(DMGetBoundingBox(dm, lower, upper));
+    for (PetscInt d = 0; d < dim; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
+  }
+  PetscCall(ContactMeasureNeighbours(contact));
+  PetscCall(ContactFindNeighbours(contact, 0, &n_found));
+  for (PetscInt p = 0; p < n_found; p++) {
+    ContactPair *pair;
+
+    PetscCall(ContactAppendNeighbours(contact, contact->neighbours.found[2 * p], contact->neighbours.found[2 * p + 1], &pair));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -208,6 +261,7 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
 /* The transfer of a pair, whose surfaces are known */
 PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
 {
+  Vec       u[2] = {NULL, NULL};
   PetscBool rebuilt;
   PetscBool inertia = PETSC_TRUE, linear = PETSC_TRUE;
 
@@ -230,7 +284,9 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
                                                           (contact->dim == 2 || contact->options.balance))));
   PetscCall(ContactSetUpBalance(contact, pair));
   PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
-  PetscCall(TransferUpdate(pair->transfer, NULL, NULL, contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2) && contact->setup; side++)
+    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+  PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

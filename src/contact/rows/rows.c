@@ -59,6 +59,16 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Room for the rows of all pairs, whose transfers are known, and their numbers */
+PetscErrorCode ContactLayOutRows(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(CountRows(contact));
+  PetscCall(AllocateRows(contact));
+  PetscCall(ContactSetUpTurns(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether row i is held: the method would prescribe displacements of its Dirichlet node, and the user prescribes all of these already */
 static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
 {
@@ -224,6 +234,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ContactChooseTiedMass(contact));
+  if (contact->neighbours.come_and_go) PetscCall(ContactTakeFirstNeighbours(contact, &extent));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(ContactCreateSurfaces(contact, &contact->pairs[p], &extent));
     PetscCall(ContactChooseRowSide(contact, &contact->pairs[p]));
@@ -233,9 +244,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
     PetscCall(ContactCreateTransfer(contact, &contact->pairs[p]));
     PetscCall(ContactMarkNodes(contact, &contact->pairs[p]));
   }
-  PetscCall(CountRows(contact));
-  PetscCall(AllocateRows(contact));
-  PetscCall(ContactSetUpTurns(contact));
+  PetscCall(ContactLayOutRows(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscBool changed;
 

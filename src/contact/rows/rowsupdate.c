@@ -325,7 +325,10 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscBool any = PETSC_FALSE, built = PETSC_FALSE, logged;
 
   PetscFunctionBegin;
-  if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || (!contact->n_pairs && !contact->neighbours.come_and_go))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetReach(contact, &near));
+  PetscCall(ContactRenewNeighbours(contact, near, PETSC_FALSE, &any));
   if (contact->attempt.again) PetscCall(ContactRestoreRows(contact));
   else PetscCall(ContactSaveRows(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -334,7 +337,6 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     of->affected = (PetscBool)(contact->attempt.again && of->rewritten);
     any          = (PetscBool)(any || of->affected);
   }
-  PetscCall(GetReach(contact, &near));
   DropShifts(contact);
   PetscCall(PetscArrayzero(contact->rows.changed, contact->rows.n));
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));

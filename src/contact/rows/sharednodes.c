@@ -60,7 +60,9 @@ PetscErrorCode ContactFindSharedNodes(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt of_body = 0;
 
-    for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
+      const PetscInt i = contact->body_rows[b].rows[k];
+
       if (contact->pairs[contact->rows.pair[i]].body[0] != b) continue;
       rows[of_body]   = i;
       keys[of_body++] = contact->rows.dof[i];
@@ -86,6 +88,7 @@ PetscErrorCode ContactDestroySharedNodes(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscFree4(shared->offsets, shared->rows, shared->left_out, shared->free_dofs));
   PetscCall(PetscFree4(contact->rows.by_force, shared->unit, shared->answers, shared->sorted));
+  shared->n = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, destruction. */
 #include "schwarzimpl.h"
 #include <sys/citations.h>
+#include <stddef.h>
 
 /* Interface unknowns up to which matrices are dense: their factors take 32 MB on every rank then */
 #define DENSE_LIMIT 2000
@@ -183,12 +184,19 @@ static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
+/* Sides that change with every step would have to go over to other pairs */
+static PetscBool MayReplaceRows(Contact contact)
+{
+  return (PetscBool) !((Schwarz *)contact->data)->swap;
+}
+
+/* All but the options */
+static PetscErrorCode ContactReset_Schwarz(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; schwarz->trace && p < 2 * contact->n_pairs; p++) PetscCall(TraceDestroy(&schwarz->trace[p]));
+  for (PetscInt p = 0; schwarz->trace && p < schwarz->n_traces; p++) PetscCall(TraceDestroy(&schwarz->trace[p]));
   for (PetscInt b = 0; schwarz->exchange && b < contact->n_bodies; b++) PetscCall(TraceDestroy(&schwarz->exchange[b]));
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
@@ -202,6 +210,14 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
   PetscCall(RoundsDestroy(&schwarz->rounds));
   PetscCall(SchwarzDestroyTurns(contact));
   PetscCall(PetscFree(schwarz->row_work));
+  PetscCall(PetscMemzero((char *)schwarz + offsetof(Schwarz, mode), sizeof(*schwarz) - offsetof(Schwarz, mode)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactReset_Schwarz(contact));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -273,6 +289,8 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->stepback       = SchwarzStepBack;
   contact->ops->steplevel      = SchwarzSetStepLevel;
   contact->ops->accept         = SchwarzAcceptTied;
+  contact->ops->mayreplacerows = MayReplaceRows;
+  contact->ops->reset          = ContactReset_Schwarz;
   contact->ops->view           = ContactView_Schwarz;
   contact->ops->visit          = SchwarzVisit;
   contact->ops->pack           = SchwarzPack;

@@ -72,7 +72,7 @@ typedef struct {
   PetscBool           recheck;         /* tensile reactions leave the active set within the step */
   PetscBool           swap;            /* sides change with every controller step */
   PetscReal           atol, rtol;      /* on the change of position [m], relative */
-  /* chosen at set-up */
+  /* chosen at set-up; what follows is gone after a reset */
   SchwarzMode mode;
   PetscBool   exact;           /* the compliance of all bodies tells all that sweeps do */
   PetscBool   substeps;        /* a body makes several */
@@ -87,6 +87,7 @@ typedef struct {
   PetscInt   *offset;         /* per row: its first unknown on this rank */
   PetscInt   *all_offset;     /* per row of all ranks: its first unknown */
   /* what goes back and forth */
+  PetscInt   n_traces;  /* of `trace`: two for each pair */
   Trace     *trace;     /* per pair and side, of its rows: what its unknowns put on the Dirichlet side */
   Trace     *exchange;  /* per body: what it hands to its partners */
   Trace      rate[2];   /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */

@@ -139,6 +139,7 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
                contact->pairs[p].name);
   PetscCall(PetscCalloc5(contact->n_pairs, &schwarz->side_levels[0], contact->n_pairs, &schwarz->side_levels[1], 2 * contact->n_pairs,
                          &schwarz->trace, contact->n_pairs, &schwarz->room, 2 * contact->n_pairs, &schwarz->kinematic));
+  schwarz->n_traces = 2 * contact->n_pairs;
   for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)
     for (PetscInt p = 0; p < contact->n_pairs; p++) {
       PetscInt *levels = &schwarz->side_levels[side][p];

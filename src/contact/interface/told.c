@@ -1,0 +1,200 @@
+/*
+   What is told of pairs that come and go. Which of them there are changes from time to time, so that outputs could not name them: they are
+   told what each body does to all others together, as a pair BODY:others, and what it does to each obstacle, as a pair BODY:OBSTACLE.
+*/
+#include <contact/parts.h>
+#include <checkpoint/checkpoint.h>
+#include <checkpoint/tables.h>
+
+#define OTHERS "others"
+
+/* The number of a pair with an obstacle among those that are told */
+static PetscInt ObstaclePlace(Contact contact, PetscInt body, PetscInt obstacle)
+{
+  return contact->n_bodies + body * contact->n_obstacles + obstacle;
+}
+
+/* Names of what is told, which are the same for the whole run */
+PetscErrorCode ContactSetUpTold(Contact contact)
+{
+  ContactTold   *told = &contact->neighbours.told;
+  const PetscInt n    = contact->n_bodies;
+
+  PetscFunctionBegin;
+  told->n = n * (1 + contact->n_obstacles);
+  PetscCall(PetscCalloc3(told->n, &told->names, CONTACT_IMPULSES * told->n, &told->gone, CONTACT_IMPULSES * told->n, &told->sums));
+  for (PetscInt b = 0; b < n; b++) {
+    const char *body = ((PetscObject)contact->bodies[b])->name;
+    char        name[256];
+    PetscBool   same;
+
+    PetscCall(PetscStrcmp(body, OTHERS, &same));
+    for (PetscInt o = -1; o < contact->n_obstacles; o++) {
+      const char *other = OTHERS;
+
+      if (o >= 0) {
+        PetscBool taken;
+
+        PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+        PetscCall(PetscStrcmp(other, OTHERS, &taken));
+        same = (PetscBool)(same || taken);
+      }
+      PetscCall(PetscSNPrintf(name, sizeof(name), "%s:%s", body, other));
+      PetscCall(PetscStrallocpy(name, &told->names[o < 0 ? b : ObstaclePlace(contact, b, o)]));
+    }
+    PetscCheck(!same, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_pairs auto: with so many bodies outputs have what all others do to a body under the name of the pair BODY:%s; "
+               "give the body or obstacle '%s' another name",
+               OTHERS, OTHERS);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyTold(Contact contact)
+{
+  ContactTold *told = &contact->neighbours.told;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < told->n; p++) PetscCall(PetscFree(told->names[p]));
+  PetscCall(PetscFree3(told->names, told->gone, told->sums));
+  PetscCall(PetscFree(told->states));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The impulses of a pair, as AddState() has them */
+static void AddImpulses(PetscReal sums[], PetscInt sign, const PetscReal impulses[])
+{
+  for (PetscInt k = 0; k < 3; k++) sums[k] += sign * impulses[k];
+  if (sign < 0) return;
+  sums[6] += impulses[6];
+  sums[8] += impulses[8];
+}
+
+/* A pair goes: what it has done stays with its bodies */
+PetscErrorCode ContactTakeLeave(Contact contact, const ContactPair *pair, const PetscReal impulses[])
+{
+  PetscReal *gone = contact->neighbours.told.gone;
+
+  PetscFunctionBegin;
+  if (pair->obstacle) {
+    const PetscInt o = ContactPairPartner(contact, pair) - contact->n_bodies;
+
+    AddImpulses(gone + CONTACT_IMPULSES * ObstaclePlace(contact, pair->body[0], o), 1, impulses);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt side = 0; side < 2; side++) AddImpulses(gone + CONTACT_IMPULSES * pair->body[side], side ? -1 : 1, impulses);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the state of a pair to that of what is told. What has no direction counts with the body that has the rows alone, so that sums over
+   all that is told are those over all pairs. */
+static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
+{
+  sum->gap     = PetscMin(sum->gap, state->gap);
+  sum->tension = PetscMax(sum->tension, state->tension);
+  for (PetscInt d = 0; d < 3; d++) {
+    sum->force_vector[d] += sign * state->force_vector[d];
+    sum->moment[d] += sign * state->moment[d];
+    sum->impulse[d] += sign * state->impulse[d];
+  }
+  if (sign < 0) return;
+  sum->force += state->force;
+  sum->active += state->active;
+  sum->area += state->area;
+  sum->normal_impulse += state->normal_impulse;
+  sum->beyond_impulse += state->beyond_impulse;
+}
+
+/* What pairs that have gone have done */
+static void BeginState(const PetscReal sums[], ContactPairState *state)
+{
+  *state = (ContactPairState){.gap = CONTACT_NO_GAP, .normal_impulse = sums[6], .beyond_impulse = sums[8]};
+  for (PetscInt d = 0; d < 3; d++) state->impulse[d] = sums[d];
+}
+
+/* States of all that is told; collective */
+PetscErrorCode ContactTellStates(Contact contact, ContactPairState states[])
+{
+  ContactTold *told = &contact->neighbours.told;
+
+  PetscFunctionBegin;
+  if (told->room < contact->n_pairs) {
+    told->room = 2 * contact->n_pairs;
+    PetscCall(PetscFree(told->states));
+    PetscCall(PetscMalloc1(told->room, &told->states));
+  }
+  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, told->states));
+  PetscCall(PetscArraycpy(told->sums, told->gone, CONTACT_IMPULSES * told->n));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, told->sums, (PetscMPIInt)(CONTACT_IMPULSES * told->n), MPIU_REAL, MPIU_SUM,
+                               PetscObjectComm((PetscObject)contact)));
+  for (PetscInt p = 0; p < told->n; p++) BeginState(told->sums + CONTACT_IMPULSES * p, &states[p]);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    if (pair->obstacle)
+      AddState(&states[ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)], 1, &told->states[p]);
+    for (PetscInt side = 0; side < 2 && !pair->obstacle; side++) AddState(&states[pair->body[side]], side ? -1 : 1, &told->states[p]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of one that is told */
+PetscErrorCode ContactTellState(Contact contact, PetscInt p, ContactPairState *state)
+{
+  PetscReal sums[CONTACT_IMPULSES];
+  PetscInt  body, obstacle;
+
+  PetscFunctionBegin;
+  ContactGetTold(contact, p, &body, &obstacle);
+  PetscCallMPI(MPIU_Allreduce(contact->neighbours.told.gone + CONTACT_IMPULSES * p, sums, CONTACT_IMPULSES, MPIU_REAL, MPIU_SUM,
+                              PetscObjectComm((PetscObject)contact)));
+  BeginState(sums, state);
+  for (PetscInt q = 0; q < contact->n_pairs; q++) {
+    const ContactPair *pair = &contact->pairs[q];
+    const PetscInt     sign = pair->body[0] == body ? 1 : pair->body[1] == body ? -1 : 0;
+    ContactPairState   of_pair;
+
+    if (!sign || pair->obstacle != (obstacle < 0 ? NULL : contact->obstacles[obstacle])) continue;
+    PetscCall(ContactComputePairStates(contact, q, q + 1, &of_pair));
+    AddState(state, sign, &of_pair);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The bodies of what is told, and its obstacle, -1 for none: what the others do to a body is between that body and itself */
+void ContactGetTold(Contact contact, PetscInt p, PetscInt *body, PetscInt *obstacle)
+{
+  *body     = p < contact->n_bodies ? p : (p - contact->n_bodies) / contact->n_obstacles;
+  *obstacle = p < contact->n_bodies ? -1 : (p - contact->n_bodies) % contact->n_obstacles;
+}
+
+/* What pairs that have gone have done so far, to or from a checkpoint */
+PetscErrorCode ContactVisitTold(Contact contact, Checkpoint checkpoint)
+{
+  ContactTold *told = &contact->neighbours.told;
+
+  PetscFunctionBegin;
+  if (contact->neighbours.come_and_go) PetscCall(CheckpointVisitReals(checkpoint, "gone", CONTACT_IMPULSES * told->n, told->gone));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of all ranks together, to a table or from it: the first rank takes it */
+PetscErrorCode ContactPackTold(Contact contact, PetscBool back, Tables tables)
+{
+  ContactTold     *told  = &contact->neighbours.told;
+  const PetscInt   width = CONTACT_IMPULSES * told->n;
+  const PetscReal *sums;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  if (!contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
+  if (back) {
+    PetscCall(TablesGet(tables, "gone", width, &n, &sums));
+    for (PetscInt k = 0; k < width; k++) told->gone[k] = contact->ranks.rank ? 0 : sums[k];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCallMPI(MPIU_Allreduce(told->gone, told->sums, (PetscMPIInt)width, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(TablesAdd(tables, "gone", contact->ranks.rank ? 0 : 1, width, told->sums));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

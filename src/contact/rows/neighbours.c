@@ -1,0 +1,298 @@
+/*
+   Which bodies are near each other, and near which obstacles. Of many pairs that the program has chosen those alone have rows whose bodies
+   are near: pairs come and go. Boxes about all bodies are sorted along the longest axis and compared with those that they overlap there, so
+   that nobody looks at all pairs. That is done again when the bodies may have used up the distance up to which pairs were taken, by the way
+   that the two fastest of them can make towards each other.
+*/
+#include <contact/parts.h>
+
+/* Up to so many pairs of bodies that the program has chosen all of them are there all the time */
+#define MANY_PAIRS 100
+/* Boxes that are closer than this, beyond the reach of a controller step, must have rows [edges of the larger contact elements] */
+#define NEAR 1
+/* Pairs are taken whose boxes are closer than this [edges], and dropped where they are farther apart than DROPPED */
+#define TAKEN   2.5
+#define DROPPED 3.5
+/* Pairs are looked for again before what was taken is used up, with room for steps that become faster */
+#define STEPS_AHEAD 2
+
+/* Whether the pairs of all bodies are so many that they come and go */
+PetscErrorCode ContactHasMany(Contact contact, PetscBool *many)
+{
+  PetscFunctionBegin;
+  *many = (PetscBool)(contact->dim > 1 && contact->n_bodies * (contact->n_bodies - 1) / 2 > MANY_PAIRS);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether pairs may come and go: all bodies must move by their inertia, so that the way that they make in a step is known, with surfaces
+   that are the same whoever the partner is, and nothing may be merged, tied or remembered across pairs */
+PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
+{
+  PetscFunctionBegin;
+  *suits = (PetscBool)(!contact->options.facing && contact->options.law == CONTACT_LAW_FRICTIONLESS && !contact->options.balance &&
+                       contact->options.row_side == CONTACT_ROW_SIDE_FIRST &&
+                       contact->options.stabilization == CONTACT_STABILIZATION_NONE && contact->ops->mayreplacerows &&
+                       (*contact->ops->mayreplacerows)(contact));
+  for (PetscInt b = 0; b < contact->n_bodies && *suits; b++) {
+    PetscBool       is_static, near;
+    const PetscInt *held;
+    PetscInt        n;
+
+    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
+    PetscCall(BodyGetMassRedistributeNear(contact->bodies[b], &near));
+    PetscCall(BodyGetHeldDofs(contact->bodies[b], &n, &held));
+    if (is_static || near || n) *suits = PETSC_FALSE;
+  }
+  {
+    int unsuited = !*suits;
+
+    PetscCall(ContactOr(contact, &unsuited));
+    *suits = (PetscBool)!unsuited;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Boxes of all bodies where they are, of all ranks: lower corners, and upper ones with their sign changed [m] */
+static PetscErrorCode GetBoxes(Contact contact)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal         *box = neighbours->boxes + 6 * b;
+    const PetscScalar *x, *u = NULL;
+    PetscInt           n;
+    Vec                positions, displacements;
+
+    for (PetscInt k = 0; k < 6; k++) box[k] = PETSC_MAX_REAL;
+    for (PetscInt d = contact->dim; d < 3; d++) box[d] = box[3 + d] = 0;
+    PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
+    PetscCall(VecGetLocalSize(positions, &n));
+    PetscCall(VecGetArrayRead(positions, &x));
+    displacements = NULL;
+    if (contact->setup) PetscCall(BodyGetSolution(contact->bodies[b], &displacements, NULL, NULL));
+    if (displacements) PetscCall(VecGetArrayRead(displacements, &u));
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal at = PetscRealPart(x[i]) + (u ? PetscRealPart(u[i]) : 0);
+      const PetscInt  d  = i % contact->dim;
+
+      box[d]     = PetscMin(box[d], at);
+      box[3 + d] = PetscMin(box[3 + d], -at);
+    }
+    if (displacements) PetscCall(VecRestoreArrayRead(displacements, &u));
+    PetscCall(VecRestoreArrayRead(positions, &x));
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, neighbours->boxes, (PetscMPIInt)(6 * contact->n_bodies), MPIU_REAL, MPIU_MIN,
+                               PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Distance of two boxes [m] */
+PetscReal ContactBoxDistance(const PetscReal a[], const PetscReal b[])
+{
+  PetscReal square = 0;
+
+  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(a[d] + b[3 + d], b[d] + a[3 + d])));
+  return PetscSqrtReal(square);
+}
+
+/* Distance of a box from an obstacle, at least [m]: gaps of two points differ by their distance at most */
+static PetscErrorCode ObstacleDistance(const PetscReal box[], Obstacle obstacle, PetscReal *distance)
+{
+  PetscReal centre[3], normal[3], radius = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 3; d++) {
+    centre[d] = 0.5 * (box[d] - box[3 + d]);
+    radius += PetscSqr(0.5 * (-box[3 + d] - box[d]));
+  }
+  PetscCall(ObstacleGetGap(obstacle, centre, distance, normal));
+  *distance -= PetscSqrtReal(radius);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The axis along which the boxes lie farthest apart */
+static PetscInt LongestAxis(Contact contact)
+{
+  const PetscReal *boxes   = contact->neighbours.boxes;
+  PetscReal        longest = -1;
+  PetscInt         axis    = 0;
+
+  for (PetscInt d = 0; d < contact->dim; d++) {
+    PetscReal lower = PETSC_MAX_REAL, upper = -PETSC_MAX_REAL;
+
+    for (PetscInt b = 0; b < contact->n_bodies; b++) {
+      lower = PetscMin(lower, boxes[6 * b + d]);
+      upper = PetscMax(upper, boxes[6 * b + d]);
+    }
+    if (upper - lower > longest) axis = d;
+    longest = PetscMax(longest, upper - lower);
+  }
+  return axis;
+}
+
+static PetscErrorCode Append(ContactNeighbours *neighbours, PetscInt *n, PetscInt first, PetscInt second)
+{
+  PetscFunctionBegin;
+  if (*n == neighbours->room) {
+    neighbours->room = 2 * neighbours->room + 16;
+    PetscCall(PetscRealloc((size_t)(2 * neighbours->room) * sizeof(PetscInt), &neighbours->found));
+  }
+  neighbours->found[2 * *n]         = first;
+  neighbours->found[2 * (*n)++ + 1] = second;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a pair has rows at present. Pairs are in order. */
+static PetscBool Lives(Contact contact, PetscInt first, PetscInt second)
+{
+  PetscInt low = 0, high = contact->n_pairs;
+
+  while (low < high) {
+    const PetscInt     middle = (low + high) / 2;
+    const ContactPair *pair   = &contact->pairs[middle];
+    const PetscInt     other  = ContactPairPartner(contact, pair);
+
+    if (pair->body[0] == first && other == second) return PETSC_TRUE;
+    if (pair->body[0] < first || (pair->body[0] == first && other < second)) low = middle + 1;
+    else high = middle;
+  }
+  return PETSC_FALSE;
+}
+
+/* Which of two bodies has the rows: that which comes first in the order of the bodies */
+static PetscBool ComesFirst(const ContactNeighbours *neighbours, PetscInt a, PetscInt b)
+{
+  return (PetscBool)(neighbours->place[a] < neighbours->place[b]);
+}
+
+static int ComparePairs(const void *a, const void *b, void *context)
+{
+  const PetscInt *first = (const PetscInt *)a, *second = (const PetscInt *)b;
+
+  (void)context;
+  if (first[0] != second[0]) return first[0] < second[0] ? -1 : 1;
+  return first[1] < second[1] ? -1 : first[1] > second[1];
+}
+
+/* The pairs of bodies whose boxes are near */
+static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+  const PetscInt     axis       = LongestAxis(contact);
+  PetscReal          largest    = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    neighbours->lower[b]  = neighbours->boxes[6 * b + axis];
+    neighbours->sorted[b] = b;
+    largest               = PetscMax(largest, neighbours->edge[b]);
+  }
+  PetscCall(PetscSortRealWithArrayInt(contact->n_bodies, neighbours->lower, neighbours->sorted));
+  for (PetscInt k = 0; k < contact->n_bodies; k++) {
+    const PetscInt  a     = neighbours->sorted[k];
+    const PetscReal until = -neighbours->boxes[6 * a + 3 + axis] + near + DROPPED * largest;
+
+    for (PetscInt l = k + 1; l < contact->n_bodies && neighbours->lower[l] <= until; l++) {
+      const PetscInt  b = neighbours->sorted[l], first = ComesFirst(neighbours, a, b) ? a : b, second = first == a ? b : a;
+      const PetscReal edge     = PetscMax(neighbours->edge[a], neighbours->edge[b]);
+      const PetscReal distance = ContactBoxDistance(neighbours->boxes + 6 * a, neighbours->boxes + 6 * b);
+
+      if (distance > near + DROPPED * edge || (distance > near + TAKEN * edge && !Lives(contact, first, second))) continue;
+      PetscCall(Append(neighbours, n, first, second));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The obstacles that bodies are near */
+static PetscErrorCode FindObstacles(Contact contact, PetscReal near, PetscInt *n)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    for (PetscInt o = 0; o < contact->n_obstacles; o++) {
+      PetscReal distance;
+
+      PetscCall(ObstacleDistance(neighbours->boxes + 6 * b, contact->obstacles[o], &distance));
+      if (distance > near + DROPPED * neighbours->edge[b] ||
+          (distance > near + TAKEN * neighbours->edge[b] && !Lives(contact, b, contact->n_bodies + o)))
+        continue;
+      PetscCall(Append(neighbours, n, b, contact->n_bodies + o));
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the distances beyond `near` are that are taken at least, of all pairs [m] */
+static PetscReal LeastTaken(Contact contact)
+{
+  PetscReal least = PETSC_MAX_REAL;
+
+  for (PetscInt b = 0; b < contact->n_bodies; b++) least = PetscMin(least, contact->neighbours.edge[b]);
+  return (TAKEN - NEAR) * least;
+}
+
+/* The near pairs, in order, into neighbours->found; `near`: bodies that far apart may touch in the next controller step [m] */
+PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *n)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+
+  PetscFunctionBegin;
+  *n = 0;
+  PetscCall(GetBoxes(contact));
+  PetscCall(FindBodies(contact, near, n));
+  PetscCall(FindObstacles(contact, near, n));
+  if (*n > 1) PetscCall(PetscTimSort(*n, neighbours->found, 2 * sizeof(PetscInt), ComparePairs, NULL));
+  neighbours->room_left = LeastTaken(contact);
+  neighbours->near      = near;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether bodies that have no rows with each other may touch in one of the next steps, or may have come nearer than NEAR */
+PetscBool ContactNeighboursUsed(Contact contact, PetscReal near)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+
+  /* what was within reach of a step then is not now where bodies have become faster */
+  if (!contact->attempt.again) neighbours->room_left -= near;
+  return (PetscBool)(neighbours->room_left + neighbours->near < STEPS_AHEAD * near);
+}
+
+/* Room for what is kept of each body, once discretizations are known */
+PetscErrorCode ContactSetUpNeighbours(Contact contact, ContactPreference preferences[])
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+  const PetscInt     n          = contact->n_bodies;
+
+  PetscFunctionBegin;
+  neighbours->come_and_go = PETSC_TRUE;
+  PetscCall(
+      PetscMalloc5(6 * n, &neighbours->boxes, n, &neighbours->edge, n, &neighbours->lower, n, &neighbours->sorted, n, &neighbours->place));
+  PetscCall(PetscMalloc1(n, &neighbours->preferences));
+  PetscCall(PetscArraycpy(neighbours->preferences, preferences, n));
+  for (PetscInt b = 0; b < n; b++) PetscCall(BodyExpectRows(contact->bodies[b]));
+  PetscCall(ContactSetUpTold(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The size of contact elements, once contact nodes are known */
+PetscErrorCode ContactMeasureNeighbours(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyGetContactElementSize(contact->bodies[b], &contact->neighbours.edge[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyNeighbours(Contact contact)
+{
+  ContactNeighbours *neighbours = &contact->neighbours;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree5(neighbours->boxes, neighbours->edge, neighbours->lower, neighbours->sorted, neighbours->place));
+  PetscCall(PetscFree(neighbours->preferences));
+  PetscCall(PetscFree(neighbours->found));
+  PetscCall(ContactDestroyTold(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
