@@ -14,24 +14,31 @@
    Methods in Engineering 15, 1980: B-bar).
 */
 #include <impakt/private/solidbatch.h>
+#include <impakt/private/tensor.h>
 
-/* Where |theta / J - 1| is larger, the cube root is taken by the library; the series below has an error of 1e-6 there, and the step of
-   Halley's method after that one of 1e-18 */
-#define SERIES_LIMIT 0.25
+/* Where |theta / J - 1| is larger, the cube root is taken by the library; the series below has an error of 3e-7 there, and the step of
+   Halley's method after that one of 1e-20 */
+#define SERIES_LIMIT 0.1
 
 /* Volumes of half a batch of elements */
 typedef struct {
   SimdVector undeformed, change;   /* the latter as part of the undeformed one: theta - 1 */
+  SimdVector inverse;              /* 1 / theta; NaN where the element is inverted */
   SimdVector gradient[DIM][MODES]; /* of the deformed volume, by the coefficients of positions; of linear materials of the undeformed one */
 } Volumes;
 
-/* How F has been changed into F' at a point of half a batch */
+/* What changes F into F' at a point of a batch, and back. In whole rather than by parts, as materials do it: compilers take registers twice
+   as wide for it where there are some. */
 typedef struct {
-  SimdVector ratio;             /* r */
-  SimdVector inverse[DIM][DIM]; /* F^-T */
+  SimdReal change, inverse_theta; /* of all points: theta - 1, 1 / theta; NaN where the element is inverted */
+} Means;
+
+typedef struct {
+  SimdReal ratio, inverse; /* r, 1 / J */
+  SimdReal cofactor[9];    /* J F^-T; in two dimensions without its third row and column */
 } Dilated;
 
-SIMD_INLINE void GetVolumes(PetscBool linear, SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], Volumes *volumes)
+SIMD_INLINE void GetVolumesOfPart(PetscBool linear, SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], Volumes *volumes)
 {
   SimdVector x[DIM][MODES], change = {0}, whole = {0};
 
@@ -50,133 +57,137 @@ SIMD_INLINE void GetVolumes(PetscBool linear, SimdVector X[DIM][MODES], SimdVect
   }
   volumes->undeformed = whole;
   volumes->change     = change / whole;
+  volumes->inverse    = 1 / (1 + volumes->change);
+  for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS && !linear; p++)
+    if (!(volumes->inverse[p] > 0)) volumes->inverse[p] = NAN;
 #pragma GCC unroll 3
   for (PetscInt i = 0; i < DIM - 1; i++)
     if (!linear) VolumeGradient(x, i, volumes->gradient[i]);
 }
 
-/* J F^-T of a displacement gradient, from F = 1 + H; and J - 1 with all its digits */
-SIMD_INLINE void GetCofactors(const SimdVector h[DIM][DIM], SimdVector cofactor[DIM][DIM], SimdVector *change)
+SIMD_INLINE void GetVolumes(PetscBool linear, SimdVector X[SIMD_PARTS][DIM][MODES], SimdVector U[SIMD_PARTS][DIM][MODES],
+                            Volumes volumes[SIMD_PARTS], Means *means)
 {
-#if DIM == 2
-  cofactor[0][0] = 1 + h[1][1];
-  cofactor[0][1] = -h[1][0];
-  cofactor[1][0] = -h[0][1];
-  cofactor[1][1] = 1 + h[0][0];
-  *change        = h[0][0] + h[1][1] + (h[0][0] * h[1][1] - h[0][1] * h[1][0]);
-#else
-  const SimdVector trace  = h[0][0] + h[1][1] + h[2][2];
-  SimdVector       second = {0}, third = {0};
-
-#  pragma GCC unroll 3
-  for (PetscInt i = 0; i < 3; i++)
-#  pragma GCC unroll 3
-    for (PetscInt j = 0; j < 3; j++) {
-      const PetscInt   k = (i + 1) % 3, l = (i + 2) % 3, m = (j + 1) % 3, n = (j + 2) % 3;
-      const SimdVector c = h[k][m] * h[l][n] - h[k][n] * h[l][m];
-
-      if (i == j) second += c;
-      if (i == 0) third += h[0][j] * c;
-      cofactor[i][j] = c - h[j][i];
-      if (i == j) cofactor[i][j] += 1 + trace;
-    }
-  *change = trace + (second + third);
-#endif
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    GetVolumesOfPart(linear, X[part], U[part], &volumes[part]);
+    SimdGetParts(means->change)[part]        = volumes[part].change;
+    SimdGetParts(means->inverse_theta)[part] = volumes[part].inverse;
+  }
 }
 
-/* (1 + s)^(1/3) - 1 */
-SIMD_INLINE void CubeRoot(SimdVector s, SimdVector *root)
+/* (1 + s)^(1/3) - 1 where the series is not exact; NaN where 1 + s is not positive. Rare. */
+static __attribute__((noinline)) void TakeCubeRoots(const SimdReal s, SimdReal y)
 {
-  const SimdVector a = 1 + s;
-  SimdVector       y = s * (1. / 3 + s * (-1. / 9 + s * (5. / 81 + s * (-10. / 243 + s * (22. / 729 - s * (154. / 6561))))));
-  SimdVector       rest;
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++)
+    if (!(PetscAbsReal(s[p]) <= SERIES_LIMIT)) y[p] = 1 + s[p] > 0 ? cbrt(1 + s[p]) - 1 : NAN;
+}
 
-  rest = s - y * (3 + y * (3 + y));
-  y += (1 + y) * rest / (3 * a - 2 * rest);
-  for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++)
-    if (!(PetscAbsReal(s[p]) <= SERIES_LIMIT)) y[p] = cbrt(1 + s[p]) - 1;
-  *root = y;
+/* y = r - 1 for theta / J = 1 + s: by a series, and Halley's method without its division, for what is left is so small that two terms of a
+   geometric series do */
+SIMD_INLINE void FindRatio(const Means *means, const SimdReal j, Dilated *dilated, SimdReal y)
+{
+  SimdReal  s;
+  PetscReal squares = 0;
+
+#pragma omp simd reduction(+ : squares)
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+    const PetscReal inverse = 1 / (1 + j[p]), of = (means->change[p] - j[p]) * inverse;
+    const PetscReal first = of * (1. / 3 - of * (1. / 9 - of * (5. / 81 - of * (10. / 243))));
+    const PetscReal rest  = (of - first * (3 + first * (3 + first))) * ((1 + j[p]) * means->inverse_theta[p]) * (1. / 3);
+
+    dilated->inverse[p] = inverse;
+    s[p]                = of;
+    y[p]                = first + (1 + first) * rest * (1 + 2 * rest);
+    squares += of * of;
+  }
+  if (!(squares <= SERIES_LIMIT * SERIES_LIMIT)) TakeCubeRoots(s, y);
 }
 
 /* H' = F' - 1 in place of H; NaN where the point is inverted */
-SIMD_INLINE void Dilate(PetscInt part, SimdVector change, SimdReal H[9], Dilated *dilated)
+SIMD_INLINE void Dilate(const Means *means, SimdReal H[9], Dilated *dilated)
 {
-  SimdVector h[DIM][DIM], j, J, s, y;
+  SimdReal j, y;
 
-#pragma GCC unroll 3
-  for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 3
-    for (PetscInt k = 0; k < DIM; k++) h[i][k] = SimdGetParts(H[3 * i + k])[part];
-  GetCofactors((const SimdVector(*)[DIM])h, dilated->inverse, &j);
-  J = 1 + j;
-  for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) J[p] = J[p] > 0 ? J[p] : NAN;
-  J = 1 / J;
-  s = (change - j) * J;
-  CubeRoot(s, &y);
-  dilated->ratio = 1 + y;
-#pragma GCC unroll 3
-  for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 3
-    for (PetscInt k = 0; k < DIM; k++) {
-      dilated->inverse[i][k] *= J;
-      SimdGetParts(H[3 * i + k])[part] = i == k ? h[i][k] + y * (1 + h[i][k]) : h[i][k] + y * h[i][k];
-    }
-  if (DIM == 2) SimdGetParts(H[8])[part] = y;
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+#if DIM == 2
+    const PetscReal xx = H[0][p], xy = H[1][p], yx = H[3][p], yy = H[4][p];
+
+    dilated->cofactor[0][p] = 1 + yy;
+    dilated->cofactor[1][p] = -yx;
+    dilated->cofactor[3][p] = -xy;
+    dilated->cofactor[4][p] = 1 + xx;
+    j[p]                    = xx + yy + (xx * yy - xy * yx);
+#else
+    const Tensor    h = TensorLoad((const PetscReal(*)[SIMD_WIDTH])H, p), c = TensorCofactor(h);
+    const PetscReal trace = TensorTrace(h), d = 1 + trace;
+
+    TensorStore((Tensor){c.xx - h.xx + d, c.xy - h.yx, c.xz - h.zx, c.yx - h.xy, c.yy - h.yy + d, c.yz - h.zy, c.zx - h.xz, c.zy - h.yz,
+                         c.zz - h.zz + d},
+                dilated->cofactor, p);
+    j[p] = trace + TensorVolumeRemainder(h, c);
+#endif
+  }
+  FindRatio(means, j, dilated, y);
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const PetscReal r = 1 + y[p];
+
+    dilated->ratio[p] = r;
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt k = 0; k < DIM; k++) H[3 * i + k][p] = (i == k ? y[p] : 0) + r * H[3 * i + k][p];
+    if (DIM == 2) H[8][p] = y[p];
+  }
 }
 
 /* The same of a linear material: the trace of H becomes its mean */
-SIMD_INLINE void DilateLinear(PetscInt part, SimdVector change, SimdReal H[9])
+SIMD_INLINE void DilateLinear(const Means *means, SimdReal H[9])
 {
-  SimdVector trace = SimdGetParts(H[0])[part] + SimdGetParts(H[4])[part], third;
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const PetscReal third = (means->change[p] - (H[0][p] + H[4][p] + (DIM == 3 ? H[8][p] : 0))) * (1. / 3);
 
-  if (DIM == 3) trace += SimdGetParts(H[8])[part];
-  third = (change - trace) * (1. / 3);
-  SimdGetParts(H[0])[part] += third;
-  SimdGetParts(H[4])[part] += third;
-  if (DIM == 3) SimdGetParts(H[8])[part] += third;
-  else SimdGetParts(H[8])[part] = third;
-}
-
-/* r P' - (pi / 3) F^-T in place of P'; and pi / 3 */
-SIMD_INLINE void Undilate(PetscInt part, SimdReal H[9], const Dilated *dilated, SimdReal P[9], SimdVector *pressure)
-{
-  SimdVector third = SimdGetParts(P[0])[part] + SimdGetParts(P[4])[part] + SimdGetParts(P[8])[part];
-
-  if (DIM == 2) third += SimdGetParts(P[8])[part] * SimdGetParts(H[8])[part];
-#pragma GCC unroll 3
-  for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 3
-    for (PetscInt k = 0; k < DIM; k++) third += SimdGetParts(P[3 * i + k])[part] * SimdGetParts(H[3 * i + k])[part];
-  third *= 1. / 3;
-#pragma GCC unroll 3
-  for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 3
-    for (PetscInt k = 0; k < DIM; k++)
-      SimdGetParts(P[3 * i + k])[part] = dilated->ratio * SimdGetParts(P[3 * i + k])[part] - third * dilated->inverse[i][k];
-  *pressure = third;
-}
-
-SIMD_INLINE void UndilateLinear(PetscInt part, SimdReal P[9], SimdVector *pressure)
-{
-  const SimdVector third = (SimdGetParts(P[0])[part] + SimdGetParts(P[4])[part] + SimdGetParts(P[8])[part]) * (1. / 3);
-
-  SimdGetParts(P[0])[part] -= third;
-  SimdGetParts(P[4])[part] -= third;
-  if (DIM == 3) SimdGetParts(P[8])[part] -= third;
-  *pressure = third;
-}
-
-/* Gradients at a point with the mean dilatation */
-SIMD_INLINE void GetDilatedGradients(PetscBool linear, SimdVector X[SIMD_PARTS][DIM][MODES], SimdVector U[SIMD_PARTS][DIM][MODES],
-                                     const Volumes volumes[SIMD_PARTS], const PetscReal xi[DIM], Gradients *at, Dilated dilated[SIMD_PARTS])
-{
-  GetGradients(X, U, xi, at);
-  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-    const SimdVector change = volumes[part].change;
-
-    if (linear) DilateLinear(part, change, at->H);
-    else Dilate(part, change, at->H, &dilated[part]);
+    H[0][p] += third;
+    H[4][p] += third;
+    H[8][p] = DIM == 3 ? H[8][p] + third : third;
   }
+}
+
+/* r P' - (pi / 3) F^-T in place of P'; and pi / 3 times a weight is added to the pressure */
+SIMD_INLINE void Undilate(const SimdReal H[9], const Dilated *dilated, const SimdReal weight, SimdReal P[9], SimdReal pressure)
+{
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    PetscReal sum = P[0][p] + P[4][p] + P[8][p], over_J;
+
+    if (DIM == 2) sum += P[8][p] * H[8][p];
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt k = 0; k < DIM; k++) sum += P[3 * i + k][p] * H[3 * i + k][p];
+    sum *= 1. / 3;
+    pressure[p] += weight[p] * sum;
+    over_J = sum * dilated->inverse[p];
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt k = 0; k < DIM; k++) P[3 * i + k][p] = dilated->ratio[p] * P[3 * i + k][p] - over_J * dilated->cofactor[3 * i + k][p];
+  }
+}
+
+SIMD_INLINE void UndilateLinear(const SimdReal weight, SimdReal P[9], SimdReal pressure)
+{
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const PetscReal third = (P[0][p] + P[4][p] + P[8][p]) * (1. / 3);
+
+    pressure[p] += weight[p] * third;
+    P[0][p] -= third;
+    P[4][p] -= third;
+    P[8][p] -= third;
+  }
+}
+
+SIMD_INLINE void DilateAny(PetscBool linear, const Means *means, SimdReal H[9], Dilated *dilated)
+{
+  if (linear) DilateLinear(means, H);
+  else Dilate(means, H, dilated);
 }
 
 /* What the points have given and the force of the mean pressure, at the nodes */
@@ -184,7 +195,7 @@ SIMD_INLINE void GetNodalForces(PetscReal scale, const Volumes *volumes, PetscBo
                                 SimdVector F[DIM][MODES], SimdReal nodal[DIM][NODES])
 {
   pressure /= volumes->undeformed;
-  if (!linear) pressure /= 1 + volumes->change;
+  if (!linear) pressure *= volumes->inverse;
   for (PetscInt i = 0; i < DIM; i++) {
     SimdVector n[NODES];
 
@@ -209,42 +220,37 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
                                 const PetscReal u[], PetscReal f[])
 {
   PetscInt  inverted = -1;
-  Gradients at[2]    = {0};
+  Gradients at[3]    = {0};
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
-    SimdVector     pressure[SIMD_PARTS] = {{0}};
-    SimdReal       P[9], nodal[DIM][NODES], check;
+    SimdReal       P[9], nodal[DIM][NODES], pressure                                               = {0};
     Volumes        volumes[SIMD_PARTS];
-    Dilated        dilated[2][SIMD_PARTS];
+    Means          means;
+    Dilated        dilated[2];
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
-    for (PetscInt part = 0; part < SIMD_PARTS; part++) GetVolumes(linear, X[part], U[part], &volumes[part]);
-    GetDilatedGradients(linear, X, U, volumes, points[0], &at[0], dilated[0]);
+    GetGradients(X, U, points[0], &at[0]);
+    GetVolumes(linear, X, U, volumes, &means);
+    GetGradients(X, U, points[1], &at[1]);
+    DilateAny(linear, &means, at[0].H, &dilated[0]);
     for (PetscInt g = 0; g < POINTS; g++) {
-      const PetscInt now = g % 2;
+      Gradients *now = &at[g % 3];
 
-      /* gradients one point ahead, as in solidloops.h */
-      if (g + 1 < POINTS) GetDilatedGradients(linear, X, U, volumes, points[g + 1], &at[1 - now], dilated[1 - now]);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at[now].H, P);
-      for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-        SimdVector third;
-
-        if (linear) UndilateLinear(part, P, &third);
-        else Undilate(part, at[now].H, &dilated[now][part], P, &third);
-
-        pressure[part] += SimdGetParts(at[now].determinant)[part] * third;
-        AddPointOfPart(part, P, at[now].cofactor[part], points[g], F[part]);
-      }
+      /* gradients two points ahead, and F' one, as what is written in parts and read in whole right after would go through the cache */
+      if (g + 2 < POINTS) GetGradients(X, U, points[g + 2], &at[(g + 2) % 3]);
+      if (g + 1 < POINTS) DilateAny(linear, &means, at[(g + 1) % 3].H, &dilated[(g + 1) % 2]);
+      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])now->H, P);
+      if (linear) UndilateLinear(now->determinant, P, pressure);
+      else Undilate((const PetscReal(*)[SIMD_WIDTH])now->H, &dilated[g % 2], now->determinant, P, pressure);
+      for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, now->cofactor[part], points[g], F[part]);
     }
-    for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-      SimdGetParts(check)[part] = pressure[part];
-      GetNodalForces(scale, &volumes[part], linear, pressure[part], part, F[part], nodal);
-    }
+    for (PetscInt part = 0; part < SIMD_PARTS; part++)
+      GetNodalForces(scale, &volumes[part], linear, SimdGetParts(pressure)[part], part, F[part], nodal);
     if (inverted < 0) {
-      const PetscInt bad = FindNaN(check);
+      const PetscInt bad = FindNaN(pressure);
 
       if (bad >= 0) inverted = first + PetscMin(bad, in_batch - 1);
     }
@@ -261,27 +267,21 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
                        : AddBatches(PETSC_FALSE, solid, scale, count, connectivity, u, f);
 }
 
-/* dF' = r (dF + F (d theta / theta - F^-T : dF) / 3), which is how F' moves with the velocity, in place of dF */
-SIMD_INLINE void DilateRate(PetscInt part, SimdVector change, const SimdReal H[9], const Dilated *dilated, SimdReal rate[9])
+/* dF' = r (dF + F (d theta / theta - F^-T : dF) / 3), which is how F' moves with the velocity, in place of dF; r F is F' */
+SIMD_INLINE void DilateRate(const SimdReal growth, const SimdReal H[9], const Dilated *dilated, SimdReal rate[9])
 {
-  SimdVector g = change;
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    PetscReal g = 0;
 
-#pragma GCC unroll 3
-  for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 3
-    for (PetscInt k = 0; k < DIM; k++) g -= dilated->inverse[i][k] * SimdGetParts(rate[3 * i + k])[part];
-  g *= 1. / 3;
-  /* r F is F' */
-#pragma GCC unroll 3
-  for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 3
-    for (PetscInt k = 0; k < DIM; k++) {
-      SimdVector h = ((const SimdVector *)H[3 * i + k])[part];
-
-      if (i == k) h += 1;
-      SimdGetParts(rate[3 * i + k])[part] = dilated->ratio * SimdGetParts(rate[3 * i + k])[part] + g * h;
-    }
-  if (DIM == 2) SimdGetParts(rate[8])[part] = g * (1 + ((const SimdVector *)H[8])[part]);
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt k = 0; k < DIM; k++) g += dilated->cofactor[3 * i + k][p] * rate[3 * i + k][p];
+    g = (growth[p] - g * dilated->inverse[p]) * (1. / 3);
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt k = 0; k < DIM; k++)
+        rate[3 * i + k][p] = dilated->ratio[p] * rate[3 * i + k][p] + g * ((i == k ? 1 : 0) + H[3 * i + k][p]);
+    if (DIM == 2) rate[8][p] = g * (1 + H[8][p]);
+  }
 }
 
 /* The forces of the stress F' C : dE'/dt, with Green and Lagrange's strain of F' */
@@ -293,38 +293,35 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], V[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
-    SimdVector     pressure[SIMD_PARTS] = {{0}}, growth[SIMD_PARTS] = {{0}};
-    SimdReal       strain[9], S[9], P[9] = {{0}}, nodal[DIM][NODES];
+    SimdReal       strain[9], S[9], P[9] = {{0}}, nodal[DIM][NODES], pressure = {0}, growth;
     Volumes        volumes[SIMD_PARTS];
-    Dilated        dilated[SIMD_PARTS];
+    Means          means;
+    Dilated        dilated;
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     GetModes(connectivity, first, count, v, V);
+    GetVolumes(PETSC_FALSE, X, U, volumes, &means);
     for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-      GetVolumes(PETSC_FALSE, X[part], U[part], &volumes[part]);
+      SimdVector sum = {0};
+
       for (PetscInt i = 0; i < DIM; i++)
-        for (PetscInt k = 0; k < MODES; k++) growth[part] += V[part][i][k] * volumes[part].gradient[i][k];
-      growth[part] /= volumes[part].undeformed * (1 + volumes[part].change);
+        for (PetscInt k = 0; k < MODES; k++) sum += V[part][i][k] * volumes[part].gradient[i][k];
+      SimdGetParts(growth)[part] = sum * volumes[part].inverse / volumes[part].undeformed;
     }
     for (PetscInt g = 0; g < POINTS; g++) {
-      GetDilatedGradients(PETSC_FALSE, X, U, volumes, points[g], &at, dilated);
+      GetGradients(X, U, points[g], &at);
+      Dilate(&means, at.H, &dilated);
       GetGradients(X, V, points[g], &rate);
-      for (PetscInt part = 0; part < SIMD_PARTS; part++)
-        DilateRate(part, growth[part], (const PetscReal(*)[SIMD_WIDTH])at.H, &dilated[part], rate.H);
+      DilateRate(growth, (const PetscReal(*)[SIMD_WIDTH])at.H, &dilated, rate.H);
       RateOfStrain(at.H, rate.H, strain);
       (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])strain, S);
       PullBack(at.H, S, P);
-      for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-        SimdVector third;
-
-        Undilate(part, at.H, &dilated[part], P, &third);
-        pressure[part] += SimdGetParts(at.determinant)[part] * third;
-        AddPointOfPart(part, P, at.cofactor[part], points[g], F[part]);
-      }
+      Undilate((const PetscReal(*)[SIMD_WIDTH])at.H, &dilated, at.determinant, P, pressure);
+      for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at.cofactor[part], points[g], F[part]);
     }
     for (PetscInt part = 0; part < SIMD_PARTS; part++)
-      GetNodalForces(scale, &volumes[part], PETSC_FALSE, pressure[part], part, F[part], nodal);
+      GetNodalForces(scale, &volumes[part], PETSC_FALSE, SimdGetParts(pressure)[part], part, F[part], nodal);
     AddNodal(connectivity, first, in_batch, (const SimdReal(*)[NODES])nodal, f);
   }
 }
@@ -339,14 +336,16 @@ SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt c
   SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
   SimdReal       P[9], W, sum[6] = {{0}}, stored = {0}, volume = {0};
   Volumes        volumes[SIMD_PARTS];
-  Dilated        dilated[SIMD_PARTS];
+  Means          means;
+  Dilated        dilated;
   PetscInt       bad;
 
   GetModes(connectivity, first, count, solid->coordinates, X);
   GetModes(connectivity, first, count, u, U);
-  for (PetscInt part = 0; part < SIMD_PARTS; part++) GetVolumes(solid->linear, X[part], U[part], &volumes[part]);
+  GetVolumes(solid->linear, X, U, volumes, &means);
   for (PetscInt g = 0; g < POINTS; g++) {
-    GetDilatedGradients(solid->linear, X, U, volumes, points[g], &at, dilated);
+    GetGradients(X, U, points[g], &at);
+    DilateAny(solid->linear, &means, at.H, &dilated);
     if (energy) {
       (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, W);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) stored[p] += at.determinant[p] * W[p];
