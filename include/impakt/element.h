@@ -21,6 +21,7 @@ typedef struct _p_Element *Element;
 #define ELEMENT_FULL            "full"
 #define ELEMENT_MEAN_DILATATION "mean_dilatation"
 #define ELEMENT_ENHANCED        "enhanced"
+#define ELEMENT_REDUCED         "reduced"
 
 PETSC_EXTERN PetscClassId ELEMENT_CLASSID;
 

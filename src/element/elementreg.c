@@ -53,6 +53,8 @@ PetscErrorCode ElementRegisterAll(void)
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_MEAN_DILATATION, ElementCreate_Hex8_MeanDilatation));
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_ENHANCED, ElementCreate_Enhanced));
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_ENHANCED, ElementCreate_Enhanced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_REDUCED, ElementCreate_Quad4_Reduced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_REDUCED, ElementCreate_Hex8_Reduced));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

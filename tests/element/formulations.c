@@ -16,8 +16,11 @@ static const Kind kinds[] = {
     {DM_POLYTOPE_QUADRILATERAL, "-element_formulation enhanced"},
     {DM_POLYTOPE_HEXAHEDRON, "-element_formulation enhanced"},
     {DM_POLYTOPE_QUADRILATERAL, "-element_formulation enhanced -plane_stress"},
+    {DM_POLYTOPE_QUADRILATERAL, "-element_formulation reduced -plane_stress"},
+    {DM_POLYTOPE_QUADRILATERAL, "-element_formulation reduced"},
+    {DM_POLYTOPE_HEXAHEDRON, "-element_formulation reduced"},
 };
-#define KINDS 5
+#define KINDS 8
 
 static const PetscInt one[3] = {1, 1, 1}, three[3] = {3, 3, 3};
 
@@ -62,7 +65,7 @@ static void linear_displacement_is_as_of_the_full_element(void **state)
       set_linear(&mesh, stretch, u);
       for (PetscInt full = 0; full < 2; full++) {
         Solid       solid;
-        const char *plane = s == 4 ? "-plane_stress" : "";
+        const char *plane = s == 4 || s == 5 ? "-plane_stress" : "";
 
         solid_create(&solid, &mesh, materials[m], full ? plane : kinds[s].options);
         get_force(&solid, &mesh, u, f[full]);
@@ -219,8 +222,9 @@ static void batches_may_be_of_any_size(void **state)
   Solid     solid;
 
   (void)state;
-  for (PetscInt s = 0; s < 2; s++) {
-    mesh_box(&mesh, kinds[s].shape, s ? three : (PetscInt[3]){5, 4, 0}, 0.15);
+  for (PetscInt s = 0; s < KINDS; s++) {
+    if (s >= 2 && s <= 4) continue;
+    mesh_box(&mesh, kinds[s].shape, kinds[s].shape == DM_POLYTOPE_HEXAHEDRON ? three : (PetscInt[3]){5, 4, 0}, 0.15);
     solid_create(&solid, &mesh, MATERIAL_NEO_HOOKEAN, kinds[s].options);
     set_scattered(&mesh, 0.05, u);
     for (PetscInt count = 1; count <= 17; count++) {

@@ -11,6 +11,8 @@ struct _ElementOps {
   PetscErrorCode (*setup)(Element, const PetscReal[]);                          /* coordinates of the rank's nodes */
   PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]); /* adds to the second [N] */
   PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);          /* stored by all elements of this rank [J] */
+  PetscErrorCode (*hourglass)(Element, const PetscScalar[], PetscReal *); /* part of that which holds modes that the points do not see; may
+                                                                             be missing */
   PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[],
                               PetscScalar[]); /* tangent of one element at the displacement of the rank's nodes, row by row [N/m] */
   /* For Rayleigh damping of nonlinear bodies, of elements with a linear material; they may be missing. Adds to the third the forces of the
@@ -64,5 +66,7 @@ PETSC_INTERN PetscErrorCode ElementCreate_Hex8(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_MeanDilatation(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Hex8_MeanDilatation(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Enhanced(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Reduced(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Hex8_Reduced(Element);
 PETSC_INTERN PetscErrorCode ElementApplyFormulation(Element);
 PETSC_INTERN PetscErrorCode ElementWarnOfLocking(Element);

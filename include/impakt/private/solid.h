@@ -24,6 +24,8 @@ typedef struct {
   MaterialKernels   unconstrained; /* of the same material when not in plane stress */
   PetscBool         plane_stress, linear;
   PetscReal         load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
+  SolidShape        reduced; /* the shape with another rule, where a formulation has one */
+  void             *own;     /* of the formulation */
 } Solid;
 
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from vibration import BETA, CANTILEVER, HEIGHT, LENGTH, first_mode, measured
-
+from vibration import CANTILEVER, HEIGHT, LENGTH, first_mode, measured
 
 PI = repr(np.pi)
 NU = 0.3
