@@ -93,6 +93,7 @@ PETSC_EXTERN PetscErrorCode BodySetMaterial(Body, Material);
 PETSC_EXTERN PetscErrorCode BodySetCrossSection(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetThickness(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetPlaneStress(Body, PetscBool);
+PETSC_EXTERN PetscErrorCode BodySetElementFormulation(Body, const char[]);
 PETSC_EXTERN PetscErrorCode BodySetTSType(Body, TSType);
 PETSC_EXTERN PetscErrorCode BodySetTimeStep(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodyGetTimeStep(Body, PetscReal *);

@@ -17,11 +17,18 @@
 S*/
 typedef struct _p_Element *Element;
 
+/* Formulations that Impakt brings, for ElementSetFormulation() */
+#define ELEMENT_FULL            "full"
+#define ELEMENT_MEAN_DILATATION "mean_dilatation"
+#define ELEMENT_ENHANCED        "enhanced"
+#define ELEMENT_REDUCED         "reduced"
+
 PETSC_EXTERN PetscClassId ELEMENT_CLASSID;
 
 PETSC_EXTERN PetscErrorCode ElementInitializePackage(void);
 PETSC_EXTERN PetscErrorCode ElementFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ElementRegister(DMPolytopeType, PetscErrorCode (*)(Element));
+PETSC_EXTERN PetscErrorCode ElementRegisterFormulation(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
 PETSC_EXTERN PetscErrorCode ElementRegisterAll(void);
 
 PETSC_EXTERN PetscErrorCode ElementCreate(MPI_Comm, Element *);
@@ -35,6 +42,8 @@ PETSC_EXTERN PetscErrorCode ElementSetThickness(Element, PetscReal);
 PETSC_EXTERN PetscErrorCode ElementGetCrossSection(Element, PetscReal *);
 PETSC_EXTERN PetscErrorCode ElementSetPlaneStress(Element, PetscBool);
 PETSC_EXTERN PetscErrorCode ElementGetPlaneStress(Element, PetscBool *);
+PETSC_EXTERN PetscErrorCode ElementSetFormulation(Element, const char[]);
+PETSC_EXTERN PetscErrorCode ElementGetFormulation(Element, const char *[]);
 PETSC_EXTERN PetscErrorCode ElementSetFromOptions(Element);
 PETSC_EXTERN PetscErrorCode ElementSetUp(Element, PetscInt, const PetscInt[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ElementDuplicate(Element, Material, Element *);

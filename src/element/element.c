@@ -179,7 +179,8 @@ PetscErrorCode ElementGetMaterial(Element element, Material *material)
   Options Database Keys:
 + -<body>_cross_section A           - of bars [m^2], default 1
 . -<body>_thickness h               - of plane elements [m], default 1
-- -<body>_plane_stress (true|false) - of plane elements, default false
+. -<body>_plane_stress (true|false) - of plane elements, default false
+- -<body>_element_formulation (full|mean_dilatation|enhanced) - see `ElementSetFormulation()`
 
   Level: developer
 
@@ -187,10 +188,19 @@ PetscErrorCode ElementGetMaterial(Element element, Material *material)
 @*/
 PetscErrorCode ElementSetFromOptions(Element element)
 {
+  char      formulation[128];
+  PetscBool set;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
   PetscCheck(element->cell_type != DM_POLYTOPE_UNKNOWN, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE,
              "Call ElementSetCellType() first");
+  PetscCall(PetscStrncpy(formulation, element->formulation ? element->formulation : "", sizeof(formulation)));
+  PetscObjectOptionsBegin((PetscObject)element);
+  PetscCall(PetscOptionsString("-element_formulation", "What elements do against locking", "ElementSetFormulation", formulation,
+                               formulation, sizeof(formulation), &set));
+  PetscOptionsEnd();
+  if (set) PetscCall(ElementSetFormulation(element, formulation));
   PetscTryTypeMethod(element, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -225,6 +235,7 @@ PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt conn
              "Elements in %" PetscInt_FMT " dimensions are not in plane stress", element->dim);
   element->count        = count;
   element->connectivity = connectivity;
+  PetscCall(ElementApplyFormulation(element));
   PetscUseTypeMethod(element, setup, coordinates);
   element->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -258,6 +269,7 @@ PetscErrorCode ElementDuplicate(Element element, Material material, Element *dup
   (*duplicate)->cross_section     = element->cross_section;
   (*duplicate)->cross_section_dim = element->cross_section_dim;
   (*duplicate)->plane_stress      = element->plane_stress;
+  PetscCall(ElementSetFormulation(*duplicate, element->formulation));
   PetscTryTypeMethod(element, copy, *duplicate);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -290,6 +302,7 @@ PetscErrorCode ElementView(Element element, PetscViewer viewer)
   if (element->dim == 2)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  thickness %g m, %s\n", (double)element->cross_section,
                                      element->plane_stress ? "plane stress" : "plane strain"));
+  if (element->formulation) PetscCall(PetscViewerASCIIPrintf(viewer, "  formulation %s\n", element->formulation));
   PetscTryTypeMethod(element, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -341,6 +354,7 @@ PetscErrorCode ElementDestroy(Element *element)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscTryTypeMethod(*element, destroy);
+  PetscCall(PetscFree((*element)->formulation));
   PetscCall(MaterialDestroy(&(*element)->material));
   PetscCall(PetscHeaderDestroy(element));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,7 +4,7 @@
 
 PetscClassId ELEMENT_CLASSID = 0;
 
-PetscFunctionList ElementList = NULL;
+PetscFunctionList ElementList = NULL, ElementFormulationList = NULL;
 
 static PetscBool ElementPackageInitialized = PETSC_FALSE;
 
@@ -49,6 +49,12 @@ PetscErrorCode ElementRegisterAll(void)
   PetscCall(ElementRegister(DM_POLYTOPE_QUADRILATERAL, ElementCreate_Quad4));
   PetscCall(ElementRegister(DM_POLYTOPE_TETRAHEDRON, ElementCreate_Tet4));
   PetscCall(ElementRegister(DM_POLYTOPE_HEXAHEDRON, ElementCreate_Hex8));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_MEAN_DILATATION, ElementCreate_Quad4_MeanDilatation));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_MEAN_DILATATION, ElementCreate_Hex8_MeanDilatation));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_ENHANCED, ElementCreate_Enhanced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_ENHANCED, ElementCreate_Enhanced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_REDUCED, ElementCreate_Quad4_Reduced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_REDUCED, ElementCreate_Hex8_Reduced));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,6 +91,7 @@ PetscErrorCode ElementFinalizePackage(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscFunctionListDestroy(&ElementList));
+  PetscCall(PetscFunctionListDestroy(&ElementFormulationList));
   ElementPackageInitialized = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,7 +5,7 @@
 #define DEGENERATE 1e-14
 
 /* Shape functions at a point of an element and their gradients by the undeformed position (nodes x dim); returns det(dX/dxi) */
-static PetscReal GetShape(Element element, PetscInt e, const PetscReal xi[], PetscReal N[], PetscReal gradient[])
+PetscReal SolidGetShape(Element element, PetscInt e, const PetscReal xi[], PetscReal N[], PetscReal gradient[])
 {
   const Solid    *solid = (const Solid *)element->data;
   const PetscInt *nodes = element->connectivity + e * element->nodes;
@@ -45,7 +45,7 @@ static PetscErrorCode CheckElement(Element element, PetscInt e)
     for (PetscInt i = 0; i < dim; i++) extent = PetscMax(extent, PetscAbsReal(solid->coordinates[dim * nodes[a] + i] - origin[i]));
   for (PetscInt k = 0; k < shape->n_points + element->nodes; k++) {
     const PetscReal *xi          = k < shape->n_points ? shape->points + dim * k : shape->corners + dim * (k - shape->n_points);
-    const PetscReal  determinant = GetShape(element, e, xi, N, gradient);
+    const PetscReal  determinant = SolidGetShape(element, e, xi, N, gradient);
 
     if (!(determinant >= least)) least = determinant; /* keeps a NaN */
   }
@@ -161,7 +161,7 @@ static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordi
 }
 
 /* Of a linear material: tangent_ijkl = F_im C_mjnl F_kn with F = 1 + H, in place of C */
-static void TurnTangent(const PetscReal H[9], PetscReal tangent[81])
+void SolidTurnTangent(const PetscReal H[9], PetscReal tangent[81])
 {
   PetscReal half[81];
 
@@ -190,14 +190,14 @@ static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool vi
   PetscCall(PetscArrayzero(K, n * n));
   for (PetscInt g = 0; g < shape->n_points; g++) {
     PetscReal       N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3], H[9] = {0}, tangent[81];
-    const PetscReal weight = GetShape(element, e, shape->points + dim * g, N, gradient) * element->cross_section * shape->volume /
+    const PetscReal weight = SolidGetShape(element, e, shape->points + dim * g, N, gradient) * element->cross_section * shape->volume /
                              shape->n_points;
 
     for (PetscInt a = 0; a < element->nodes; a++)
       for (PetscInt i = 0; i < dim; i++)
         for (PetscInt j = 0; j < dim; j++) H[3 * i + j] += u[dim * nodes[a] + i] * gradient[dim * a + j];
     (*solid->kernels.tangent)(solid->kernels.data, H, tangent);
-    if (viscous) TurnTangent(H, tangent);
+    if (viscous) SolidTurnTangent(H, tangent);
     for (PetscInt b = 0; b < element->nodes; b++)
       for (PetscInt k = 0; k < dim; k++) {
         PetscReal stress[3][3]; /* for a displacement of this degree of freedom */
@@ -240,7 +240,7 @@ static PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal
   for (PetscInt g = 0; g < shape->n_load_points; g++) {
     PetscReal N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3];
 
-    weights[g] = GetShape(element, e, shape->load_points + dim * g, N, gradient) * element->cross_section * shape->volume /
+    weights[g] = SolidGetShape(element, e, shape->load_points + dim * g, N, gradient) * element->cross_section * shape->volume /
                  shape->n_load_points;
     for (PetscInt i = 0; i < dim; i++) {
       positions[dim * g + i] = 0;
@@ -281,7 +281,7 @@ static void GetMiss(Element element, PetscInt e, const PetscReal xi[], const Pet
   }
   if (!change) return;
   /* the gradients of the reference coordinates by the position, from those of the shape functions: xi_i is sum_a N_a corner_a,i */
-  (void)GetShape(element, e, xi, N, gradient);
+  (void)SolidGetShape(element, e, xi, N, gradient);
   for (PetscInt i = 0; i < dim; i++) {
     change[i] = 0;
     for (PetscInt a = 0; a < element->nodes; a++)

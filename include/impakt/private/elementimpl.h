@@ -11,6 +11,8 @@ struct _ElementOps {
   PetscErrorCode (*setup)(Element, const PetscReal[]);                          /* coordinates of the rank's nodes */
   PetscErrorCode (*internalforce)(Element, const PetscScalar[], PetscScalar[]); /* adds to the second [N] */
   PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);          /* stored by all elements of this rank [J] */
+  PetscErrorCode (*hourglass)(Element, const PetscScalar[], PetscReal *); /* part of that which holds modes that the points do not see; may
+                                                                             be missing */
   PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[],
                               PetscScalar[]); /* tangent of one element at the displacement of the rank's nodes, row by row [N/m] */
   /* For Rayleigh damping of nonlinear bodies, of elements with a linear material; they may be missing. Adds to the third the forces of the
@@ -39,6 +41,7 @@ struct _p_Element {
   PetscReal      cross_section;     /* of bars [m^2], thickness of plane bodies [m]; 1 for other shapes */
   PetscInt       cross_section_dim; /* dimension of the elements that the program has set it for; 0: it has not */
   PetscBool      plane_stress;      /* else plane strain */
+  char          *formulation;       /* NULL: the default, which the set-up finds */
   /* set by the constructor of the shape */
   PetscInt         dim, nodes; /* space dimension; nodes of one element */
   PetscInt         n_points;   /* load points of one element: a rule exact for quadratic functions at least */
@@ -53,10 +56,17 @@ struct _p_Element {
   PetscInt inverted; /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
 };
 
-PETSC_INTERN PetscFunctionList ElementList;
+PETSC_INTERN PetscFunctionList ElementList, ElementFormulationList;
 
 PETSC_INTERN PetscErrorCode ElementCreate_Bar2(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Tri3(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Tet4(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Hex8(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Quad4_MeanDilatation(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Hex8_MeanDilatation(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Enhanced(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Reduced(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Hex8_Reduced(Element);
+PETSC_INTERN PetscErrorCode ElementApplyFormulation(Element);
+PETSC_INTERN PetscErrorCode ElementWarnOfLocking(Element);

@@ -24,7 +24,36 @@ typedef struct {
   MaterialKernels   unconstrained; /* of the same material when not in plane stress */
   PetscBool         plane_stress, linear;
   PetscReal         load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
+  SolidShape        reduced; /* the shape with another rule, where a formulation has one */
+  void             *own;     /* of the formulation */
 } Solid;
 
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
+PETSC_EXTERN PetscErrorCode ElementCreate_Solid_MeanDilatation(Element);
+PETSC_EXTERN PetscReal      SolidGetShape(Element, PetscInt, const PetscReal xi[], PetscReal N[], PetscReal gradient[]);
 PETSC_EXTERN void           SolidStretchThickness(const Solid *, PetscReal H[9][SIMD_WIDTH]);
+PETSC_EXTERN void           SolidTurnTangent(const PetscReal H[9], PetscReal tangent[81]);
+
+/* sigma = P F^T / det F; of linear materials P, for which they are the same */
+SIMD_INLINE void SolidCauchy(SimdReal H[9], SimdReal P[9], PetscBool linear, PetscInt p, PetscReal sigma[6])
+{
+  const PetscReal xx = 1 + H[0][p], yy = 1 + H[4][p], zz = 1 + H[8][p], xy = H[1][p], xz = H[2][p], yx = H[3][p], yz = H[5][p],
+                  zx = H[6][p], zy = H[7][p];
+  const PetscReal s = 1 / (xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx));
+
+  if (linear) {
+    sigma[0] = P[0][p];
+    sigma[1] = P[4][p];
+    sigma[2] = P[8][p];
+    sigma[3] = P[1][p];
+    sigma[4] = P[5][p];
+    sigma[5] = P[2][p];
+  } else {
+    sigma[0] = s * (P[0][p] * xx + P[1][p] * xy + P[2][p] * xz);
+    sigma[1] = s * (P[3][p] * yx + P[4][p] * yy + P[5][p] * yz);
+    sigma[2] = s * (P[6][p] * zx + P[7][p] * zy + P[8][p] * zz);
+    sigma[3] = s * (P[0][p] * yx + P[1][p] * yy + P[2][p] * yz);
+    sigma[4] = s * (P[3][p] * zx + P[4][p] * zy + P[5][p] * zz);
+    sigma[5] = s * (P[0][p] * zx + P[1][p] * zy + P[2][p] * zz);
+  }
+}

@@ -172,6 +172,31 @@ PetscErrorCode BodySetPlaneStress(Body body, PetscBool plane_stress)
 }
 
 /*@
+  BodySetElementFormulation - sets what the elements of a body do against locking
+
+  Logically Collective
+
+  Input Parameters:
++ body        - the `Body`, before `BodySetFromOptions()`
+- formulation - `ELEMENT_FULL`, `ELEMENT_MEAN_DILATATION`, `ELEMENT_ENHANCED`, or a name of `ElementRegisterFormulation()`
+
+  Options Database Key:
+. -<body>_element_formulation (full|mean_dilatation|enhanced) - the formulation
+
+  Level: beginner
+
+.seealso: `Body`, `ElementSetFormulation()`
+@*/
+PetscErrorCode BodySetElementFormulation(Body body, const char formulation[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  CheckNotNumbered(body);
+  PetscCall(ElementSetFormulation(body->model.element, formulation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodySetMassType - sets how the mass of an element is put on its nodes
 
   Logically Collective

@@ -130,6 +130,7 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
                                    (c - cstart) * body->model.element->nodes)); /* from DMPLEX's order of vertices to the usual one */
   }
   PetscCall(ElementSetUp(body->model.element, cend - cstart, body->mesh.connectivity, body->mesh.coordinates));
+  PetscCall(ElementWarnOfLocking(body->model.element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

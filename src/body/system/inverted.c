@@ -4,7 +4,8 @@
    They are looked for where they can be at all. At a point where det(I + H) <= 0, for the displacement gradient H, the strain has an
    eigenvalue of -1 or less, since x.(I + H) x > 0 otherwise; an element with such a corner stores at least 1/2 E V c. E is Young's modulus,
    V the volume, and c = 1 where strains are constant, 4^-dim where they have as many modes along each axis. As long as the whole body
-   stores less than that, which the energy balance knows anyway, no element is looked at.
+   stores less than that, which the energy balance knows anyway, no element is looked at. That holds for fully integrated elements; those of
+   other formulations are looked at whenever the body stores energy.
 */
 #include <body/layout/bodyimpl.h>
 
@@ -57,6 +58,8 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Shape *shape, PetscRea
 {
   const PetscInt n   = body->model.element->nodes;
   PetscReal      sum = 0, least = PETSC_MAX_REAL, modulus, density;
+  const char    *formulation;
+  PetscBool      full;
 
   PetscFunctionBegin;
   for (PetscInt e = 0; e < body->model.element->count; e++)
@@ -70,7 +73,10 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Shape *shape, PetscRea
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
   PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
   PetscCall(MaterialGetDensity(body->model.material, &density));
-  *energy = 0.5 * modulus * shape->part * least / sum * body->mass.total / density;
+  /* nothing is known of other formulations: their elements are looked at as soon as they store something */
+  PetscCall(ElementGetFormulation(body->model.element, &formulation));
+  PetscCall(PetscStrcmp(formulation, ELEMENT_FULL, &full));
+  *energy = !full ? PETSC_REAL_MIN : 0.5 * modulus * shape->part * least / sum * body->mass.total / density;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

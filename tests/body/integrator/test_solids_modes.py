@@ -2,20 +2,7 @@
 
 import numpy as np
 import pytest
-
-
-def measured(impakt, options):
-    """Angular frequency of the mode that carries most of the energy: half that of the peak in the spectrum of the kinetic energy, which is
-    sin^2(omega t) of it. Hann's window; a parabola through the logarithms about the peak; 20 periods give it to 1e-4."""
-    run = impakt(options)
-    time, kinetic = run.history["time"][:], run.history["body/b/kinetic"][:].ravel()
-    spectrum = np.log(np.abs(np.fft.rfft((kinetic - kinetic.mean()) * np.hanning(len(kinetic)), 16 * len(kinetic))))
-    k = 32 + spectrum[32:].argmax()
-    assert k > 20 * 16  # 20 periods of the energy at least: off what the window leaves of the mean
-    left, middle, right = spectrum[k - 1 : k + 2]
-    k += 0.5 * (left - right) / (left - 2 * middle + right)
-    return np.pi * k / (16 * len(kinetic) * (time[1] - time[0]))
-
+from vibration import CANTILEVER, HEIGHT, LENGTH, first_mode, measured
 
 PI = repr(np.pi)
 NU = 0.3
@@ -41,20 +28,12 @@ def test_lame_mode(impakt, shape, ts):
     assert abs(errors[1]) <= max(0.6 * abs(errors[0]), 1e-3)  # converging, down to what step and spectrum leave
 
 
-LENGTH, HEIGHT = 1.0, 0.05
-BETA = 1.8751040687119611  # cos cosh = -1
-CANTILEVER = BETA**2 * np.sqrt(HEIGHT**2 / 12)  # Euler-Bernoulli, E = rho = 1: omega = beta^2 sqrt(E I / rho A) / L^2
-
-
 @pytest.mark.parametrize(("shape", "dim"), [("quad4", 2), ("hex8", 3)])
 def test_cantilever(impakt, shape, dim):
     """A slender beam, 20 times as long as high, Poisson's ratio 0. Full integration stiffens bending by the shear of elements that cannot curve: by
     (h / H)^2 / 2 for elements of length h through the height H, half of that in the frequency: 6 %, 1.6 %, 0.4 %. Shear and rotatory inertia, which
     the theory lacks, lower it by 0.3 % (Timoshenko 1921)."""
-    s = (np.cos(BETA) + np.cosh(BETA)) / (np.sin(BETA) + np.sinh(BETA))
-    shape = f"cosh({BETA}*x)-cos({BETA}*x)-({s!r})*(sinh({BETA}*x)-sin({BETA}*x))".replace("np.float64", "")
-    slope = f"{BETA}*(sinh({BETA}*x)+sin({BETA}*x)-({s!r})*(cosh({BETA}*x)-cos({BETA}*x)))".replace("np.float64", "")
-    velocity = f"-1e-4*(y-{HEIGHT / 2})*({slope}),1e-4*({shape})" + ",0" * (dim - 2)
+    velocity = first_mode() + ",0" * (dim - 2)
     material = "-b_density 1 -b_youngs_modulus 1" + (" -b_plane_stress" if dim == 2 else "")
     held = f"-b_boundary_displacement xmin -b_boundary_displacement_xmin {','.join('0' * dim)}"
     errors = []

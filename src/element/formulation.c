@@ -1,0 +1,210 @@
+/* Formulations: what the elements of one shape do with their displacements. Chosen by name, from a registry. */
+#include <impakt/private/elementimpl.h>
+#include <sys/names.h>
+
+/* Above this ratio of Poisson, elements that can have a mean dilatation do so, unless another formulation is asked for */
+#define LOCKING_RATIO 0.4
+/* Above this one, an element that was asked to be fully integrated is worth a warning */
+#define STRONG_RATIO 0.45
+
+static const char *Prefix(Element element)
+{
+  return ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "";
+}
+
+/* The name in the registry: of the shape and of the formulation */
+static PetscErrorCode GetKey(DMPolytopeType cell_type, const char formulation[], size_t size, char key[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(key, size, "%s/%s", DMPolytopeTypes[cell_type], formulation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ElementRegisterFormulation - adds a formulation of the elements of one shape to the registry
+
+  Not Collective
+
+  Input Parameters:
++ cell_type   - shape of the cell
+. formulation - its name
+- create      - function that is given an `Element` as the one of `ElementRegister()` has made it, with its material, before its set-up;
+                it replaces those operations that differ
+
+  Level: developer
+
+.seealso: `Element`, `ElementSetFormulation()`, `ElementRegister()`
+@*/
+PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
+{
+  char key[128];
+
+  PetscFunctionBegin;
+  PetscAssertPointer(formulation, 2);
+  PetscCall(ElementInitializePackage());
+  PetscCall(GetKey(cell_type, formulation, sizeof(key), key));
+  PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementSetFormulation - chooses what the elements do against locking
+
+  Logically Collective
+
+  Input Parameters:
++ element     - the `Element`, before its set-up
+- formulation - one of the names below, or one of `ElementRegisterFormulation()`; `NULL`: the default
+
+  Options Database Key:
+. -<body>_element_formulation (full|mean_dilatation|enhanced) - the formulation
+
+  Level: intermediate
+
+  Notes:
+  `ELEMENT_FULL` integrates the energy of the displacements as they are; all shapes have it, and it is their default.
+
+  `ELEMENT_MEAN_DILATATION` gives all points of an element the mean change of its volume, so that nearly incompressible materials do not
+  lock. Quadrilaterals, not in plane stress, and hexahedra have it. It is their default where Poisson's ratio is larger than 0.4.
+
+  `ELEMENT_ENHANCED` adds modes that bend to the displacements of each element, and eliminates them there. Quadrilaterals and hexahedra
+  have it.
+
+.seealso: `Element`, `ElementGetFormulation()`, `BodySetElementFormulation()`, `ElementRegisterFormulation()`
+@*/
+PetscErrorCode ElementSetFormulation(Element element, const char formulation[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscCheck(!element->setup, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE, "Call before ElementSetUp()");
+  PetscCall(PetscFree(element->formulation));
+  PetscCall(PetscStrallocpy(formulation, &element->formulation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementGetFormulation - the formulation of the elements
+
+  Not Collective
+
+  Input Parameter:
+. element - the `Element`
+
+  Output Parameter:
+. formulation - its name; `NULL` before the set-up, unless one has been set
+
+  Level: intermediate
+
+.seealso: `Element`, `ElementSetFormulation()`
+@*/
+PetscErrorCode ElementGetFormulation(Element element, const char *formulation[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscAssertPointer(formulation, 2);
+  *formulation = element->formulation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of the registry's names those of one shape, and the one that all shapes have */
+static PetscErrorCode GetNames(DMPolytopeType cell_type, size_t size, char names[])
+{
+  const char **known;
+  char         shape[64];
+  int          n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(names, ELEMENT_FULL, size));
+  PetscCall(GetKey(cell_type, "", sizeof(shape), shape));
+  PetscCall(PetscFunctionListGet(ElementFormulationList, &known, &n));
+  for (int i = 0; i < n; i++) {
+    const size_t length = strlen(shape);
+    PetscBool    same;
+
+    PetscCall(PetscStrncmp(known[i], shape, length, &same));
+    if (same) PetscCall(NamesAppend(names, size, ", ", known[i] + length));
+  }
+  PetscCall(PetscFree(known));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetPoissonsRatio(Element element, PetscReal *ratio)
+{
+  PetscErrorCode (*get)(Material, PetscReal *);
+
+  PetscFunctionBegin;
+  *ratio = 0;
+  PetscCall(PetscObjectQueryFunction((PetscObject)element->material, "MaterialGetPoissonsRatio_C", &get));
+  if (get) PetscCall((*get)(element->material, ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The formulation that nobody has chosen */
+static PetscErrorCode ChooseFormulation(Element element)
+{
+  PetscErrorCode (*create)(Element);
+  PetscReal ratio;
+  char      key[128];
+
+  PetscFunctionBegin;
+  PetscCall(GetPoissonsRatio(element, &ratio));
+  PetscCall(GetKey(element->cell_type, ELEMENT_MEAN_DILATATION, sizeof(key), key));
+  PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
+  PetscCall(PetscStrallocpy(create && ratio > LOCKING_RATIO && !element->plane_stress ? ELEMENT_MEAN_DILATATION : ELEMENT_FULL,
+                            &element->formulation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the element one of its formulation, the default where none has been chosen; at its set-up */
+PetscErrorCode ElementApplyFormulation(Element element)
+{
+  PetscErrorCode (*create)(Element);
+  PetscBool full;
+  char      key[128];
+
+  PetscFunctionBegin;
+  if (!element->formulation) PetscCall(ChooseFormulation(element));
+  PetscCall(PetscStrcmp(element->formulation, ELEMENT_FULL, &full));
+  if (full) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetKey(element->cell_type, element->formulation, sizeof(key), key));
+  PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
+  if (!create) {
+    char names[1024];
+
+    PetscCall(GetNames(element->cell_type, sizeof(names), names));
+    SETERRQ(PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
+            "-%selement_formulation %s: elements of shape '%s' do not have it; they have %s", Prefix(element), element->formulation,
+            DMPolytopeTypes[element->cell_type], names);
+  }
+  PetscCall((*create)(element));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A warning where the elements will be too stiff for their material; on the first rank of their communicator. Collective. */
+PetscErrorCode ElementWarnOfLocking(Element element)
+{
+  PetscErrorCode (*create)(Element);
+  PetscReal ratio;
+  PetscBool full;
+  char      key[128];
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(element->formulation, ELEMENT_FULL, &full));
+  PetscCall(GetPoissonsRatio(element, &ratio));
+  if (!full || element->dim == 1 || element->plane_stress || ratio <= LOCKING_RATIO) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetKey(element->cell_type, ELEMENT_MEAN_DILATATION, sizeof(key), key));
+  PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
+  if (create && ratio <= STRONG_RATIO) PetscFunctionReturn(PETSC_SUCCESS);
+  if (create)
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,
+                           "impakt: warning: -%selement_formulation full with a Poisson's ratio of %g: fully integrated elements lock, and "
+                           "are several times too stiff; use mean_dilatation\n",
+                           Prefix(element), (double)ratio));
+  else
+    PetscCall(
+        PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,
+                     "impakt: warning: -%spoissons_ratio %g: elements of shape '%s' lock where Poisson's ratio is larger than %g, and "
+                     "are too stiff; use a mesh of quadrilaterals or hexahedra\n",
+                     Prefix(element), (double)ratio, DMPolytopeTypes[element->cell_type], LOCKING_RATIO));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

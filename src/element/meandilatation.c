@@ -1,0 +1,208 @@
+/*
+   Elements with a mean dilatation, one at a time: their tangent, and their viscosity. The formulation is in meandilatationloops.h.
+
+   With D = F^-T : dF at a point and d theta = sum of w J D / V over the points, of weights w and volume V,
+     dF' = r (dF + g F) with g = (d theta / theta - D) / 3,
+   and the second derivative of F' adds, with pi = P' : F',
+     r (P' : d1F g2 + P' : d2F g1) + pi g1 g2 + pi / 3 (d2theta / theta - d1theta d2theta / theta^2 + T)
+   where T is the trace of F^-1 d1F F^-1 d2F, and d2theta the sum of w J (D1 D2 - T) / V.
+*/
+#include <impakt/private/solid.h>
+
+enum { MAX_DOFS = SOLID_MAX_NODES * 3 };
+
+/* A point of integration, with what the displacement of each degree of freedom makes there */
+typedef struct {
+  PetscReal weight, J, ratio, third;                  /* ratio: r; third: pi / 3 */
+  PetscReal F[9], inverse[9], H[9], P[9];             /* F, F^-T, F' - 1, P' */
+  PetscReal gradient[MAX_DOFS];                       /* of the shape functions, nodes x dim */
+  PetscReal D[MAX_DOFS], g[MAX_DOFS], work[MAX_DOFS]; /* F^-T : dF; g; P' : dF */
+} Point;
+
+static PetscReal Contract(const PetscReal a[9], const PetscReal b[9])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt i = 0; i < 9; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* F^-T, from which det F is returned */
+static PetscReal Invert(const PetscReal F[9], PetscReal inverse[9])
+{
+  PetscReal J;
+
+  for (PetscInt i = 0; i < 3; i++)
+    for (PetscInt j = 0; j < 3; j++)
+      inverse[3 * i + j] = F[3 * ((i + 1) % 3) + (j + 1) % 3] * F[3 * ((i + 2) % 3) + (j + 2) % 3] -
+                           F[3 * ((i + 1) % 3) + (j + 2) % 3] * F[3 * ((i + 2) % 3) + (j + 1) % 3];
+  J = F[0] * inverse[0] + F[1] * inverse[1] + F[2] * inverse[2];
+  for (PetscInt i = 0; i < 9; i++) inverse[i] /= J;
+  return J;
+}
+
+/* `finite`: with regard to rotations and changes of volume; else F is 1 in all but H */
+static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool finite, const PetscScalar u[], Point *point)
+{
+  const Solid      *solid = (const Solid *)element->data;
+  const SolidShape *shape = solid->shape;
+  const PetscInt   *nodes = element->connectivity + e * element->nodes;
+  const PetscInt    dim   = element->dim;
+  PetscReal         N[SOLID_MAX_NODES];
+
+  point->weight = SolidGetShape(element, e, shape->points + dim * g, N, point->gradient) * element->cross_section * shape->volume /
+                  shape->n_points;
+  for (PetscInt i = 0; i < 9; i++) point->F[i] = point->H[i] = 0;
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++)
+      for (PetscInt j = 0; j < dim; j++) point->H[3 * i + j] += u[dim * nodes[a] + i] * point->gradient[dim * a + j];
+  for (PetscInt i = 0; i < 9; i++) point->F[i] = (i % 4 ? 0 : 1) + (finite ? point->H[i] : 0);
+  point->J = Invert(point->F, point->inverse);
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++) {
+      point->D[dim * a + i] = 0;
+      for (PetscInt j = 0; j < dim; j++) point->D[dim * a + i] += point->inverse[3 * i + j] * point->gradient[dim * a + j];
+    }
+}
+
+/* What has to do with the mean: theta, and its derivative by each degree of freedom; then F' and the stress of each point. Returns theta.
+ */
+static PetscReal FillMean(Element element, PetscBool finite, PetscInt n_points, Point points[], PetscReal dtheta[])
+{
+  const Solid   *solid  = (const Solid *)element->data;
+  const PetscInt n      = element->nodes * element->dim;
+  PetscReal      volume = 0, theta = 0;
+
+  for (PetscInt i = 0; i < n; i++) dtheta[i] = 0;
+  for (PetscInt g = 0; g < n_points; g++) {
+    volume += points[g].weight;
+    theta += points[g].weight * (finite ? points[g].J : points[g].H[0] + points[g].H[4] + points[g].H[8]);
+    for (PetscInt i = 0; i < n; i++) dtheta[i] += points[g].weight * points[g].J * points[g].D[i];
+  }
+  theta /= volume;
+  for (PetscInt i = 0; i < n; i++) dtheta[i] /= volume;
+  for (PetscInt g = 0; g < n_points; g++) {
+    Point    *point = &points[g];
+    SimdReal  H[9], P[9];
+    PetscReal F[9];
+
+    point->ratio = finite ? PetscPowReal(theta / point->J, 1. / 3) : 1; /* NaN where the point is inverted */
+    if (finite)
+      for (PetscInt i = 0; i < 9; i++) point->H[i] = point->ratio * point->F[i] - (i % 4 ? 0 : 1);
+    else {
+      const PetscReal change = (theta - (point->H[0] + point->H[4] + point->H[8])) / 3;
+
+      for (PetscInt i = 0; i < 9; i += 4) point->H[i] += change;
+    }
+    for (PetscInt i = 0; i < 9; i++)
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[i][p] = point->H[i];
+    (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
+    for (PetscInt i = 0; i < 9; i++) {
+      point->P[i] = P[i][0];
+      F[i]        = (i % 4 ? 0 : 1) + point->H[i];
+    }
+    point->third = Contract(point->P, F) / 3;
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal *gradient = point->gradient + i / element->dim * element->dim;
+
+      point->g[i]    = (dtheta[i] / (finite ? theta : 1) - point->D[i]) / 3;
+      point->work[i] = 0;
+      for (PetscInt j = 0; j < element->dim; j++) point->work[i] += point->P[3 * (i % element->dim) + j] * gradient[j];
+    }
+  }
+  return theta;
+}
+
+/* dF' for the displacement of each degree of freedom */
+static void GetVariation(Element element, const Point *point, PetscInt i, PetscReal dF[9])
+{
+  for (PetscInt k = 0; k < 9; k++) dF[k] = point->ratio * point->g[i] * point->F[k];
+  for (PetscInt j = 0; j < element->dim; j++)
+    dF[3 * (i % element->dim) + j] += point->ratio * point->gradient[i / element->dim * element->dim + j];
+}
+
+static void AddMaterialPart(Element element, const Point *point, const PetscReal tangent[81], PetscScalar K[])
+{
+  const PetscInt n = element->nodes * element->dim;
+  PetscReal      variation[MAX_DOFS][9];
+
+  for (PetscInt i = 0; i < n; i++) GetVariation(element, point, i, variation[i]);
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal stress[9];
+
+    for (PetscInt k = 0; k < 9; k++) stress[k] = point->weight * Contract(tangent + 9 * k, variation[j]);
+    for (PetscInt i = 0; i < n; i++) K[i * n + j] += Contract(variation[i], stress);
+  }
+}
+
+/* What the second derivative of F' adds; pressure: sum of w pi / (3 theta V), times V */
+static void AddGeometricPart(Element element, const Point *point, PetscReal theta, PetscReal pressure, const PetscReal dtheta[],
+                             PetscScalar K[])
+{
+  const PetscInt  dim = element->dim, n = element->nodes * dim;
+  const PetscReal weight = point->weight, third = point->third;
+
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal trace = point->D[i / dim * dim + j % dim] * point->D[j / dim * dim + i % dim]; /* T */
+
+      K[i * n + j] += weight * (point->ratio * (point->work[i] * point->g[j] + point->g[i] * point->work[j]) +
+                                3 * third * point->g[i] * point->g[j] + third * (trace - dtheta[i] * dtheta[j] / (theta * theta)) +
+                                pressure * point->J * (point->D[i] * point->D[j] - trace));
+    }
+}
+
+/* `viscous`: of the stress F' C : dE'/dt by the velocity */
+static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
+{
+  const Solid    *solid    = (const Solid *)element->data;
+  const PetscInt  n_points = solid->shape->n_points, n = element->nodes * element->dim;
+  const PetscBool finite = (PetscBool)(viscous || !solid->linear);
+  Point           points[SOLID_MAX_POINTS];
+  PetscReal       dtheta[MAX_DOFS], theta, volume = 0, pressure = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(K, n * n));
+  for (PetscInt g = 0; g < n_points; g++) FillPoint(element, e, g, finite, u, &points[g]);
+  theta = FillMean(element, finite, n_points, points, dtheta);
+  for (PetscInt g = 0; g < n_points; g++) {
+    volume += points[g].weight;
+    pressure += points[g].weight * points[g].third / theta;
+  }
+  for (PetscInt g = 0; g < n_points; g++) {
+    PetscReal tangent[81];
+
+    (*solid->kernels.tangent)(solid->kernels.data, points[g].H, tangent);
+    if (viscous) SolidTurnTangent(points[g].H, tangent);
+    AddMaterialPart(element, &points[g], tangent, K);
+    if (finite && !viscous) AddGeometricPart(element, &points[g], theta, pressure / volume, dtheta, K);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementStiffness_MeanDilatation(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+{
+  PetscFunctionBegin;
+  PetscCall(ComputeTangent(element, e, PETSC_FALSE, u, K));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementViscosity_MeanDilatation(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
+{
+  PetscFunctionBegin;
+  PetscCall(ComputeTangent(element, e, PETSC_TRUE, u, C));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All but the loops over all elements */
+PetscErrorCode ElementCreate_Solid_MeanDilatation(Element element)
+{
+  PetscFunctionBegin;
+  PetscCheck(!element->plane_stress, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
+             "-%selement_formulation mean_dilatation: bodies in plane stress have a thickness that is free to change, so that their volume "
+             "does not lock; use full or enhanced",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "");
+  element->ops->stiffness = ElementStiffness_MeanDilatation;
+  element->ops->viscosity = ElementViscosity_MeanDilatation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
