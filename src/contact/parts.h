@@ -17,7 +17,7 @@ typedef struct {
   PetscReal size;     /* edge of its mean element, or of the largest that is alike [m] */
 } ContactPreference;
 
-PETSC_INTERN PetscFunctionList ContactList;
+PETSC_INTERN PetscFunctionList ContactList, ContactLawList;
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
@@ -91,6 +91,18 @@ PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
+
+PETSC_INTERN PetscErrorCode ContactReadFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyFrictionLaw(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpFriction(Contact);
+PETSC_INTERN void           ContactAlignRubbingRows(Contact);
+PETSC_INTERN void           ContactCarryFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactComputeFrictionLoss(Contact, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactAcceptFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactRefuseFriction(Contact, const char[]);
+PETSC_INTERN PetscErrorCode ContactDestroyFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactStepByFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactLawRegisterAll(void);
 
 PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);

@@ -13,7 +13,8 @@ enum {
   SUM_IMPULSE        = SUM_MOMENT + 3,
   SUM_NORMAL_IMPULSE = SUM_IMPULSE + 3,
   SUM_BEYOND         = SUM_NORMAL_IMPULSE + 1,
-  N_SUMS             = SUM_BEYOND + 1
+  SUM_SLIDING        = SUM_BEYOND + 1,
+  N_SUMS             = SUM_SLIDING + 1
 };
 
 /* What is kept of a pair from step to step: its impulse and the force at the end of the last step, 3 numbers each, and the same of the
@@ -226,6 +227,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
     if (contact->held.merger) sums[SUM_AREA] += PetscSqr(along) * contact->rows.area[i] * contact->resultants.cross_section[p];
     if (contact->rows.dof[i] == counted) continue;
     sums[SUM_ACTIVE] += 1;
+    if (contact->friction.slides && contact->friction.slides[i]) sums[SUM_SLIDING] += 1;
     if (!contact->held.merger) sums[SUM_AREA] += contact->rows.area[i] * contact->resultants.cross_section[p];
     counted = contact->rows.dof[i];
   }
@@ -266,6 +268,8 @@ static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt en
     }
     state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
     state->beyond_impulse = sums[SUM_BEYOND];
+    state->sliding        = (PetscInt)sums[SUM_SLIDING];
+    state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
