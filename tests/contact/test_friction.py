@@ -92,6 +92,62 @@ def test_block_on_tilted_obstacle(impakt):
     assert np.polyfit(time[late], speed[late], 1)[0] == pytest.approx(G * (np.sin(TILT) - 0.3 * np.cos(TILT)), rel=1e-3)
 
 
+OBLIQUE = " ".join(
+    f"-{body}_dm_plex_dim 3 -{body}_dm_plex_box_lower -1,-1,{lower} -{body}_dm_plex_box_upper 1,1,{upper} -{body}_dm_plex_box_faces {n},{n},12 "
+    f"-{body}_density 1000 -{body}_youngs_modulus 1e9 -{body}_poissons_ratio 0 -{body}_initial_velocity {sign}0.048*(1-exp(-(10*z)^2)),"
+    f"{sign}0.036*(1-exp(-(10*z)^2)),0 -{body}_initial_displacement 0,0,-1e-4*z -{body}_boundary_traction {end} -{body}_boundary_traction_{end} 0,0,{load}"
+    for body, lower, upper, n, sign, end, load in (("lower", -0.5, 0, 4, "-", "zmin", "1e5"), ("upper", 0, 0.5, 5, "", "zmax", "-1e5"))
+)
+OBLIQUE += " -bodies lower,upper -contact_pairs lower.zmax:upper.zmin -contact_law coulomb -contact_friction 0.3 -time_step 1e-5 -time_end 3e-4"
+
+
+def test_in_space(impakt):
+    """The shear pulse in hexahedra that do not match, askew to the axes: while all slides the force is that of the law, against the motion; on two ranks too."""
+    one, two = impakt(OBLIQUE), impakt(OBLIQUE, ranks=2)
+    (name,) = one.history["contact"]
+    sliding, force = one.history[f"contact/{name}/sliding"][()], one.history[f"contact/{name}/force_vector"][()]
+    slides = sliding == sliding.max()
+    assert sliding.max() == 25 and slides.sum() > 5
+    assert np.hypot(force[slides, 0], force[slides, 1]) == pytest.approx(0.3 * force[slides, 2], rel=1e-3)  # directions of the nodes differ a little
+    assert force[slides, 1] / force[slides, 0] == pytest.approx(0.75, rel=1e-2)
+    assert worst_energy_error(one.summary) <= 1e-12
+    for series in ("force_vector", "friction_loss"):
+        values = one.history[f"contact/{name}/{series}"][()]
+        assert np.abs(values - two.history[f"contact/{name}/{series}"][()]).max() <= 1e-10 * np.abs(values).max()
+
+
+@pytest.mark.parametrize("pairing", ["II", "EE"])
+def test_large_coefficient_is_a_tie(pairing, impakt):
+    """Without opening, friction that nothing overcomes is the tied solution with massless layers."""
+    move = "-lower_initial_velocity 0,0.01*x -upper_initial_velocity 0.03*y,0 -time_end 1e-4 -lower_dm_plex_box_faces 33,20 -upper_dm_plex_box_faces 40,20"
+    stick = impakt(joined(PULSE, PAIRINGS[pairing], move, "-contact_friction 1e8"))
+    options = [line for line in open("options/shear-pulse.opts").read().splitlines() if not line.startswith(("#", "-contact_law", "-contact_friction"))]
+    (stick.folder / "tied.opts").write_text("\n".join(options))
+    tie = "-contact_law tied -lower_mass_redistribute true -upper_mass_redistribute true"
+    tied = impakt(joined(f"-options_file {stick.folder}/tied.opts", PAIRINGS[pairing], move, tie))
+    for body in ("lower", "upper"):
+        for series in ("mean_velocity", "contact_velocity", "contact_position"):
+            a, b = (run.history[f"body/{body}/{series}"][()] for run in (stick, tied))
+            assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max()  # measured: 1e-12
+
+
+def test_turning_together(impakt):
+    """Two blocks that are pressed together and turn by 90 degrees as one do not rub, whatever their meshes."""
+    bodies = " ".join(
+        f"-{body}_dm_plex_dim 2 -{body}_dm_plex_box_lower -1,{lower} -{body}_dm_plex_box_upper 1,{upper} -{body}_dm_plex_box_faces {n},4 "
+        f"-{body}_density 1000 -{body}_youngs_modulus 1e9 -{body}_poissons_ratio 0 -{body}_material_type neo_hookean "
+        f"-{body}_initial_velocity -10*y,10*x -{body}_initial_displacement 0,-1e-3*y -{body}_boundary_traction {end} "
+        f"-{body}_boundary_traction_{end} {sign}1e6*sin(10*t),{other}1e6*cos(10*t)"
+        for body, lower, upper, n, end, sign, other in (("lower", -0.5, 0, 11, "ymin", "-", ""), ("upper", 0, 0.5, 14, "ymax", "", "-"))
+    )
+    run = impakt(f"-bodies lower,upper -contact_pairs lower.ymax:upper.ymin -contact_law coulomb -contact_friction 0.3 -time_step 2e-4 -time_end 0.157 {bodies}")
+    (name,) = run.history["contact"]
+    energy = run.history["body/lower/kinetic"][0] + run.history["body/upper/kinetic"][0]
+    assert run.history[f"contact/{name}/sliding"][()].max() == 0
+    assert np.abs(run.history[f"contact/{name}/friction_loss"][()]).max() <= 1e-9 * energy  # measured: 1e-12
+    assert run.summary["schwarz"]["max"] <= 4
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

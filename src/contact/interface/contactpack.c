@@ -8,7 +8,7 @@
 #include "contactvisit.h"
 
 /* Numbers of a row; the last of them is its own among those of all ranks */
-enum { N_ROW = 25, ROW_NUMBER = N_ROW - 1 };
+enum { N_ROW = 29, ROW_NUMBER = N_ROW - 1 };
 
 static void CopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *packed)
 {
@@ -35,6 +35,11 @@ static void CopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *pack
   TablesCopyReals(back, 1, &contact->energy.last_force[i], &packed);
   TablesCopyReals(back, 1, &contact->energy.accepted_force[i], &packed);
   TablesCopyReals(back, 1, &contact->energy.last_stored[i], &packed);
+  if (!contact->friction.slip) return;
+  TablesCopyReals(back, 1, &contact->friction.loss[i], &packed);
+  TablesCopyReals(back, 1, &contact->friction.distance[i], &packed);
+  TablesCopyReals(back, 1, &contact->friction.speed[i], &packed);
+  TablesCopyBool(back, &contact->friction.slides[i], &packed);
 }
 
 /* All rows of a pair to a table, a line for each node, or back; then `was` gets the number that each row of this rank had (NULL: is not

@@ -53,9 +53,9 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
   const PetscInt   n        = contact->rows.n;
 
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_FRICTION) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc6(n, &friction->slip, n, &friction->step_loss, n, &friction->loss, n, &friction->distance, n, &friction->speed, n,
-                         &friction->slides));
+  if (contact->options.law != CONTACT_LAW_FRICTION || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc6(PetscMax(n, 1), &friction->slip, n, &friction->step_loss, n, &friction->loss, n, &friction->distance, n,
+                         &friction->speed, n, &friction->slides));
   PetscCall(PetscCalloc2(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,7 +26,6 @@ struct _n_FrictionSolver {
   DenseFactor    factor;
   PetscScalar   *open, *trial, *rhs; /* what rows open by; trial forces; right-hand side, then Newton's step */
   PetscInt      *in;                 /* rows of nodes that touch */
-  FrictionState *last;
 };
 
 PetscErrorCode FrictionSolverCreate(FrictionSolver *solver)
@@ -39,7 +38,7 @@ PetscErrorCode FrictionSolverCreate(FrictionSolver *solver)
 static PetscErrorCode FreeRoom(FrictionSolver solver)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree5(solver->open, solver->trial, solver->rhs, solver->in, solver->last));
+  PetscCall(PetscFree4(solver->open, solver->trial, solver->rhs, solver->in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,7 +59,7 @@ static PetscErrorCode MakeRoom(FrictionSolver solver, PetscInt n)
   PetscCall(FreeRoom(solver));
   solver->room = PetscMax(n, 2 * solver->room);
   n            = solver->room;
-  PetscCall(PetscMalloc5(n, &solver->open, n, &solver->trial, n, &solver->rhs, n, &solver->in, n, &solver->last));
+  PetscCall(PetscMalloc4(n, &solver->open, n, &solver->trial, n, &solver->rhs, n, &solver->in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,7 +84,8 @@ static PetscReal Stiffness(const FrictionProblem *problem, PetscInt first, Petsc
   return most > 0 ? 1 / most : 0;
 }
 
-/* States from forces and what rows open by, with trial forces across the normal; whether any has changed */
+/* States from forces and what rows open by, with trial forces across the normal; whether any has changed, or the way that a node slides has
+   turned round */
 static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
 {
   const PetscInt dim     = problem->dim;
@@ -96,16 +96,19 @@ static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
     const PetscReal normal = PetscRealPart(problem->force[first]), p = Stiffness(problem, first, 0, 1);
     const PetscReal q      = Stiffness(problem, first, 1, dim);
     const PetscReal bound  = PetscMax(PetscRealPart(problem->limit[first] + problem->limit[first + 1] * normal), 0);
-    PetscReal       square = 0;
-    FrictionState   state  = FRICTION_OPEN;
+    PetscReal       square = 0, along = 0; /* along the direction of before */
+    FrictionState   state = FRICTION_OPEN;
 
     for (PetscInt k = 1; k < dim; k++) {
-      solver->trial[first + k] = problem->force[first + k] - q * solver->open[first + k];
+      const PetscScalar trial = problem->force[first + k] - q * solver->open[first + k];
+
+      along += PetscRealPart(trial * solver->trial[first + k]);
+      solver->trial[first + k] = trial;
       square += PetscSqr(PetscRealPart(solver->trial[first + k]));
     }
     /* a row that nothing moves is no condition */
     if (p > 0 && normal - p * PetscRealPart(solver->open[first]) > 0) state = square > PetscSqr(bound) ? FRICTION_SLIDES : FRICTION_STICKS;
-    if (state != problem->state[node]) changed = PETSC_TRUE;
+    if (state != problem->state[node] || (state == FRICTION_SLIDES && along < 0)) changed = PETSC_TRUE;
     problem->state[node] = state;
   }
   return changed;
@@ -233,6 +236,7 @@ PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem 
   *solved = *by_nodes = PETSC_FALSE;
   PetscCall(MakeRoom(solver, problem->n));
   PetscCall(Open(problem, solver->rhs, solver->open));
+  PetscCall(PetscArrayzero(solver->trial, problem->n));
   (void)Judge(solver, problem);
   for (PetscInt step = 1; step <= NEWTON_MOST && !*solved; step++) {
     PetscCall(Step(solver, problem, &singular, &change));

@@ -15,6 +15,8 @@
 #define MOST_SWEEPS 60
 /* Round-off of what rows open by, in parts of the displacements that this is the difference of */
 #define ROUND_OFF 1e-14
+/* By how many times that may the forces that have been found miss the law */
+#define RESIDUAL_MOST 100
 
 typedef struct {
   Forces            forces;
@@ -292,17 +294,32 @@ static PetscErrorCode Step(Contact contact)
     if (!ContactFailed(contact)) PetscCall(Integrate(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(Compare(contact, &mismatch, &round_off));
+    PetscCall(PetscInfo(contact, "friction: after sweep %" PetscInt_FMT " gaps and slips differ by %g m from what was told\n",
+                        contact->counts.sweeps, (double)mismatch));
     PetscCall(MarkPenetrating(contact, &more));
     if (PetscIsInfOrNanReal(mismatch)) break;
     if (more) {
       contact->counts.set_changes++;
       PetscCall(StartProblem(contact));
     } else if (mismatch <= PetscMax(step->atol, round_off)) {
-      contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, GetResidual(&step->problem));
+      const PetscReal residual = GetResidual(&step->problem);
+
+      /* what solves the problem is checked by the law itself */
+      if (residual > RESIDUAL_MOST * PetscMax(step->atol, round_off)) PetscCall(Fail(contact, PETSC_FALSE, 0));
+      contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, residual);
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
   PetscCall(Fail(contact, PETSC_TRUE, mismatch));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nothing is remembered from step to step but what contact itself has in a checkpoint */
+static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  (void)contact;
+  (void)checkpoint;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -373,6 +390,7 @@ PetscErrorCode ContactStepByFriction(Contact contact)
   contact->ops->stored    = ContactStoresNothing;
   contact->ops->view      = View;
   contact->ops->destroy   = Destroy;
+  contact->ops->visit     = Visit;
   step->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
   step->problem.dim       = contact->dim;
   PetscCall(ForcesCreate(contact, &step->forces));
