@@ -22,10 +22,10 @@
 #define NEWTON_RTOL 1e-14
 
 struct _n_FrictionSolver {
-  PetscInt       room;
-  DenseFactor    factor;
-  PetscScalar   *open, *trial, *rhs; /* what rows open by; trial forces; right-hand side, then Newton's step */
-  PetscInt      *in;                 /* rows of nodes that touch */
+  PetscInt     room;
+  DenseFactor  factor;
+  PetscScalar *open, *trial, *rhs; /* what rows open by; trial forces; right-hand side, then Newton's step */
+  PetscInt    *in;                 /* rows of nodes that touch */
 };
 
 PetscErrorCode FrictionSolverCreate(FrictionSolver *solver)
@@ -120,7 +120,8 @@ static void SetSliding(FrictionSolver solver, const FrictionProblem *problem, Pe
 {
   const PetscInt  dim = problem->dim, n = problem->n;
   const PetscReal q = Stiffness(problem, first, 1, dim), coefficient = PetscRealPart(problem->limit[first + 1]);
-  const PetscReal bound  = PetscMax(PetscRealPart(problem->limit[first] + coefficient * problem->force[first]), 0);
+  /* below zero on the way to the solution it must not be cut off: the equation would not be the law's any more */
+  const PetscReal bound  = PetscRealPart(problem->limit[first] + coefficient * problem->force[first]);
   PetscScalar    *matrix = solver->factor.values;
   PetscReal       size = 0, e[3] = {0};
 
@@ -141,7 +142,7 @@ static void SetSliding(FrictionSolver solver, const FrictionProblem *problem, Pe
     for (PetscInt l = 1; l < dim && dim > 2; l++) {
       const PetscReal across = (l == k ? 1 : 0) - e[k] * e[l];
 
-      value -= bound / size * across * ((column == first + l ? 1 : 0) - q * problem->S[column * n + first + l]);
+      value -= PetscMax(bound, 0) / size * across * ((column == first + l ? 1 : 0) - q * problem->S[column * n + first + l]);
     }
     matrix[j * n_in + row] = value / q;
   }
