@@ -39,14 +39,15 @@ typedef const char *ContactType;
 + `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
 . `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start, see `ContactSetTieDistance()`, stay there: all components of the
                                displacement since then are equal
-- `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
+. `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
                                from the next controller step on
+- `CONTACT_LAW_FRICTION`     - they resist sliding, by the law that `ContactSetFrictionLaw()` names
 
    Level: beginner
 
 .seealso: `ContactSetLaw()`
 E*/
-typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED } ContactLaw;
+typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_FRICTION } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
 
 /*E
@@ -225,6 +226,8 @@ typedef struct {
   PetscReal moment[3];       /* of the forces about the origin, where the nodes that have the rows are now [N m] */
   PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, whole or cut, trapezoidal [N s] */
   PetscReal normal_impulse;  /* the same of `force` [N s] */
+  PetscReal friction_loss;   /* energy that friction has taken so far [J] */
+  PetscInt  sliding;         /* of the nodes in contact those that slide, with friction */
   PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that, see `TransferSetGuards()`; not trapezoidal [N s] */
 } ContactPairState;
 
@@ -245,6 +248,8 @@ typedef struct {
   PetscInt       unlimited_steps;   /* of these, in which it gained energy all the same */
   PetscInt64     energy_attempts;   /* how often these were made again */
   PetscInt64     inner_iterations;  /* of conjugate gradients on the interface */
+  PetscReal      friction_least;    /* least energy that friction has taken on a row in a step, by the forces at its ends; 0 or less [J] */
+  PetscReal      friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
   PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
   PetscLogDouble seconds;           /* in sweeps */
 } ContactCounts;
@@ -286,6 +291,11 @@ PETSC_EXTERN PetscErrorCode ContactSetEnergyTolerance(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, ContactLaw);
 PETSC_EXTERN PetscErrorCode ContactGetLaw(Contact, ContactLaw *);
+PETSC_EXTERN PetscErrorCode ContactSetFrictionLaw(Contact, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetFriction(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetPairFriction(Contact, PetscInt, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetKineticFriction(Contact, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGetFrictionLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetConstraint(Contact, ContactConstraint);
 PETSC_EXTERN PetscErrorCode ContactGetConstraint(Contact, ContactConstraint *);
 PETSC_EXTERN PetscErrorCode ContactSetStabilization(Contact, ContactStabilization);

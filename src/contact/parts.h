@@ -23,7 +23,7 @@ typedef struct ContactPreference {
 #define CONTACT_IMPULSES 9
 
 /* What checkpoints have of a row; the last number is that of the row among those of all ranks */
-#define CONTACT_ROW_NUMBERS 25
+#define CONTACT_ROW_NUMBERS 29
 
 /* The number of the second body of a pair, or the number of bodies and that of the obstacle */
 static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pair)
@@ -35,7 +35,7 @@ static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pa
   return contact->n_bodies + o;
 }
 
-PETSC_INTERN PetscFunctionList ContactList;
+PETSC_INTERN PetscFunctionList ContactList, ContactLawList;
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
@@ -137,6 +137,18 @@ PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
+
+PETSC_INTERN PetscErrorCode ContactReadFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactDestroyFrictionLaw(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpFriction(Contact);
+PETSC_INTERN void           ContactAlignRubbingRows(Contact);
+PETSC_INTERN void           ContactCarryFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactComputeFrictionLoss(Contact, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactAcceptFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactRefuseFriction(Contact, const char[]);
+PETSC_INTERN PetscErrorCode ContactDestroyFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactStepByFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactLawRegisterAll(void);
 
 PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);

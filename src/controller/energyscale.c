@@ -63,10 +63,10 @@ PetscReal EnergyScaleGet(const EnergyScale *scale)
   return scale->from_rest || scale->start <= 0 ? scale->largest : scale->start;
 }
 
-/* By how much there is more energy in a frame than at the start [J] */
+/* By how much there is more energy in a frame than at the start, with what friction has taken since [J] */
 PetscReal EnergyScaleChange(const EnergyScale *scale, const ControllerFrame *frame)
 {
-  PetscReal energy = 0;
+  PetscReal energy = frame->friction_loss;
 
   for (PetscInt b = 0; b < frame->n_bodies; b++) energy += BodyMeasuresGetBalance(&frame->bodies[b]);
   return energy - scale->start;

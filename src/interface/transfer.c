@@ -298,6 +298,44 @@ PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], Pet
 }
 
 /*@
+  TransferSetDirectedValues - puts rows of given directions into the matrices of both sides
+
+  Not Collective
+
+  Input Parameters:
++ transfer   - the `Transfer`, updated once at least
+. begin      - global number of the first row of this rank in the matrix of the first side, and in that of the second
+. components - rows of each node
+. directions - of each row of this rank: 3 numbers, zeros beyond the space dimension
+- rows       - as in `TransferSetValues()`, with these directions in place of the normal
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferSetValues()`
+@*/
+PetscErrorCode TransferSetDirectedValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const PetscReal directions[],
+                                         const Mat rows[2])
+{
+  const RowSet  *set = &transfer->rows;
+  const PetscInt dim = transfer->dim;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
+  for (PetscInt i = 0; i < transfer->n; i++)
+    for (PetscInt row = i * components; row < (i + 1) * components; row++)
+      for (PetscInt d = 0; d < dim; d++) {
+        const PetscReal direction = directions[3 * row + d];
+
+        if (rows[0]) PetscCall(MatSetValue(rows[0], begin[0] + row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
+        if (!rows[1] || !set->opposite[i]) continue;
+        for (PetscInt j = set->offsets[i]; j < set->offsets[i + 1]; j++)
+          PetscCall(MatSetValue(rows[1], begin[1] + row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));
+      }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferSetNeighbours - marks which rows belong to nodes of the Dirichlet side with an edge in common
 
   Collective

@@ -45,6 +45,8 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   contact->max_penetration = PetscMax(contact->max_penetration, -state->gap);
   contact->area_max        = PetscMax(contact->area_max, state->area);
   contact->active_max      = PetscMax(contact->active_max, state->active);
+  contact->sliding_max     = PetscMax(contact->sliding_max, state->sliding);
+  contact->friction_loss   = state->friction_loss;
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
   contact->gap_final = state->gap;
   memory->touches    = touches;
@@ -86,6 +88,8 @@ PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
     any.gap = PetscMin(any.gap, frame->pairs[i].gap);
     any.active += frame->pairs[i].active;
     any.area += frame->pairs[i].area;
+    any.sliding += frame->pairs[i].sliding;
+    any.friction_loss += frame->pairs[i].friction_loss;
     any.tension = PetscMax(any.tension, frame->pairs[i].tension);
   }
   AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time, cut);

@@ -24,6 +24,7 @@ struct _n_History {
   char          *options;
   PetscInt       n_bodies, *dims; /* space dimension of each body */
   PetscBool     *damped;          /* per body: it has Rayleigh damping */
+  PetscBool      friction;        /* contact has friction */
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
@@ -55,6 +56,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   const Body              *bodies;
   const char              *name;
   Contact                  contact;
+  ContactLaw               law;
   PetscInt                 n_pairs, n_supports, n_probes;
   const ControllerSupport *supports;
   const ControllerProbe   *probes;
@@ -66,7 +68,9 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
   PetscCall(PetscMalloc2(history->n_bodies, &history->dims, history->n_bodies, &history->damped));
-  PetscCall(PetscCalloc1(2 + 7 * n_pairs + 9 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(ContactGetLaw(contact, &law));
+  history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
+  PetscCall(PetscCalloc1(2 + 9 * n_pairs + 9 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -78,6 +82,9 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(AddSeries(history, "/contact/", name, "force_vector", "N", 3, PETSC_FALSE));
     PetscCall(AddSeries(history, "/contact/", name, "moment", "N m", 3, PETSC_FALSE));
     PetscCall(AddSeries(history, "/contact/", name, "impulse", "N s", 3, PETSC_FALSE));
+    if (!history->friction) continue;
+    PetscCall(AddSeries(history, "/contact/", name, "friction_loss", "J", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "sliding", "1", 1, PETSC_TRUE));
   }
   for (PetscInt i = 0; i < history->n_bodies; i++) {
     PetscInt *dim = &history->dims[i];
@@ -222,7 +229,7 @@ static PetscErrorCode MakeRoom(History history)
 }
 
 /* Fills a record, in the order of AddAllSeries() */
-static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], const PetscBool damped[], PetscReal *next)
+static void FillRecord(const ControllerFrame *frame, History history, PetscReal *next)
 {
   *next++ = frame->time;
   *next++ = (PetscReal)frame->sweeps;
@@ -234,17 +241,20 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], cons
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].force_vector[d];
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].moment[d];
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].impulse[d];
+    if (!history->friction) continue;
+    *next++ = frame->pairs[i].friction_loss;
+    *next++ = (PetscReal)frame->pairs[i].sliding;
   }
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     *next++ = frame->bodies[i].kinetic;
     *next++ = frame->bodies[i].potential;
-    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->contact_positions[3 * i + d];
-    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->contact_velocities[3 * i + d];
-    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].mean_velocity[d];
+    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->contact_positions[3 * i + d];
+    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->contact_velocities[3 * i + d];
+    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->bodies[i].mean_velocity[d];
     *next++ = frame->bodies[i].external_work;
-    for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
-    for (PetscInt d = 0; d < 3 && dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
-    if (damped[i]) *next++ = frame->bodies[i].damping_work;
+    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
+    for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
+    if (history->damped[i]) *next++ = frame->bodies[i].damping_work;
   }
   for (PetscInt i = 0; i < frame->n_supports; i++) {
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
@@ -253,9 +263,9 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], cons
   for (PetscInt i = 0; i < frame->n_probes; i++) {
     const ControllerProbe *probe = &frame->probes[i];
 
-    for (PetscInt d = 0; d < dims[probe->body]; d++) *next++ = probe->position[d];
-    for (PetscInt d = 0; d < dims[probe->body]; d++) *next++ = probe->displacement[d];
-    for (PetscInt d = 0; d < dims[probe->body]; d++) *next++ = probe->velocity[d];
+    for (PetscInt d = 0; d < history->dims[probe->body]; d++) *next++ = probe->position[d];
+    for (PetscInt d = 0; d < history->dims[probe->body]; d++) *next++ = probe->displacement[d];
+    for (PetscInt d = 0; d < history->dims[probe->body]; d++) *next++ = probe->velocity[d];
     for (PetscInt k = 0; k < 6; k++) *next++ = probe->stress[k];
   }
 }
@@ -279,7 +289,7 @@ PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *fram
   (void)controller;
   if (!history->writes) PetscFunctionReturn(PETSC_SUCCESS);
   if (history->n_records == history->capacity) PetscCall(MakeRoom(history));
-  FillRecord(frame, history->dims, history->damped, history->records + history->n_records * history->width);
+  FillRecord(frame, history, history->records + history->n_records * history->width);
   history->n_records++;
   PetscCall(PetscTime(&now));
   if (!history->written || now - history->flushed > PetscMax(FLUSH_INTERVAL, FLUSH_SHARE * history->flush_seconds))

@@ -73,6 +73,7 @@ static PetscErrorCode ViewContact(Contact contact, const Body bodies[], const St
   if (law != CONTACT_LAW_FRICTIONLESS) PetscCall(PrintValue(viewer, "tension of a node, peak", c->tension_max, "N", NAN));
   if (!all_static) PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", impulse));
   PetscCall(PrintValue(viewer, "largest penetration", c->max_penetration, "m", NAN));
+  if (law == CONTACT_LAW_FRICTION) PetscCall(PrintValue(viewer, "energy taken by friction", c->friction_loss, "J", NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -22,6 +22,8 @@ typedef struct {
   PetscReal           area_max;          /* in contact at the same time [m^2] */
   PetscInt            active_max;        /* nodes in contact at the same time */
   PetscReal           gap_final;         /* smallest gap at the end of the run [m] */
+  PetscReal           friction_loss;     /* energy that friction has taken [J] */
+  PetscInt            sliding_max;       /* nodes that slide at the same time, with friction */
 } ContactStatistics;
 
 typedef struct {

@@ -48,7 +48,7 @@ static PetscErrorCode SetObject(json_t *object, const char name[], json_t **memb
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatistics *contact)
+static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatistics *contact, PetscBool friction)
 {
   PetscFunctionBegin;
   PetscCall(SetReal(object, "first_contact_time", contact->first_contact_time));
@@ -68,6 +68,9 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SetReal(object, "area_max", contact->area_max));
   PetscCall(SetInteger(object, "active_max", contact->active_max));
   PetscCall(SetReal(object, "gap_final", contact->gap_final));
+  if (!friction) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SetReal(object, "friction_loss", contact->friction_loss));
+  PetscCall(SetInteger(object, "sliding_max", contact->sliding_max));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,18 +78,29 @@ static PetscErrorCode AddContact(json_t *root, Contact contact, const Statistics
 {
   json_t     *object, *pair;
   ContactType type;
+  ContactLaw  law;
+  PetscBool   friction;
   const char *name;
 
   PetscFunctionBegin;
   PetscCall(ContactGetType(contact, &type));
+  PetscCall(ContactGetLaw(contact, &law));
+  friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
   PetscCall(SetObject(root, "contact", &object));
   PetscCall(SetMember(object, "type", json_string(type)));
-  PetscCall(SetContactStatistics(object, &results->contact));
+  PetscCall(SetContactStatistics(object, &results->contact, friction));
+  if (friction) {
+    ContactCounts counts;
+
+    PetscCall(ContactGetCounts(contact, &counts));
+    PetscCall(SetReal(object, "friction_least", counts.friction_least));
+    PetscCall(SetReal(object, "friction_residual", counts.friction_residual));
+  }
   PetscCall(SetObject(root, "pairs", &object));
   for (PetscInt i = 0; i < results->n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
     PetscCall(SetObject(object, name, &pair));
-    PetscCall(SetContactStatistics(pair, &results->pairs[i]));
+    PetscCall(SetContactStatistics(pair, &results->pairs[i], friction));
     PetscCall(SetVector(pair, "impulse_vector", results->pairs[i].impulse_vector));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

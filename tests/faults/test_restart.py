@@ -39,6 +39,8 @@ VARIANTS = {
     "cut steps, penalty": BLOCKS + "-time_step 4e-5 -contact_type penalty",
     "augmented Lagrangian": BLOCKS + "-contact_type augmented_lagrangian",
     "bonded": BLOCKS + "-contact_law bonded",
+    "friction": BLOCKS + "-contact_law coulomb -contact_friction 0.3",
+    "nonlinear, friction": NONLINEAR + "-contact_law coulomb -contact_friction 0.3 -contact_friction_kinetic 0.1 -contact_friction_decay 1",
     "Robin": BLOCKS + "-schwarz_transmission robin",
     "impedance": BLOCKS + "-schwarz_transmission impedance",
     "Anderson": BLOCKS + "-schwarz_snes_type anderson",
@@ -266,6 +268,7 @@ RANKS_AMID = {
     "stack": ("-options_file options/stack.opts -time_end 0.12", 2, 1, 0.8),
     "slides": ("-options_file options/sliding-flat.opts", 1, 3, 0.55),
     "discs": ("-options_file options/discs.opts -time_end 3.3e-4", 1, 3, 0.9095),
+    "friction": ("-options_file options/slope.opts", 1, 2, 0.55),
     "sides swapped": (HEAD_ON, 1, 2, 0.55),
     "sides swapped, an odd step": (HEAD_ON, 3, 1, 0.557),
 }

@@ -36,30 +36,32 @@ struct _ContactOps {
 
 /* Two bodies, or a body and an obstacle, that may touch */
 typedef struct {
-  char          *name;        /* as given: left:right */
-  PetscInt       body[2];     /* numbers of the body that has a node for each row, and of the other; n_bodies if that is an obstacle */
-  PetscBool      turned;      /* the body that has the rows is the one that the user names second */
-  PetscInt       dirichlet;   /* which of them takes displacements in this controller step: 0 or 1 */
-  char          *surface[2];  /* names of the surfaces; NULL for all faces that see the other body */
-  Obstacle       obstacle;    /* in place of the second body, or NULL; borrowed */
-  PetscBool      chosen;      /* the program has chosen the pair, not the user */
-  const char    *why;         /* why the program has the first body take displacements; NULL: the user says so */
-  ContactRowSide row_side;    /* which body is to have the rows, if `own_side` */
-  PetscBool      own_side;    /* the pair has been given a side of its own */
-  Surface        surfaces[2]; /* those of the bodies */
-  PetscInt       place[2];    /* these in contact->surfaces */
-  PetscBool      far;         /* its bodies are so far apart that its rows have no partner, see src/contact/rows/farpairs.c */
-  PetscBool      was_far;     /* at the start of the controller step */
-  PetscReal      distance;    /* between the boxes of its surfaces as the step begins, where they are far apart [m] */
-  Transfer       transfer;    /* between the surfaces */
-  PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
-  PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
-  PetscInt       shift[2];    /* row i of this rank has the number i - shift[side] among those of the body on that side */
-  PetscReal      normal[3];   /* mean outward normal of the body that has the rows */
-  PetscBool      bonded;      /* a node of it sticks already, see src/contact/rows/bonded.c */
-  PetscBool      keeps_mass;  /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
-  PetscBool      by_force;    /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
-  PetscInt       intervals;   /* of the controller step, between whose ends its force is linear */
+  char          *name;         /* as given: left:right */
+  PetscInt       body[2];      /* numbers of the body that has a node for each row, and of the other; n_bodies if that is an obstacle */
+  PetscBool      turned;       /* the body that has the rows is the one that the user names second */
+  PetscInt       dirichlet;    /* which of them takes displacements in this controller step: 0 or 1 */
+  char          *surface[2];   /* names of the surfaces; NULL for all faces that see the other body */
+  Obstacle       obstacle;     /* in place of the second body, or NULL; borrowed */
+  PetscBool      chosen;       /* the program has chosen the pair, not the user */
+  const char    *why;          /* why the program has the first body take displacements; NULL: the user says so */
+  ContactRowSide row_side;     /* which body is to have the rows, if `own_side` */
+  PetscBool      own_side;     /* the pair has been given a side of its own */
+  Surface        surfaces[2];  /* those of the bodies */
+  PetscInt       place[2];     /* these in contact->surfaces */
+  PetscBool      far;          /* its bodies are so far apart that its rows have no partner, see src/contact/rows/farpairs.c */
+  PetscBool      was_far;      /* at the start of the controller step */
+  PetscReal      distance;     /* between the boxes of its surfaces as the step begins, where they are far apart [m] */
+  Transfer       transfer;     /* between the surfaces */
+  PetscInt       components;   /* rows of each node: 1, along its normal, or as many as space has dimensions */
+  PetscInt       begin, end;   /* rows of this rank: begin to end - 1 */
+  PetscInt       shift[2];     /* row i of this rank has the number i - shift[side] among those of the body on that side */
+  PetscReal      normal[3];    /* mean outward normal of the body that has the rows */
+  PetscBool      bonded;       /* a node of it sticks already, see src/contact/rows/bonded.c */
+  PetscBool      keeps_mass;   /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
+  PetscBool      by_force;     /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
+  PetscInt       intervals;    /* of the controller step, between whose ends its force is linear */
+  PetscBool      own_friction; /* it has a coefficient of friction of its own */
+  PetscReal      friction;     /* that */
 } ContactPair;
 
 /* A surface of a body, for all pairs that have the same */
@@ -118,6 +120,9 @@ typedef struct {
   PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
+  PetscReal            friction;         /* coefficient of friction of nodes that stick; less than 0: not set */
+  PetscReal            friction_kinetic; /* of those that slide fast; less than 0: the same */
+  PetscReal            friction_decay;   /* how fast it falls to that with the speed [s/m] */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -288,6 +293,32 @@ typedef struct {
   ContactSearch *search;                  /* per group, by its first body */
   PetscReal     *of_group;                /* work space: three numbers per group, by its first body */
 } ContactEnergy;
+
+/* What a friction law tells. The force across the normal of a node is at most a cohesion [N] plus a coefficient times its normal force. */
+typedef struct {
+  PetscErrorCode (*setup)(Contact, void *); /* (NULL) once the pairs are known: checks what the user has set */
+  /* cohesion and coefficient for the node that has this row, from the speed [m/s] at which it has slid in the last step */
+  void (*getlimit)(Contact, const void *, PetscInt, PetscReal, PetscReal *, PetscReal *);
+  PetscErrorCode (*view)(Contact, const void *, PetscViewer); /* (NULL) */
+  PetscErrorCode (*destroy)(void *);                          /* (NULL) */
+  void *data;                                                 /* handed to all of these */
+} ContactFrictionLaw;
+
+/* Friction, see src/contact/laws/README.md. Arrays have a number for each row: what concerns a node is at its first one. */
+typedef struct {
+  ContactFrictionLaw law;
+  char              *name;      /* NULL: none */
+  PetscBool          steps;     /* controller steps are made with it */
+  PetscReal         *slip;      /* of rows across the normal: in the present step [m] */
+  PetscReal         *step_loss; /* the same: energy that the present step loses by friction [J] */
+  PetscReal         *loss;      /* of nodes: the same in all accepted steps */
+  PetscReal         *distance;  /* of nodes: way that they have slid [m] */
+  PetscReal         *speed;     /* of nodes: at which they have slid in the last accepted step [m/s] */
+  PetscReal         *pair_step; /* per pair, of all ranks: energy that the present step loses by friction [J] */
+  PetscReal         *pair_loss; /* the same in all accepted steps */
+  PetscBool         *slides;    /* of nodes, at the end of the present step */
+} ContactFriction;
+
 /* How the controller step is being made */
 typedef struct {
   StepFailure failure;
@@ -412,6 +443,7 @@ struct _p_Contact {
   ContactCounts     counts;
   ContactAttempt    attempt;
   ContactFloating   floating;
+  ContactFriction   friction;
   ContactWork       work;
   ContactNeighbours neighbours;
   PetscBool parallel_factors; /* the interface has factors that several ranks make together, perhaps not twice the same to the last bit */
@@ -432,8 +464,17 @@ static inline PetscInt ContactSign(const ContactPair *pair, PetscInt body)
   return (pair->body[1] == body) - (pair->body[0] == body);
 }
 
+/* Whether a row lies across the normal of a node and has a force by friction alone */
+static inline PetscBool ContactRowRubs(Contact contact, PetscInt i)
+{
+  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+
+  return (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION && (i - pair->begin) % pair->components > 0);
+}
+
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;
 
+PETSC_EXTERN PetscErrorCode ContactLawRegister(const char[], PetscErrorCode (*)(Contact, ContactFrictionLaw *));
 PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 

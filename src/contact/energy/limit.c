@@ -28,6 +28,9 @@
 #define PART_LEFT 0.05
 /* Energy that is round-off of the step's energies, in parts of the energy of the run */
 #define ROUND_OFF 1e-11
+/* Energy that friction may bring on a row in a step, in parts of the same; and attempts that look for a step with less */
+#define FRICTION_BRINGS 1e-12
+#define MAX_RUBS        20
 
 /* The step from the saved states, with the start forces as they are */
 static PetscErrorCode MakeStep(Contact contact)
@@ -51,6 +54,7 @@ static PetscErrorCode MakeStep(Contact contact)
   PetscUseTypeMethod(contact, step);
   PetscCall(ContactCompleteBodies(contact));
   energy->again = PETSC_FALSE;
+  if (!ContactFailed(contact)) PetscCall(ContactComputeFrictionLoss(contact, energy->start_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,6 +94,10 @@ static PetscErrorCode MarkLeaving(Contact contact, PetscInt g, PetscBool *any)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (ContactRowRubs(contact, i)) { /* with the row along the normal */
+      energy->leaves[i] = energy->leaves[i - 1];
+      continue;
+    }
     if (energy->leaves[i] || energy->group[contact->pairs[contact->rows.pair[i]].body[0]] != g) continue;
     if ((energy->last_force[i] > 0 || energy->accepted_force[i] > 0) && contact->end.force[i] <= 0) {
       energy->leaves[i] = PETSC_TRUE;
@@ -127,15 +135,16 @@ static void StartOnWayBack(Contact contact, PetscInt g, PetscReal part)
     }
 }
 
-/* All rows of a group start half way from what they have started with to what they have ended with, but for a pull on rows that are not
-   tied, and with half of what goes over from the rows as they were */
+/* All rows of a group start half way from what they have started with to what they have ended with, but for a pull on rows that only push,
+ * and with half of what goes over from the rows as they were */
 static void StartHalfWay(Contact contact, PetscInt g)
 {
   ContactEnergy *energy = &contact->energy;
 
   for (PetscInt i = 0; i < contact->rows.n; i++)
     if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g) {
-      const PetscReal end = contact->rows.tied[i] ? contact->end.force[i] : PetscMax(contact->end.force[i], 0);
+      const PetscReal end = contact->rows.tied[i] || ContactRowRubs(contact, i) ? contact->end.force[i]
+                                                                                : PetscMax(contact->end.force[i], 0);
 
       energy->gain_force[i] = energy->start_force[i];
       energy->gain_rest[i]  = energy->rest[i];
@@ -238,6 +247,53 @@ static PetscBool AnyGainsTooMuch(Contact contact)
   return PETSC_FALSE;
 }
 
+/* What attempts start from: the step as it has been made */
+static PetscErrorCode BeginAttempts(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(ContactComputeEnergies(contact, energy->first_energy, energy->first_springs));
+  PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
+  PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether friction brings energy on a row by the forces at both ends of the step */
+static PetscBool Rubs(Contact contact, PetscInt i)
+{
+  const PetscReal start = contact->energy.changed ? contact->energy.start_force[i] : contact->energy.last_force[i];
+
+  if (!ContactRowRubs(contact, i)) return PETSC_FALSE;
+  return (PetscBool)(0.5 * (start + contact->end.force[i]) * contact->friction.slip[i] > FRICTION_BRINGS * contact->energy.scale);
+}
+
+/* Nodes on which friction has brought energy, since the force at the start of the step pushes the way that they slide, start with the
+   force across their normal that they have ended with: then friction takes energy, whatever that force is. As that answers to the start,
+   the step may be made a few times. Collective. */
+static PetscErrorCode LimitFriction(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  for (PetscInt tries = 0; tries < MAX_RUBS && contact->friction.slip; tries++) {
+    int any = 0;
+
+    for (PetscInt i = 0; i < contact->rows.n && !any; i++) any = Rubs(contact, i);
+    PetscCall(ContactOr(contact, &any));
+    if (!any) break;
+    if (!energy->changed) PetscCall(BeginAttempts(contact));
+    for (PetscInt i = 0; i < contact->rows.n; i++)
+      if (Rubs(contact, i)) energy->start_force[i] = contact->end.force[i];
+    PetscCall(MakeStep(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(ComputeGroupWork(contact));
+    contact->counts.energy_attempts++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Attempts until no group gains more than it has room for */
 static PetscErrorCode Attempt(Contact contact)
 {
@@ -245,10 +301,7 @@ static PetscErrorCode Attempt(Contact contact)
   PetscBool      going  = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(ContactComputeEnergies(contact, energy->first_energy, energy->first_springs));
-  PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
-  PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
-  for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
+  if (!energy->changed) PetscCall(BeginAttempts(contact));
   PetscCall(PetscArrayzero(energy->leaves, contact->rows.n));
   PetscCall(PetscArrayzero(energy->search, contact->n_bodies));
   while (going) {
@@ -325,6 +378,8 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs && !touch; p++) touch = (PetscBool)(energy->pair_sums[2 * p + 1] != 0);
   if (energy->rebuilt && touch) PetscCall(MeasureGroupWork(contact));
   PetscCall(ContactLeaveOutStatic(contact));
+  if (energy->limits) PetscCall(LimitFriction(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   if (contact->attempt.may_cut) { /* what is cut in halves all the same need not be limited */
     PetscReal loss;

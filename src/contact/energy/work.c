@@ -39,7 +39,8 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
     for (PetscInt k = 0; k < of->n; k++) {
       PetscReal *sum = &energy->pair_sums[2 * contact->rows.pair[of->rows[k]]];
 
-      if (by_mean && by_mean[k]) { /* one force in all substeps */
+      if (ContactRowRubs(contact, of->rows[k])) continue; /* what friction takes is no room for gains */
+      if (by_mean && by_mean[k]) {                        /* one force in all substeps */
         if (level == substeps) *sum += 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - first[k]);
         continue;
       }
@@ -65,6 +66,7 @@ PetscErrorCode ContactComputeWork(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(energy->pair_sums, 2 * contact->n_pairs));
+  PetscCall(ContactComputeFrictionLoss(contact, energy->last_force));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddWorkOn(contact, b));
   AddSprings(contact, energy->pair_sums);
   for (PetscInt i = 0; i < contact->rows.n; i++)
@@ -75,7 +77,8 @@ PetscErrorCode ContactComputeWork(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Energy of each body and of the springs of each pair, as they are now, and which pairs touch; collective */
+/* Energy of each body, and of the springs of each pair with what friction takes there in the step, as they are now, and which pairs touch;
+   collective */
 PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], PetscReal springs[])
 {
   ContactEnergy *energy = &contact->energy;
@@ -89,6 +92,7 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, springs, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
+  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_step; p++) springs[2 * p] += contact->friction.pair_step[p];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -38,15 +38,17 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
   PetscCallMPI(MPI_Comm_rank(comm, &(*contact)->ranks.rank));
-  (*contact)->options.facing         = PETSC_TRUE;
-  (*contact)->options.shared_times   = PETSC_TRUE;
-  (*contact)->options.balanced_start = PETSC_TRUE;
-  (*contact)->options.slip_bound     = SLIP_BOUND;
-  (*contact)->energy.limits          = PETSC_TRUE;
-  (*contact)->energy.excess          = ENERGY_EXCESS;
-  (*contact)->options.angle_bound    = ANGLE_BOUND;
-  (*contact)->options.tolerance      = PETSC_DEFAULT;
-  (*contact)->options.tie_distance   = TIE_DISTANCE;
+  (*contact)->options.facing           = PETSC_TRUE;
+  (*contact)->options.shared_times     = PETSC_TRUE;
+  (*contact)->options.balanced_start   = PETSC_TRUE;
+  (*contact)->options.slip_bound       = SLIP_BOUND;
+  (*contact)->energy.limits            = PETSC_TRUE;
+  (*contact)->energy.excess            = ENERGY_EXCESS;
+  (*contact)->options.angle_bound      = ANGLE_BOUND;
+  (*contact)->options.tolerance        = PETSC_DEFAULT;
+  (*contact)->options.tie_distance     = TIE_DISTANCE;
+  (*contact)->options.friction         = -1;
+  (*contact)->options.friction_kinetic = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,6 +224,7 @@ PetscErrorCode ContactAccept(Contact contact)
   if (contact->options.stabilization == CONTACT_STABILIZATION_NAIVE) PetscCall(ContactStabilize(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactBookWork(contact));
+  PetscCall(ContactAcceptFriction(contact));
   PetscCall(ContactAddImpulses(contact));
   PetscCall(ContactAcceptTurns(contact));
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
@@ -280,7 +283,8 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   if (contact->setup) PetscCall(CountNodes(contact, &nodes));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", nodes, nodes == 1 ? "" : "s"));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactLaws[contact->options.law]));
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer, "  law %s\n", contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law]));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->options.constraint]));
   if (contact->options.stabilization != CONTACT_STABILIZATION_NONE)
@@ -359,6 +363,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));
+  PetscCall(ContactDestroyFriction(c));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

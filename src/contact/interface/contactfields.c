@@ -98,7 +98,7 @@ static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried 
   case CARRY_GAP_AREA:
     return contact->rows.opposite[i] ? along * area : 0;
   default:
-    return contact->rows.opposite[i] ? area * contact->end.gap[i] : 0;
+    return contact->rows.opposite[i] && !ContactRowRubs(contact, i) ? area * contact->end.gap[i] : 0;
   }
 }
 

@@ -2,6 +2,28 @@
 #include <contact/parts.h>
 #include <sys/names.h>
 
+/* The law: one of the enumeration, or one of the registry of friction laws */
+static PetscErrorCode ReadLaw(Contact contact)
+{
+  const char *const *laws = NULL;
+  const char *names[64], *now = contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law];
+  PetscInt    n = 0, chosen = 0;
+  int         n_laws = 0;
+  PetscBool   set;
+
+  PetscFunctionBegin;
+  for (ContactLaw law = CONTACT_LAW_FRICTIONLESS; law < CONTACT_LAW_FRICTION; law = (ContactLaw)(law + 1)) names[n++] = ContactLaws[law];
+  PetscCall(PetscFunctionListGet(ContactLawList, (const char ***)&laws, &n_laws));
+  for (int k = 0; k < n_laws && n < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(names); k++) names[n++] = laws[k];
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsEList("-contact_law", "What the surfaces do to each other", "ContactSetLaw", names, n, now, &chosen, &set));
+  PetscOptionsEnd();
+  if (set && chosen >= CONTACT_LAW_FRICTION) PetscCall(ContactSetFrictionLaw(contact, names[chosen]));
+  else if (set) contact->options.law = (ContactLaw)chosen;
+  PetscCall(PetscFree(laws));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What the methods share */
 static PetscErrorCode ReadSettings(Contact contact)
 {
@@ -18,8 +40,6 @@ static PetscErrorCode ReadSettings(Contact contact)
                              ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
                              (PetscEnum)contact->options.stabilization, (PetscEnum *)&contact->options.stabilization, NULL));
-  PetscCall(PetscOptionsEnum("-contact_law", "What the surfaces do to each other", "ContactSetLaw", ContactLaws,
-                             (PetscEnum)contact->options.law, (PetscEnum *)&contact->options.law, NULL));
   PetscCall(PetscOptionsReal("-contact_tie_distance", "Gap or overlap up to which nodes are tied, parts of a face", "ContactSetTieDistance",
                              contact->options.tie_distance, &contact->options.tie_distance, NULL));
   PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start",
@@ -152,7 +172,9 @@ static PetscErrorCode ReadRowSides(Contact contact)
 . -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_law (frictionless|tied|bonded)                       - what the surfaces do to each other
+. -contact_law (frictionless|tied|bonded|coulomb)               - what the surfaces do to each other
+. -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
+. -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)
 . -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do
@@ -189,9 +211,11 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
   PetscOptionsEnd();
   PetscCall(ReadSettings(contact));
+  PetscCall(ReadLaw(contact));
   PetscCall(ReadObstacles(contact));
   PetscCall(ReadPairs(contact));
   PetscCall(ReadRowSides(contact));
+  PetscCall(ContactReadFriction(contact));
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -36,6 +36,11 @@ void ContactCopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *pack
   TablesCopyReals(back, 1, &contact->energy.last_force[i], &packed);
   TablesCopyReals(back, 1, &contact->energy.accepted_force[i], &packed);
   TablesCopyReals(back, 1, &contact->energy.last_stored[i], &packed);
+  if (!contact->friction.slip) return;
+  TablesCopyReals(back, 1, &contact->friction.loss[i], &packed);
+  TablesCopyReals(back, 1, &contact->friction.distance[i], &packed);
+  TablesCopyReals(back, 1, &contact->friction.speed[i], &packed);
+  TablesCopyBool(back, &contact->friction.slides[i], &packed);
 }
 
 /* All rows of a pair to a table, a line for each node, or back; then `was` gets the number that each row of this rank had (NULL: is not

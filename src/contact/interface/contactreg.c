@@ -32,7 +32,7 @@ PetscErrorCode ContactRegister(const char name[], PetscErrorCode (*create)(Conta
 }
 
 /*@
-  ContactRegisterAll - registers all methods that Impakt brings
+  ContactRegisterAll - registers all methods and friction laws that Impakt brings
 
   Not Collective
 
@@ -47,6 +47,7 @@ PetscErrorCode ContactRegisterAll(void)
   PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
   PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
   PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
+  PetscCall(ContactLawRegisterAll());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,6 +88,7 @@ PetscErrorCode ContactFinalizePackage(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscFunctionListDestroy(&ContactList));
+  PetscCall(PetscFunctionListDestroy(&ContactLawList));
   ContactPackageInitialized = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

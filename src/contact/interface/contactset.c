@@ -1,7 +1,7 @@
 /* What programs set of contact beside its options, whatever the method. */
 #include <contact/parts.h>
 
-const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "ContactLaw", "CONTACT_LAW_", NULL};
+const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "friction", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
 
 /*@
@@ -11,14 +11,14 @@ const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactCon
 
   Input Parameters:
 + contact - the `Contact`, not yet set up
-- law - a `ContactLaw`, `CONTACT_LAW_FRICTIONLESS` by default
+- law - a `ContactLaw`, `CONTACT_LAW_FRICTIONLESS` by default; `CONTACT_LAW_FRICTION` by `ContactSetFrictionLaw()`
 
   Options Database Key:
-. -contact_law (frictionless|tied|bonded) - the law
+. -contact_law (frictionless|tied|bonded|coulomb) - the law
 
   Level: beginner
 
-.seealso: `Contact`, `ContactGetLaw()`, `ContactSetFromOptions()`
+.seealso: `Contact`, `ContactGetLaw()`, `ContactSetFrictionLaw()`, `ContactSetFromOptions()`
 @*/
 PetscErrorCode ContactSetLaw(Contact contact, ContactLaw law)
 {

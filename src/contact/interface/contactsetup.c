@@ -87,6 +87,7 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (contact->surfaces_known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
+  if (contact->options.law == CONTACT_LAW_FRICTION) contact->prescribes = PETSC_FALSE; /* forces are what it finds */
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactChooseAllPairs(contact));
@@ -136,8 +137,13 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpObstacleTraces(contact));
   PetscCall(ContactSetUpResultants(contact));
   PetscCall(ContactSetUpEnergy(contact));
+  PetscCall(ContactSetUpFriction(contact));
   PetscCall(ContactSetUpStabilization(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
+  PetscCheck(contact->options.law != CONTACT_LAW_FRICTION || contact->friction.steps || !contact->rows.n_all,
+             PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_law %s: -contact_type %s has no friction; choose schwarz or lagrange, which have the same", contact->friction.name,
+             ((PetscObject)contact)->type_name);
   if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";
   contact->setup = PETSC_TRUE;
   StatusLineTell("first state");
@@ -162,6 +168,7 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactTie(contact));
   PetscCall(ContactDropShared(contact));
+  ContactAlignRubbingRows(contact);
   PetscCall(ContactLetTouch(contact, of_state));
   PetscCall(PetscMalloc1(contact->n_pairs, &states));
   PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));

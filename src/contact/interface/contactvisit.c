@@ -95,6 +95,12 @@ static PetscErrorCode VisitRowStates(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "last force", n, contact->energy.last_force));
   PetscCall(CheckpointVisitReals(checkpoint, "accepted force", n, contact->energy.accepted_force));
   PetscCall(CheckpointVisitReals(checkpoint, "last stored", n, contact->energy.last_stored));
+  if (contact->friction.slip) {
+    PetscCall(CheckpointVisitReals(checkpoint, "friction loss", n, contact->friction.loss));
+    PetscCall(CheckpointVisitReals(checkpoint, "distance", n, contact->friction.distance));
+    PetscCall(CheckpointVisitReals(checkpoint, "speed", n, contact->friction.speed));
+    PetscCall(CheckpointVisitBools(checkpoint, "slides", n, contact->friction.slides));
+  }
   if (contact->release.intervals) {
     PetscCall(CheckpointVisitInts(checkpoint, "intervals", n, contact->release.intervals));
     PetscCall(CheckpointVisitReals(checkpoint, "released forces", n * contact->release.room, contact->release.forces));
@@ -122,6 +128,7 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "group work", contact->n_bodies, energy->group_work));
   PetscCall(CheckpointVisitReals(checkpoint, "start energy", contact->n_bodies, energy->start_energy));
   PetscCall(CheckpointVisitReals(checkpoint, "pair sums", 2 * contact->n_pairs, energy->pair_sums));
+  if (contact->friction.slip) PetscCall(CheckpointVisitReals(checkpoint, "friction", contact->n_pairs, contact->friction.pair_loss));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

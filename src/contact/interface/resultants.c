@@ -13,7 +13,8 @@ enum {
   SUM_IMPULSE        = SUM_MOMENT + 3,
   SUM_NORMAL_IMPULSE = SUM_IMPULSE + 3,
   SUM_BEYOND         = SUM_NORMAL_IMPULSE + 1,
-  N_SUMS             = SUM_BEYOND + 1
+  SUM_SLIDING        = SUM_BEYOND + 1,
+  N_SUMS             = SUM_SLIDING + 1
 };
 
 #define N_KEPT CONTACT_IMPULSES
@@ -233,6 +234,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
     if (contact->held.merger) sums[SUM_AREA] += PetscSqr(along) * contact->rows.area[i] * contact->resultants.cross_section[p];
     if (contact->rows.dof[i] == counted) continue;
     sums[SUM_ACTIVE] += 1;
+    if (contact->friction.slides && contact->friction.slides[i]) sums[SUM_SLIDING] += 1;
     if (!contact->held.merger) sums[SUM_AREA] += contact->rows.area[i] * contact->resultants.cross_section[p];
     counted = contact->rows.dof[i];
   }
@@ -273,6 +275,8 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
     }
     state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
     state->beyond_impulse = sums[SUM_BEYOND];
+    state->sliding        = (PetscInt)sums[SUM_SLIDING];
+    state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

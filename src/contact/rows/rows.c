@@ -118,6 +118,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
         contact->rows.initial_gap[i]    = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
         contact->rows.normal[3 * i + k] = 1;
       } else ContactGetFrame(dim, rows.normals + dim * node, k, contact->rows.normal + 3 * i);
+      if (contact->options.law == CONTACT_LAW_FRICTION && k > 0) contact->rows.initial_gap[i] = CONTACT_NO_GAP;
       if (contact->options.law == CONTACT_LAW_BONDED && k > 0) { /* until the node sticks */
         contact->rows.opposite[i]    = PETSC_FALSE;
         contact->rows.initial_gap[i] = CONTACT_NO_GAP;
@@ -215,7 +216,9 @@ PetscErrorCode ContactFillMatrices(Contact contact)
       rows[side] = contact->interfaces[pair->body[side]];
       any        = PETSC_TRUE;
     }
-    if (any) PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
+    if (any && contact->options.law == CONTACT_LAW_FRICTION)
+      PetscCall(TransferSetDirectedValues(pair->transfer, begin, pair->components, contact->rows.normal + 3 * pair->begin, rows));
+    else if (any) PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     if (!contact->body_rows[b].affected) continue;

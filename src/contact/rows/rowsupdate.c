@@ -372,12 +372,14 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactDropShared(contact));
+  ContactAlignRubbingRows(contact);
   PetscCall(PetscArraycpy(contact->work.last_force, contact->start.force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (contact->rows.opposite[i]) continue;
     contact->start.active[i] = PETSC_FALSE;
     contact->start.force[i]  = 0;
   }
+  ContactCarryFriction(contact);
   PetscCall(HandOver(contact, contact->work.last_force));
   PetscCall(ShiftGaps(contact, contact->work.last_gap));
   PetscTryTypeMethod(contact, rowschanged);

@@ -25,6 +25,14 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SuitsForward(contact, &forward));
+  if (forward)
+    PetscCall(ContactRefuseFriction(contact, "forward-increment Lagrange multipliers have no friction, since their forces are not those at "
+                                             "the end of the step; leave -<body>_mass_redistribute at true, or choose -contact_law "
+                                             "frictionless"));
+  if (contact->options.law == CONTACT_LAW_FRICTION) {
+    PetscCall(ContactStepByFriction(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (forward) {
     PetscCheck(contact->options.stabilization != CONTACT_STABILIZATION_CONTACT_STABILIZED, comm, PETSC_ERR_USER_INPUT,
                "-contact_stabilization contact_stabilized works with implicit bodies only, and all are explicit; give them -<body>_ts_type "

@@ -108,6 +108,10 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
+  if (contact->options.law == CONTACT_LAW_FRICTION) {
+    PetscCall(ContactStepByFriction(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCheck(contact->options.constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take "
              "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");

@@ -1,0 +1,62 @@
+/* Coulomb's law: the force across the normal is at most a coefficient times the normal force. The coefficient may fall with the speed of
+   sliding. */
+#include "friction.h"
+
+/* Of nodes of a pair that stick */
+static PetscReal GetStatic(Contact contact, const ContactPair *pair)
+{
+  return pair->own_friction ? pair->friction : contact->options.friction;
+}
+
+static PetscErrorCode SetUp(Contact contact, void *data)
+{
+  const PetscReal kinetic = contact->options.friction_kinetic;
+
+  PetscFunctionBegin;
+  (void)data;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    PetscCheck(GetStatic(contact, pair) >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_law coulomb needs the coefficient of friction of the pair %s: set -contact_friction mu for all pairs, or "
+               "-contact_friction_%s mu for this one",
+               pair->name, pair->name);
+    PetscCheck(kinetic <= GetStatic(contact, pair), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_friction_kinetic %g is above the coefficient %g with which nodes of the pair %s stick", (double)kinetic,
+               (double)GetStatic(contact, pair), pair->name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The coefficient of the node that has the row, from the speed at which it has slid in the last step */
+static void GetLimit(Contact contact, const void *data, PetscInt row, PetscReal speed, PetscReal *cohesion, PetscReal *coefficient)
+{
+  const PetscReal mu = GetStatic(contact, &contact->pairs[contact->rows.pair[row]]), kinetic = contact->options.friction_kinetic;
+
+  (void)data;
+  *cohesion    = 0;
+  *coefficient = kinetic < 0 ? mu : kinetic + (mu - kinetic) * PetscExpReal(-contact->options.friction_decay * speed);
+}
+
+static PetscErrorCode View(Contact contact, const void *data, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  (void)data;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  coefficient of friction of %s: %g\n", contact->pairs[p].name,
+                                     (double)GetStatic(contact, &contact->pairs[p])));
+  if (contact->options.friction_kinetic >= 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  falls to %g as exp(-%g s/m times the speed of sliding)\n",
+                                     (double)contact->options.friction_kinetic, (double)contact->options.friction_decay));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactLawCreate_Coulomb(Contact contact, ContactFrictionLaw *law)
+{
+  PetscFunctionBegin;
+  (void)contact;
+  law->setup    = SetUp;
+  law->getlimit = GetLimit;
+  law->view     = View;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,226 @@
+/*
+   Rows across the normals of contact nodes: what they are when rows are built again, by how much they slip in a step, and what friction
+   takes of the energy there.
+
+   A row across the normal has no gap: the numbers that others have for it say that it is far open, and what concerns it is its slip, the
+   change of B u over the controller step with the rows as the step has them. Where both bodies move as one rigid body, a closed row has the
+   same material points on both sides, and no slip.
+*/
+#include "friction.h"
+
+/*@
+  ContactGetFrictionLoss - the energy that friction has taken so far
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. loss - of all pairs, in all accepted steps [J]; 0 without friction
+
+  Level: intermediate
+
+  Note:
+  The work of the forces across the normals, by the rule by which the integrators take them: half the sum of the forces at both ends of a
+  substep times the displacement in it. Kinetic and potential energy and this, less the work of the loads, are what they were at the start.
+
+.seealso: `Contact`, `ContactSetFrictionLaw()`, `ContactPairState`
+@*/
+PetscErrorCode ContactGetFrictionLoss(Contact contact, PetscReal *loss)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(loss, 2);
+  *loss = 0;
+  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_loss; p++) *loss += contact->friction.pair_loss[p];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A method that has no friction ends the run with words; `why`: what is in its way, and what to choose */
+PetscErrorCode ContactRefuseFriction(Contact contact, const char why[])
+{
+  PetscFunctionBegin;
+  PetscCheck(contact->options.law != CONTACT_LAW_FRICTION, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law %s: %s",
+             contact->friction.name, why);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for what is kept of rows and pairs */
+PetscErrorCode ContactSetUpFriction(Contact contact)
+{
+  ContactFriction *friction = &contact->friction;
+  const PetscInt   n        = contact->rows.n;
+
+  PetscFunctionBegin;
+  if (contact->options.law != CONTACT_LAW_FRICTION || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc6(PetscMax(n, 1), &friction->slip, n, &friction->step_loss, n, &friction->loss, n, &friction->distance, n,
+                         &friction->speed, n, &friction->slides));
+  PetscCall(PetscCalloc2(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyFriction(Contact contact)
+{
+  ContactFriction *friction = &contact->friction;
+
+  PetscFunctionBegin;
+  PetscCall(ContactDestroyFrictionLaw(contact));
+  PetscCall(PetscFree6(friction->slip, friction->step_loss, friction->loss, friction->distance, friction->speed, friction->slides));
+  PetscCall(PetscFree2(friction->pair_step, friction->pair_loss));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows across the normal have a partner where the row along the normal has, and no gap */
+void ContactAlignRubbingRows(Contact contact)
+{
+  PetscInt first = 0;
+
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (!ContactRowRubs(contact, i)) {
+      first = i;
+      continue;
+    }
+    contact->rows.opposite[i]    = contact->rows.opposite[first];
+    contact->rows.area[i]        = contact->rows.area[first];
+    contact->rows.initial_gap[i] = contact->start.gap[i] = contact->end.gap[i] = CONTACT_NO_GAP;
+    contact->rows.gap_shift[i]                                                 = 0;
+  }
+}
+
+/* Turns a vector by the turn that takes the unit vector a to b and leaves what is square to both */
+static void TurnAlong(const PetscReal a[], const PetscReal b[], PetscReal v[])
+{
+  PetscReal axis[3], turned[3], cosine = 0, along = 0;
+
+  for (PetscInt d = 0; d < 3; d++) {
+    axis[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+    cosine += a[d] * b[d];
+  }
+  if (cosine < -0.5) return; /* a node does not turn over in a step */
+  for (PetscInt d = 0; d < 3; d++) along += axis[d] * v[d];
+  for (PetscInt d = 0; d < 3; d++)
+    turned[d] = cosine * v[d] + axis[(d + 1) % 3] * v[(d + 2) % 3] - axis[(d + 2) % 3] * v[(d + 1) % 3] + along / (1 + cosine) * axis[d];
+  for (PetscInt d = 0; d < 3; d++) v[d] = turned[d];
+}
+
+/* In space, after rows have got new directions: forces across the normals turn with these. The old directions have been put aside. In the
+   plane the direction across the normal turns with the normal, and the force along it stays. */
+void ContactCarryFriction(Contact contact)
+{
+  const PetscReal *old = contact->saved.normal, *now = contact->rows.normal;
+
+  for (PetscInt i = 0; i + 2 < contact->rows.n && contact->dim == 3 && contact->options.law == CONTACT_LAW_FRICTION; i += 3) {
+    PetscReal *force = contact->start.force + i, v[3];
+
+    if (!contact->work.moved[i] || !contact->rows.opposite[i]) continue;
+    for (PetscInt d = 0; d < 3; d++) v[d] = force[1] * old[3 * (i + 1) + d] + force[2] * old[3 * (i + 2) + d];
+    TurnAlong(old + 3 * i, now + 3 * i, v);
+    for (PetscInt k = 1; k < 3; k++) {
+      force[k] = 0;
+      for (PetscInt d = 0; d < 3; d++) force[k] += v[d] * now[3 * (i + k) + d];
+    }
+  }
+}
+
+/* Slips over the controller step, from the bodies' traces */
+PetscErrorCode ContactComputeSlips(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *start[2], *end[2];
+
+    for (PetscInt side = 0; side < 2; side++) {
+      const Trace trace = contact->traces[pair->body[side]].displacement;
+      PetscInt    levels;
+
+      PetscCall(TraceGetSizes(trace, NULL, &levels));
+      PetscCall(TraceGetLevel(trace, 0, &start[side]));
+      PetscCall(TraceGetLevel(trace, levels, &end[side]));
+    }
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscInt first = i - pair->shift[0], second = i - pair->shift[1];
+
+      contact->friction.slip[i] = PetscRealPart((end[1][second] - start[1][second]) - (end[0][first] - start[0][first]));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What friction takes on the rows of a body that lie across normals */
+static PetscErrorCode AddLossOn(Contact contact, PetscInt b, const PetscReal start_force[])
+{
+  const ContactBodyRows *of     = &contact->body_rows[b];
+  const BodyTraces      *traces = &contact->traces[b];
+  PetscReal             *last = contact->energy.last, *now = contact->energy.now;
+  PetscInt               substeps;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+  for (PetscInt k = 0; k < of->n; k++)
+    last[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * start_force[of->rows[k]];
+  for (PetscInt level = 1; level <= substeps; level++) {
+    PetscScalar *before, *after;
+
+    PetscCall(TraceGetLevel(traces->displacement, level - 1, &before));
+    PetscCall(TraceGetLevel(traces->displacement, level, &after));
+    PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
+    for (PetscInt k = 0; k < of->n; k++) {
+      if (ContactRowRubs(contact, of->rows[k]))
+        contact->friction.step_loss[of->rows[k]] -= 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - before[k]);
+      last[k] = now[k];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What friction takes in the step as it has been made, with these forces of all rows at its start: of each row across a normal, and of each
+   pair on all ranks. Collective. */
+PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start_force[])
+{
+  ContactFriction *friction = &contact->friction;
+
+  PetscFunctionBegin;
+  if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(friction->step_loss, contact->rows.n));
+  PetscCall(PetscArrayzero(friction->pair_step, contact->n_pairs));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddLossOn(contact, b, start_force));
+  for (PetscInt i = 0; i < contact->rows.n; i++) friction->pair_step[contact->rows.pair[i]] += friction->step_loss[i];
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, friction->pair_step, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_SUM,
+                               PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Books what friction has taken in the accepted step, and how far nodes have slid */
+PetscErrorCode ContactAcceptFriction(Contact contact)
+{
+  ContactFriction *friction = &contact->friction;
+  PetscReal        least    = contact->counts.friction_least;
+
+  PetscFunctionBegin;
+  if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactComputeSlips(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    friction->pair_loss[p] += friction->pair_step[p];
+    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+      PetscReal way = 0;
+
+      for (PetscInt i = first + 1; i < first + pair->components; i++) {
+        way += PetscSqr(friction->slip[i]);
+        friction->loss[first] += friction->step_loss[i];
+        least = PetscMin(least, -0.5 * (contact->start.force[i] + contact->end.force[i]) * friction->slip[i]);
+      }
+      way                    = contact->rows.opposite[first] ? PetscSqrtReal(way) : 0;
+      friction->speed[first] = way / contact->step;
+      if (contact->end.active[first]) friction->distance[first] += way;
+    }
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  contact->counts.friction_least = least;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,255 @@
+/*
+   Forces of a controller step with friction. Of each node, with normal force l and gap g, force f and slip s across the normal, and the
+   bound r(l) of f that the law has:
+
+     open: l = 0, f = 0, g >= 0;   sticks: g = 0, s = 0, |f| <= r;   slides: g = 0, f = r e, s = -a e with a >= 0, |e| = 1.
+
+   Newton's method, semismooth in the state of the nodes (Alart, Curnier 1991): a node is open where l - p g <= 0, with p = 1 / S of its
+   normal row, slides where the trial force f - q s is beyond the bound, and sticks else. In two dimensions the problem is linear as long as
+   the states stay, so that they decide. Where that does not come to an end, nodes are solved one after another, each exactly, until forces
+   stay (block Gauss-Seidel), and Newton's method goes on from there.
+*/
+#include "friction.h"
+#include <solver/densefactor.h>
+
+/* Newton's steps before nodes are solved one after another, and in all */
+#define NEWTON_FIRST 12
+#define NEWTON_MOST  60
+/* Rounds of nodes that are solved one after another, and the change of forces at which these end, relative to the largest */
+#define ROUNDS_MOST 4000
+#define ROUNDS_RTOL 1e-13
+/* Newton's method ends where forces change by this part of the largest, with states as they were */
+#define NEWTON_RTOL 1e-14
+
+struct _n_FrictionSolver {
+  PetscInt     room;
+  DenseFactor  factor;
+  PetscScalar *open, *trial, *rhs; /* what rows open by; trial forces; right-hand side, then Newton's step */
+  PetscInt    *in;                 /* rows of nodes that touch */
+};
+
+PetscErrorCode FrictionSolverCreate(FrictionSolver *solver)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscNew(solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FreeRoom(FrictionSolver solver)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree4(solver->open, solver->trial, solver->rhs, solver->in));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FrictionSolverDestroy(FrictionSolver *solver)
+{
+  PetscFunctionBegin;
+  if (!*solver) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeRoom(*solver));
+  PetscCall(DenseFactorDestroy(&(*solver)->factor));
+  PetscCall(PetscFree(*solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeRoom(FrictionSolver solver, PetscInt n)
+{
+  PetscFunctionBegin;
+  if (n <= solver->room) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeRoom(solver));
+  solver->room = PetscMax(n, 2 * solver->room);
+  n            = solver->room;
+  PetscCall(PetscMalloc4(n, &solver->open, n, &solver->trial, n, &solver->rhs, n, &solver->in));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What all rows open by under the forces as they are */
+static PetscErrorCode Open(const FrictionProblem *problem, PetscScalar work[], PetscScalar open[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < problem->n; i++) {
+    work[i] = problem->force[i] - problem->base[i];
+    open[i] = problem->opened[i];
+  }
+  PetscCall(DenseMultiplyAdd(problem->n, problem->n, problem->S, 1, work, open));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Inverse of the largest compliance of the rows k to l - 1 of a node [N/m] */
+static PetscReal Stiffness(const FrictionProblem *problem, PetscInt first, PetscInt k, PetscInt l)
+{
+  PetscReal most = 0;
+
+  for (PetscInt i = first + k; i < first + l; i++) most = PetscMax(most, PetscRealPart(problem->S[i * (problem->n + 1)]));
+  return most > 0 ? 1 / most : 0;
+}
+
+/* States from forces and what rows open by, with trial forces across the normal; whether any has changed, or the way that a node slides has
+   turned round */
+static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
+{
+  const PetscInt dim     = problem->dim;
+  PetscBool      changed = PETSC_FALSE;
+
+  for (PetscInt node = 0; node < problem->n / dim; node++) {
+    const PetscInt  first  = node * dim;
+    const PetscReal normal = PetscRealPart(problem->force[first]), p = Stiffness(problem, first, 0, 1);
+    const PetscReal q      = Stiffness(problem, first, 1, dim);
+    const PetscReal bound  = PetscMax(PetscRealPart(problem->limit[first] + problem->limit[first + 1] * normal), 0);
+    PetscReal       square = 0, along = 0; /* along the direction of before */
+    FrictionState   state = FRICTION_OPEN;
+
+    for (PetscInt k = 1; k < dim; k++) {
+      const PetscScalar trial = problem->force[first + k] - q * solver->open[first + k];
+
+      along += PetscRealPart(trial * solver->trial[first + k]);
+      solver->trial[first + k] = trial;
+      square += PetscSqr(PetscRealPart(solver->trial[first + k]));
+    }
+    /* a row that nothing moves is no condition */
+    if (p > 0 && normal - p * PetscRealPart(solver->open[first]) > 0) state = square > PetscSqr(bound) ? FRICTION_SLIDES : FRICTION_STICKS;
+    if (state != problem->state[node] || (state == FRICTION_SLIDES && along < 0)) changed = PETSC_TRUE;
+    problem->state[node] = state;
+  }
+  return changed;
+}
+
+/* Row `first + k` of the matrix of a node that slides, and its right-hand side: f - r(l) e = 0, e = t/|t| of the trial force t = f - q s,
+   times 1/q so that it has the unit of the other rows. Nothing is the force of a node that nothing moves across its normal. */
+static void SetSliding(FrictionSolver solver, const FrictionProblem *problem, PetscInt first, PetscInt k, PetscInt row, PetscInt n_in)
+{
+  const PetscInt  dim = problem->dim, n = problem->n;
+  const PetscReal q = Stiffness(problem, first, 1, dim), coefficient = PetscRealPart(problem->limit[first + 1]);
+  /* below zero on the way to the solution it must not be cut off: the equation would not be the law's any more */
+  const PetscReal bound  = PetscRealPart(problem->limit[first] + coefficient * problem->force[first]);
+  PetscScalar    *matrix = solver->factor.values;
+  PetscReal       size = 0, e[3] = {0};
+
+  if (q == 0) {
+    for (PetscInt j = 0; j < n_in; j++) matrix[j * n_in + row] = solver->in[j] == first + k ? problem->S[first * (n + 1)] : 0;
+    solver->rhs[row] = -problem->S[first * (n + 1)] * problem->force[first + k];
+    return;
+  }
+  for (PetscInt l = 1; l < dim; l++) size += PetscSqr(PetscRealPart(solver->trial[first + l]));
+  size = PetscSqrtReal(size);
+  for (PetscInt l = 1; l < dim; l++) e[l] = PetscRealPart(solver->trial[first + l]) / size;
+  for (PetscInt j = 0; j < n_in; j++) {
+    const PetscInt column = solver->in[j];
+    PetscScalar    value  = 0;
+
+    if (column == first) value -= coefficient * e[k];
+    if (column == first + k) value += 1;
+    for (PetscInt l = 1; l < dim && dim > 2; l++) {
+      const PetscReal across = (l == k ? 1 : 0) - e[k] * e[l];
+
+      value -= PetscMax(bound, 0) / size * across * ((column == first + l ? 1 : 0) - q * problem->S[column * n + first + l]);
+    }
+    matrix[j * n_in + row] = value / q;
+  }
+  solver->rhs[row] = (bound * e[k] - problem->force[first + k]) / q;
+}
+
+/* One step of Newton's method with the states as they are; `change`: the largest of a force, relative to the largest force */
+static PetscErrorCode Step(FrictionSolver solver, const FrictionProblem *problem, PetscBool *singular, PetscReal *change)
+{
+  const PetscInt dim = problem->dim, n = problem->n;
+  PetscReal      largest = 0, most = 0;
+  PetscInt       n_in = 0;
+
+  PetscFunctionBegin;
+  *singular = PETSC_FALSE;
+  /* forces of nodes that open are gone, which opens all others by something */
+  for (PetscInt i = 0; i < n; i++)
+    if (problem->state[i / dim] == FRICTION_OPEN) {
+      most              = PetscMax(most, PetscAbsScalar(problem->force[i]));
+      problem->force[i] = 0;
+    } else solver->in[n_in++] = i;
+  PetscCall(Open(problem, solver->rhs, solver->open));
+  PetscCall(DenseFactorResize(&solver->factor, n_in, n));
+  for (PetscInt row = 0; row < n_in; row++) {
+    const PetscInt i = solver->in[row], first = i - i % dim;
+
+    if (i > first && (problem->state[i / dim] == FRICTION_SLIDES || Stiffness(problem, first, 1, dim) == 0)) {
+      SetSliding(solver, problem, first, i - first, row, n_in);
+      continue;
+    }
+    for (PetscInt j = 0; j < n_in; j++) solver->factor.values[j * n_in + row] = problem->S[solver->in[j] * n + i];
+    solver->rhs[row] = -solver->open[i];
+  }
+  if (n_in) PetscCall(DenseFactorCompute(&solver->factor, singular));
+  if (*singular) PetscFunctionReturn(PETSC_SUCCESS);
+  if (n_in) PetscCall(DenseFactorSolve(&solver->factor, solver->rhs));
+  for (PetscInt row = 0; row < n_in; row++) {
+    PetscScalar *force = &problem->force[solver->in[row]];
+
+    *force += solver->rhs[row];
+    most    = PetscMax(most, PetscAbsScalar(solver->rhs[row]));
+    largest = PetscMax(largest, PetscAbsScalar(*force));
+  }
+  *change = largest > 0 ? most / largest : 0;
+  PetscCall(Open(problem, solver->rhs, solver->open));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes one after another, each exactly, until forces stay; then what all rows open by */
+static PetscErrorCode SolveByNodes(FrictionSolver solver, const FrictionProblem *problem)
+{
+  const PetscInt dim = problem->dim, n = problem->n;
+  PetscReal      change = 1, largest = 1;
+
+  PetscFunctionBegin;
+  PetscCall(Open(problem, solver->rhs, solver->open));
+  for (PetscInt round = 0; round < ROUNDS_MOST && change > ROUNDS_RTOL * largest; round++) {
+    change = largest = 0;
+    for (PetscInt first = 0; first < n; first += dim) {
+      PetscReal       S[9], open[3], force[3];
+      const PetscReal limit[2] = {PetscRealPart(problem->limit[first]), PetscRealPart(problem->limit[first + 1])};
+
+      for (PetscInt k = 0; k < dim; k++) {
+        open[k] = PetscRealPart(solver->open[first + k]);
+        for (PetscInt l = 0; l < dim; l++) {
+          S[l * dim + k] = PetscRealPart(problem->S[(first + l) * n + first + k]);
+          open[k] -= S[l * dim + k] * PetscRealPart(problem->force[first + l]);
+        }
+      }
+      PetscCall(FrictionSolveNode(dim, S, open, limit, force));
+      for (PetscInt k = 0; k < dim; k++) {
+        const PetscReal step = force[k] - PetscRealPart(problem->force[first + k]);
+
+        change                    = PetscMax(change, PetscAbsReal(step));
+        largest                   = PetscMax(largest, PetscAbsReal(force[k]));
+        problem->force[first + k] = force[k];
+        for (PetscInt i = 0; i < n && step != 0; i++) solver->open[i] += problem->S[(first + k) * n + i] * step;
+      }
+    }
+  }
+  PetscCall(Open(problem, solver->rhs, solver->open));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the forces and states of a step. `by_nodes`: Newton's method alone did not; `solved`: nothing did. The same on every rank. */
+PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem *problem, PetscBool *solved, PetscBool *by_nodes)
+{
+  PetscBool changed, singular;
+  PetscReal change = 0;
+
+  PetscFunctionBegin;
+  *solved = *by_nodes = PETSC_FALSE;
+  PetscCall(MakeRoom(solver, problem->n));
+  PetscCall(Open(problem, solver->rhs, solver->open));
+  PetscCall(PetscArrayzero(solver->trial, problem->n));
+  (void)Judge(solver, problem);
+  for (PetscInt step = 1; step <= NEWTON_MOST && !*solved; step++) {
+    PetscCall(Step(solver, problem, &singular, &change));
+    changed = Judge(solver, problem);
+    *solved = (PetscBool)(!singular && !changed && (problem->dim == 2 || change <= NEWTON_RTOL));
+    if (singular || step == NEWTON_FIRST) {
+      if (*by_nodes && singular) break;
+      if (*solved) break;
+      *by_nodes = PETSC_TRUE;
+      PetscCall(SolveByNodes(solver, problem));
+      (void)Judge(solver, problem);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

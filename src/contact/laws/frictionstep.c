@@ -1,0 +1,401 @@
+/*
+   A controller step with friction, for all methods that close gaps by forces at the end of the step. The forces on the rows of nodes that
+   may touch are the unknowns. All bodies are integrated under a guess of them; with the compliance S of the interface the forces follow for
+   which the law holds at the end of the step; and the bodies are integrated under these. For linear bodies that is the step. For others S
+   is not exact, and both are repeated until what rows open by is what S has told.
+*/
+#include "friction.h"
+#include <contact/compliance/forces.h>
+#include <contact/compliance/interfaceoperator.h>
+#include <solver/densefactor.h>
+
+/* Rows of nodes that may touch in one step, on each rank; dense matrices of that order */
+#define MOST_ROWS 4000
+/* Integrations of all bodies in a step */
+#define MOST_SWEEPS 60
+/* Round-off of what rows open by, in parts of the displacements that this is the difference of */
+#define ROUND_OFF 1e-14
+/* By how many times that may the forces that have been found miss the law */
+#define RESIDUAL_MOST 100
+
+typedef struct {
+  Forces            forces;
+  InterfaceOperator S;
+  InterfaceMark    *marks; /* of this rank's rows */
+  PetscScalar      *mine;  /* work space, a number for each */
+  FrictionSolver    solver;
+  FrictionProblem   problem;
+  PetscInt          room; /* rows that the problem has room for */
+  PetscReal         atol; /* what S tells and what bodies do may differ by this [m] */
+} FrictionStep;
+
+static PetscErrorCode FreeProblem(FrictionProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree6(problem->S, problem->opened, problem->base, problem->limit, problem->force, problem->state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for n rows */
+static PetscErrorCode MakeRoom(FrictionStep *step, PetscInt n, PetscInt most)
+{
+  FrictionProblem *problem = &step->problem;
+
+  PetscFunctionBegin;
+  problem->n = n;
+  if (n <= step->room) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeProblem(problem));
+  step->room = n = PetscMax(n, PetscMin(2 * step->room, most));
+  PetscCall(
+      PetscMalloc6(n * n, &problem->S, n, &problem->opened, n, &problem->base, n, &problem->limit, n, &problem->force, n, &problem->state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the rows of nodes that penetrate as some that may touch; whether there are any that were not marked. Collective. */
+static PetscErrorCode MarkPenetrating(Contact contact, PetscBool *any)
+{
+  FrictionStep *step  = (FrictionStep *)contact->data;
+  int           found = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (step->marks[i] != INTERFACE_LEFT_OUT || contact->end.gap[i] >= -contact->options.tolerance) continue;
+    for (PetscInt k = 0; k < contact->dim; k++) step->marks[i + k] = INTERFACE_SOLVED;
+    found = 1;
+  }
+  PetscCall(ContactOr(contact, &found));
+  *any = (PetscBool)(found > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows that are marked, their compliance and the bounds that the law has for them */
+static PetscErrorCode ListRows(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+  PetscInt      n;
+
+  PetscFunctionBegin;
+  PetscCall(InterfaceOperatorSetRows(step->S, step->marks, 1));
+  InterfaceOperatorGetRows(step->S, &n, NULL, NULL);
+  PetscCheck(n <= MOST_ROWS, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_law %s solves for the forces of all nodes in contact at once, and %" PetscInt_FMT
+             " of them touch, with %d rows each; there may be %d rows: choose coarser contact surfaces, or -contact_law frictionless",
+             contact->friction.name, n / contact->dim, (int)contact->dim, MOST_ROWS);
+  PetscCall(MakeRoom(step, n, contact->rows.n_all));
+  PetscCall(InterfaceOperatorAssemble(step->S, INTERFACE_GAP, -1, step->problem.S));
+  for (PetscInt i = 0; i < contact->rows.n; i += contact->dim) {
+    PetscReal limit[2];
+
+    (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &limit[0], &limit[1]);
+    for (PetscInt k = 0; k < contact->dim; k++) step->mine[i + k] = k < 2 ? limit[k] : 0;
+  }
+  PetscCall(InterfaceOperatorGather(step->S, step->mine, step->problem.limit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What rows open by at the end of the step as the bodies have made it: gaps along normals, slips across them */
+static PetscErrorCode GatherOpened(Contact contact, PetscScalar opened[])
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = i % contact->dim ? contact->friction.slip[i] : contact->end.gap[i];
+  PetscCall(InterfaceOperatorGather(step->S, step->mine, opened));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Integrates all bodies under the forces; gaps and slips */
+static PetscErrorCode Integrate(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(ForcesIntegrate(contact, &step->forces, contact->end.force, 1));
+  if (!ContactFailed(contact)) PetscCall(ContactComputeSlips(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much gaps and slips of the bodies differ from what S has told with the forces found, and what is round-off of them [m]; the same
+   on every rank. `opened` of the problem are those of the bodies afterwards, and `base` the forces. */
+static PetscErrorCode Compare(Contact contact, PetscReal *mismatch, PetscReal *round_off)
+{
+  FrictionStep    *step    = (FrictionStep *)contact->data;
+  FrictionProblem *problem = &step->problem;
+  PetscReal        largest = 0;
+
+  PetscFunctionBegin;
+  /* what S tells, into `base` */
+  for (PetscInt i = 0; i < problem->n; i++) problem->base[i] = problem->force[i] - problem->base[i];
+  PetscCall(DenseMultiplyAdd(problem->n, problem->n, problem->S, 1, problem->base, problem->opened));
+  PetscCall(GatherOpened(contact, problem->base));
+  *mismatch = 0;
+  for (PetscInt i = 0; i < problem->n; i++) {
+    const PetscReal differs = PetscAbsScalar(problem->base[i] - problem->opened[i]);
+
+    *mismatch          = differs > *mismatch || PetscIsInfOrNanReal(differs) ? differs : *mismatch;
+    problem->opened[i] = problem->base[i];
+    problem->base[i]   = problem->force[i];
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt side = 0; side < 2; side++) {
+      const ContactPair *pair  = &contact->pairs[p];
+      const Trace        trace = contact->traces[pair->body[side]].displacement;
+      PetscScalar       *end;
+      PetscInt           levels;
+
+      PetscCall(TraceGetSizes(trace, NULL, &levels));
+      PetscCall(TraceGetLevel(trace, levels, &end));
+      for (PetscInt i = pair->begin; i < pair->end; i++) largest = PetscMax(largest, PetscAbsScalar(end[i - pair->shift[side]]));
+    }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  *round_off = ROUND_OFF * largest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes that the step has failed */
+static PetscErrorCode Fail(Contact contact, PetscBool solved, PetscReal mismatch)
+{
+  PetscReal time;
+
+  PetscFunctionBegin;
+  PetscCall(ForcesGetTime(contact, &time));
+  if (!solved)
+    PetscCall(
+        StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_ACTIVE_SET, PETSC_ERR_NOT_CONVERGED,
+                       "No forces were found for which -contact_law %s holds in the step that ends at time %.9g s. Large coefficients of "
+                       "friction may have no solution or more than one; choose a smaller -time_step or coefficient",
+                       contact->friction.name, (double)time));
+  else if (PetscIsInfOrNanReal(mismatch))
+    PetscCall(
+        StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_NAN, PETSC_ERR_FP,
+                       "A contact gap or force is not a number in the step that ends at time %.9g s; is a velocity or a time step too "
+                       "large?",
+                       (double)time));
+  else
+    PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                             "The forces of friction did not settle in the step that ends at time %.9g s: after %" PetscInt_FMT
+                             " sweeps gaps and slips are missed by %g m. Choose a smaller -time_step",
+                             (double)time, contact->counts.sweeps, (double)mismatch));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces that have been found, on this rank's rows */
+static PetscErrorCode TakeForces(Contact contact)
+{
+  FrictionStep          *step    = (FrictionStep *)contact->data;
+  const FrictionProblem *problem = &step->problem;
+  const PetscInt        *rows;
+
+  PetscFunctionBegin;
+  InterfaceOperatorGetRows(step->S, NULL, &rows, NULL);
+  PetscCall(PetscArrayzero(contact->end.force, contact->rows.n));
+  PetscCall(PetscArrayzero(contact->end.active, contact->rows.n));
+  PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
+  for (PetscInt i = 0; i < problem->n; i++) {
+    const PetscInt mine = rows[i] - contact->rows.begin;
+
+    if (mine < 0 || mine >= contact->rows.n) continue;
+    contact->end.force[mine]       = PetscRealPart(problem->force[i]);
+    contact->end.active[mine]      = (PetscBool)(problem->state[i / problem->dim] != FRICTION_OPEN);
+    contact->friction.slides[mine] = (PetscBool)(problem->state[i / problem->dim] == FRICTION_SLIDES);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much nodes miss the law [m]: de Saxce's residual. With the slip s of a node, v = (g + r|s|, s) and the compliance c of its normal
+   row that is c |f - P(f - v/c)|, P being the projection onto the forces that the law admits. */
+static PetscReal GetResidual(const FrictionProblem *problem)
+{
+  const PetscInt dim  = problem->dim;
+  PetscReal      most = 0;
+
+  for (PetscInt first = 0; first < problem->n; first += dim) {
+    const PetscReal c = PetscRealPart(problem->S[first * (problem->n + 1)]), cohesion = PetscRealPart(problem->limit[first]);
+    const PetscReal mu   = PetscRealPart(problem->limit[first + 1]);
+    PetscReal       slip = 0, f[3] = {0}, t[3] = {0}, size = 0, normal, bound, square = 0;
+
+    if (!(c > 0) || cohesion != 0) continue;
+    for (PetscInt k = 1; k < dim; k++) slip += PetscSqr(PetscRealPart(problem->opened[first + k]));
+    slip = PetscSqrtReal(slip);
+    for (PetscInt k = 0; k < dim; k++) {
+      f[k] = PetscRealPart(problem->force[first + k]);
+      t[k] = f[k] - (PetscRealPart(problem->opened[first + k]) + (k ? 0 : mu * slip)) / c;
+      if (k) size += PetscSqr(t[k]);
+    }
+    size   = PetscSqrtReal(size);
+    normal = t[0];
+    bound  = size;
+    if (size > mu * t[0]) { /* outside the cone: onto its side, or its tip */
+      normal = PetscMax((t[0] + mu * size) / (1 + mu * mu), 0);
+      bound  = mu * normal;
+    }
+    square = PetscSqr(f[0] - normal);
+    for (PetscInt k = 1; k < dim; k++) square += PetscSqr(f[k] - (size > 0 ? bound / size * t[k] : 0));
+    most = PetscMax(most, c * PetscSqrtReal(square));
+  }
+  return most;
+}
+
+/* Forces of the listed rows for which the law holds, as far as S tells */
+static PetscErrorCode Solve(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+  PetscBool     solved, by_nodes;
+
+  PetscFunctionBegin;
+  PetscCall(FrictionSolverSolve(step->solver, &step->problem, &solved, &by_nodes));
+  if (by_nodes) contact->counts.set_cycles++;
+  if (!solved) PetscCall(Fail(contact, PETSC_FALSE, 0));
+  PetscCall(TakeForces(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The problem of the rows that are listed now, from the bodies as they are under the forces `end` */
+static PetscErrorCode StartProblem(Contact contact)
+{
+  FrictionStep    *step    = (FrictionStep *)contact->data;
+  FrictionProblem *problem = &step->problem;
+
+  PetscFunctionBegin;
+  PetscCall(ListRows(contact));
+  for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = contact->end.force[i];
+  PetscCall(InterfaceOperatorGather(step->S, step->mine, problem->base));
+  PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
+  PetscCall(GatherOpened(contact, problem->opened));
+  for (PetscInt node = 0; node < problem->n / problem->dim; node++) problem->state[node] = FRICTION_OPEN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Step(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+  PetscBool     in_contact, more;
+  PetscReal     mismatch = 0, round_off = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(step->marks, contact->rows.n));
+  PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
+  PetscCall(ForcesBeginStep(contact, &step->forces, &in_contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (contact->start.active[i]) step->marks[i] = INTERFACE_SOLVED;
+    contact->end.force[i] = contact->start.force[i];
+  }
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  if (in_contact) PetscCall(Integrate(contact));
+  else PetscCall(ContactComputeSlips(contact)); /* of the free trial */
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MarkPenetrating(contact, &more));
+  PetscCall(StartProblem(contact));
+  for (PetscInt sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+    PetscCall(Solve(contact));
+    if (!ContactFailed(contact)) PetscCall(Integrate(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(Compare(contact, &mismatch, &round_off));
+    PetscCall(PetscInfo(contact, "friction: after sweep %" PetscInt_FMT " gaps and slips differ by %g m from what was told\n",
+                        contact->counts.sweeps, (double)mismatch));
+    PetscCall(MarkPenetrating(contact, &more));
+    if (PetscIsInfOrNanReal(mismatch)) break;
+    if (more) {
+      contact->counts.set_changes++;
+      PetscCall(StartProblem(contact));
+    } else if (mismatch <= PetscMax(step->atol, round_off)) {
+      const PetscReal residual = GetResidual(&step->problem);
+
+      /* what solves the problem is checked by the law itself */
+      if (residual > RESIDUAL_MOST * PetscMax(step->atol, round_off)) PetscCall(Fail(contact, PETSC_FALSE, 0));
+      contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, residual);
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
+  PetscCall(Fail(contact, PETSC_TRUE, mismatch));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nothing is remembered from step to step but what contact itself has in a checkpoint */
+static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  (void)contact;
+  (void)checkpoint;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View(Contact contact, PetscViewer viewer)
+{
+  const FrictionStep *step = (const FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  contact forces at the end of the step from the compliance of the interface, to %g m\n",
+                                   (double)step->atol));
+  if (contact->friction.law.view) PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(ForcesDestroy(&step->forces));
+  PetscCall(InterfaceOperatorDestroy(&step->S));
+  PetscCall(FrictionSolverDestroy(&step->solver));
+  PetscCall(FreeProblem(&step->problem));
+  PetscCall(PetscFree2(step->marks, step->mine));
+  PetscCall(PetscFree(contact->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What friction needs of bodies and options */
+static PetscErrorCode Check(Contact contact)
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)contact);
+  PetscBool has_mass;
+
+  PetscFunctionBegin;
+  PetscCheck(contact->dim > 1, comm, PETSC_ERR_SUP, "-contact_law %s: bars of one dimension cannot slide; choose frictionless",
+             contact->friction.name);
+  PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
+  PetscCheck(!has_mass, comm, PETSC_ERR_SUP,
+             "-contact_law %s needs massless contact nodes: with mass the forces of friction ring from step to step; leave "
+             "-<body>_mass_redistribute at true",
+             contact->friction.name);
+  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_SUP,
+             "-contact_law %s closes gaps; leave -contact_constraint at gap", contact->friction.name);
+  PetscCheck(contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm, PETSC_ERR_SUP,
+             "-contact_law %s has massless contact nodes, which do not chatter; leave -contact_stabilization at none",
+             contact->friction.name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes controller steps with friction: takes the place of a method that would close gaps by the same forces without it */
+PetscErrorCode ContactStepByFriction(Contact contact)
+{
+  /* all of S is wanted as a matrix */
+  const InterfaceSettings settings = {.prefix = "friction_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
+  FrictionStep           *step;
+
+  PetscFunctionBegin;
+  PetscTryTypeMethod(contact, destroy);
+  PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
+  contact->data = NULL;
+  PetscCall(Check(contact));
+  if (contact->friction.law.setup) PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
+  PetscCall(PetscNew(&step));
+  contact->friction.steps = PETSC_TRUE;
+  contact->data           = step;
+  contact->ops->step      = Step;
+  contact->ops->stored    = ContactStoresNothing;
+  contact->ops->view      = View;
+  contact->ops->destroy   = Destroy;
+  contact->ops->visit     = Visit;
+  step->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  step->problem.dim       = contact->dim;
+  PetscCall(ForcesCreate(contact, &step->forces));
+  PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
+  PetscCall(FrictionSolverCreate(&step->solver));
+  PetscCall(PetscCalloc2(contact->rows.n, &step->marks, contact->rows.n, &step->mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,138 @@
+/* Forces of nodes with friction, for random interfaces: the law holds at each node, in the plane and in space, with small and large
+ * coefficients. */
+#include "support.h"
+#include <contact/laws/friction.h>
+
+#define NODES  12
+#define ROWS   (3 * NODES)
+#define PLACES (ROWS + 4)
+
+static PetscReal Random(void *state)
+{
+  unsigned *seed = (unsigned *)state;
+
+  *seed = *seed * 1664525u + 1013904223u;
+  return 2 * ((*seed >> 8) / (PetscReal)(1u << 24)) - 1;
+}
+
+typedef struct {
+  PetscScalar     S[ROWS * ROWS], opened[ROWS], base[ROWS], limit[ROWS], force[ROWS], open[ROWS];
+  FrictionState   state[NODES];
+  FrictionProblem problem;
+} Problem;
+
+/* A compliance that is symmetric and positive definite, of the size of one per newton, and nodes that are pressed by about a metre and
+ * moved across */
+static void Fill(Problem *p, PetscInt dim, PetscReal coefficient, unsigned seed)
+{
+  const PetscInt n = dim * NODES;
+  PetscReal      root[ROWS * PLACES];
+
+  for (PetscInt k = 0; k < n * PLACES; k++) root[k] = Random(&seed) / PetscSqrtReal((PetscReal)PLACES);
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt j = 0; j < n; j++) {
+      p->S[j * n + i] = i == j ? 1 : 0;
+      for (PetscInt k = 0; k < PLACES; k++) p->S[j * n + i] += root[i * PLACES + k] * root[j * PLACES + k];
+    }
+  for (PetscInt i = 0; i < n; i++) {
+    p->opened[i] = Random(&seed) - (i % dim ? 0 : 0.5);
+    p->base[i]   = Random(&seed);
+    p->force[i]  = p->base[i];
+    p->limit[i]  = i % dim == 1 ? coefficient : 0;
+  }
+  p->problem = (FrictionProblem){dim, n, p->S, p->opened, p->base, p->limit, p->force, p->state};
+  for (PetscInt node = 0; node < NODES; node++) p->state[node] = FRICTION_OPEN;
+}
+
+/* What rows open by under the forces found */
+static void Open(Problem *p)
+{
+  const PetscInt n = p->problem.n;
+
+  for (PetscInt i = 0; i < n; i++) {
+    p->open[i] = p->opened[i];
+    for (PetscInt j = 0; j < n; j++) p->open[i] += p->S[j * n + i] * (p->force[j] - p->base[j]);
+  }
+}
+
+/* The law at a node, to round-off of metres and newtons of size 1 */
+static FrictionState CheckNode(const Problem *p, PetscInt node)
+{
+  const PetscInt     dim = p->problem.dim;
+  const PetscScalar *f = p->force + node * dim, *g = p->open + node * dim;
+  const PetscReal    bound = p->limit[node * dim + 1] * f[0], small = 1e-10;
+  PetscReal          force = 0, slip = 0, work = 0;
+
+  assert_true(f[0] >= -small && g[0] >= -small && PetscAbsReal(f[0] * g[0]) <= small);
+  for (PetscInt k = 1; k < dim; k++) {
+    force += PetscSqr(f[k]);
+    slip += PetscSqr(g[k]);
+    work += f[k] * g[k];
+  }
+  force = PetscSqrtReal(force);
+  slip  = PetscSqrtReal(slip);
+  assert_true(force <= bound + small);
+  if (f[0] <= small) return FRICTION_OPEN;
+  if (slip <= small) return FRICTION_STICKS;
+  assert_true(PetscAbsReal(force - bound) <= small);
+  assert_true(PetscAbsReal(work + force * slip) <= small); /* against the slip */
+  return FRICTION_SLIDES;
+}
+
+static void law_holds(void **state)
+{
+  const PetscReal coefficients[] = {0, 0.1, 0.3, 0.6, 1};
+  FrictionSolver  solver;
+  Problem         p;
+  PetscInt        seen[3] = {0, 0, 0};
+
+  (void)state;
+  ok(FrictionSolverCreate(&solver));
+  for (PetscInt dim = 2; dim <= 3; dim++)
+    for (size_t c = 0; c < PETSC_STATIC_ARRAY_LENGTH(coefficients); c++)
+      for (unsigned seed = 1; seed <= 40; seed++) {
+        PetscBool solved, by_nodes;
+
+        Fill(&p, dim, coefficients[c], seed);
+        ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
+        assert_true(solved);
+        Open(&p);
+        for (PetscInt node = 0; node < NODES; node++) seen[CheckNode(&p, node)]++;
+      }
+  for (PetscInt k = 0; k < 3; k++) assert_true(seen[k] > 100);
+  ok(FrictionSolverDestroy(&solver));
+}
+
+/* One node at a time: the same law */
+static void law_holds_at_a_node(void **state)
+{
+  Problem p;
+
+  (void)state;
+  for (PetscInt dim = 2; dim <= 3; dim++)
+    for (unsigned seed = 1; seed <= 200; seed++) {
+      PetscReal S[9], open[3], limit[2], force[3];
+
+      Fill(&p, dim, 0.4, seed);
+      for (PetscInt i = 0; i < dim; i++) {
+        open[i] = PetscRealPart(p.opened[i]);
+        for (PetscInt j = 0; j < dim; j++) S[j * dim + i] = PetscRealPart(p.S[j * p.problem.n + i]);
+      }
+      limit[0] = 0;
+      limit[1] = 0.4;
+      ok(FrictionSolveNode(dim, S, open, limit, force));
+      for (PetscInt i = 0; i < dim; i++) {
+        p.force[i] = force[i];
+        p.open[i]  = open[i];
+        for (PetscInt j = 0; j < dim; j++) p.open[i] += S[j * dim + i] * force[j];
+      }
+      (void)CheckNode(&p, 0);
+    }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(law_holds), cmocka_unit_test(law_holds_at_a_node)};
+
+  return impakt_main(argc, argv, tests);
+}

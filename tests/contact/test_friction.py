@@ -1,0 +1,170 @@
+"""Coulomb friction: force, slip and energy against closed forms; the law node by node; what is refused."""
+
+import numpy as np
+import pytest
+from cases import joined, worst_energy_error
+
+PULSE = "-options_file options/shear-pulse.opts"
+SLOPE = "-options_file options/slope.opts"
+LOWER, UPPER = (f"-{body}_ts_type centraldifference" for body in ("lower", "upper"))
+PAIRINGS = {"II": "", "IE": UPPER, "EI": LOWER, "EE": f"{LOWER} {UPPER}"}
+G, TILT = 9.81, np.radians(30)
+
+
+def frames(run, path):
+    """Mean slip [m], and the largest |f_x / f_y - mu| and |f_x / f_y| of the nodes of the upper body, of the middle of the shear pulse in each frame."""
+    import h5py
+
+    with h5py.File(path) as fields:
+        x, body = fields["mesh/positions"][()], np.zeros(len(fields["mesh/positions"]), int)
+        body[fields["mesh/cells"][()]] = fields["mesh/body"][()][:, None]
+        middle = (np.abs(x[:, 1]) < 1e-9) & (np.abs(x[:, 0]) < 0.25)
+        slips, ratios = [], []
+        for frame in range(len(fields["time"])):
+            u, force = fields[f"displacement/{frame:04d}"][()], fields[f"contact_force/{frame:04d}"][()]
+            slips.append(u[middle & (body == 1), 0].mean() - u[middle & (body == 0), 0].mean())
+            with np.errstate(invalid="ignore"):
+                ratios.append(np.abs(force[middle & (body == 1), 0] / force[middle & (body == 1), 1]))
+        return fields["time"][()], np.array(slips), np.array(ratios)
+
+
+def pulse(impakt, options=""):
+    run = impakt(joined(PULSE, "-output_fields fields.h5 -output_fields_interval 1 -output_fields_precision double", options))
+    return run, *frames(run, run.folder / "fields.h5")
+
+
+@pytest.mark.parametrize("pairing", [pytest.param(name, marks=() if name in ("II", "EE") else pytest.mark.long) for name in PAIRINGS])
+def test_shear_pulse(pairing, impakt):
+    run, time, slip, ratio = pulse(impakt, PAIRINGS[pairing])
+    late = time > 5e-4  # the whole pulse has come in
+    exact = 2 * (0.06 - 3e4 / (1000 * np.sqrt(5e8 / 1000)))
+    assert np.abs(ratio[late] / 0.3 - 1).max() <= 1e-8  # each node has the force of the law: measured 4e-16
+    rate = np.polyfit(time[late], slip[late], 1)[0]
+    assert rate == pytest.approx(exact, rel=5e-3)  # measured: 3e-3 of dispersion with elements of 6 mm
+    assert worst_energy_error(run.summary) <= (1e-9 if pairing == "II" else 1e-4)  # measured: 5e-15 in all
+    assert run.summary["schwarz"]["max"] <= 4  # measured: 2
+    contact = run.summary["contact"]
+    assert contact["friction_least"] >= -1e-12  # of 13.6 J
+    assert contact["friction_residual"] <= 1e-15  # [m], measured: 4e-19
+    assert 0.5 < contact["friction_loss"] < 0.7  # 3e4 Pa times what the middle slides, over 2 m: 0.61 J
+
+
+def test_shear_pulse_sticks(impakt):
+    """Z v < mu p, from both sides: nothing slips in the middle."""
+    run, time, slip, ratio = pulse(impakt, '-lower_initial_velocity -0.03*(1-exp(-(10*y)^2)),0 -upper_initial_velocity 0.03*(1-exp(-(10*y)^2)),0')
+    assert np.abs(slip).max() <= 1e-6 * 0.06 * 6e-4  # means over nodes at other places, of what comes from the edges: measured 1e-7
+    assert ratio[time > 5e-4].mean() == pytest.approx(0.03 * 1000 * np.sqrt(5e5) / 1e5, rel=5e-3)  # measured: 1e-3
+    assert worst_energy_error(run.summary) <= 1e-9
+
+
+@pytest.mark.parametrize("options", ["", "-contact_rows second", "-contact_type lagrange"])
+def test_block_slides(options, impakt):
+    run = impakt(joined(SLOPE, options))
+    time, speed = run.history["time"][()], run.history["body/block/mean_velocity"][:, 0]
+    late = time >= 0.1
+    assert np.polyfit(time[late], speed[late], 1)[0] == pytest.approx(G * (np.sin(TILT) - 0.3 * np.cos(TILT)), rel=1e-3)  # measured: 2e-5
+    (name,) = run.history["contact"]
+    force = run.history[f"contact/{name}/force_vector"][-1]
+    assert force[0] / force[1] == pytest.approx(-0.3, rel=1e-4)  # measured: 5e-6, of rows that follow the bent surface
+    assert worst_energy_error(run.summary) <= 1e-5
+
+
+def test_block_sticks(impakt):
+    """tan 30 < 0.6: without creep once the loads have come and their waves are damped, for a second."""
+    run = impakt(joined(SLOPE, "-contact_friction 0.6 -time_end 1.5"))
+    time, position = run.history["time"][()], run.history["body/block/contact_position"][:, 0]
+    late = time >= 0.5
+    assert np.ptp(position[late]) <= 1e-9 * 0.4
+    (name,) = run.history["contact"]
+    assert run.history[f"contact/{name}/sliding"][-1] == 0
+
+
+def test_block_on_tilted_obstacle(impakt):
+    """The same on a rigid plane that is tilted itself."""
+    run = impakt(
+        "-bodies block -obstacles ground -ground_obstacle_type plane -ground_point 0,0 -ground_normal 0,1 -contact_law coulomb "
+        "-contact_friction 0.3 -time_end 0.2 -time_step 1e-3 -block_dm_plex_dim 2 -block_dm_plex_box_lower -0.2,0 -block_dm_plex_box_upper 0.2,0.1 "
+        "-block_dm_plex_box_faces 8,2 -block_density 1000 -block_youngs_modulus 1e8 -block_poissons_ratio 0.25 -block_damping_stiffness 1e-2 "
+        "-block_body_force 4905*sin(pi*min(0.5,10*t))^2,-8495.709211125343*sin(pi*min(0.5,10*t))^2"
+    )
+    time, speed = run.history["time"][()], run.history["body/block/mean_velocity"][:, 0]
+    late = time >= 0.1
+    assert np.polyfit(time[late], speed[late], 1)[0] == pytest.approx(G * (np.sin(TILT) - 0.3 * np.cos(TILT)), rel=1e-3)
+
+
+OBLIQUE = " ".join(
+    f"-{body}_dm_plex_dim 3 -{body}_dm_plex_box_lower -1,-1,{lower} -{body}_dm_plex_box_upper 1,1,{upper} -{body}_dm_plex_box_faces {n},{n},12 "
+    f"-{body}_density 1000 -{body}_youngs_modulus 1e9 -{body}_poissons_ratio 0 -{body}_initial_velocity {sign}0.048*(1-exp(-(10*z)^2)),"
+    f"{sign}0.036*(1-exp(-(10*z)^2)),0 -{body}_initial_displacement 0,0,-1e-4*z -{body}_boundary_traction {end} -{body}_boundary_traction_{end} 0,0,{load}"
+    for body, lower, upper, n, sign, end, load in (("lower", -0.5, 0, 4, "-", "zmin", "1e5"), ("upper", 0, 0.5, 5, "", "zmax", "-1e5"))
+)
+OBLIQUE += " -bodies lower,upper -contact_pairs lower.zmax:upper.zmin -contact_law coulomb -contact_friction 0.3 -time_step 1e-5 -time_end 3e-4"
+
+
+def test_in_space(impakt):
+    """The shear pulse in hexahedra that do not match, askew to the axes: while all slides the force is that of the law, against the motion; on two ranks too."""
+    one, two = impakt(OBLIQUE), impakt(OBLIQUE, ranks=2)
+    (name,) = one.history["contact"]
+    sliding, force = one.history[f"contact/{name}/sliding"][()], one.history[f"contact/{name}/force_vector"][()]
+    slides = sliding == sliding.max()
+    assert sliding.max() == 25 and slides.sum() > 5
+    assert np.hypot(force[slides, 0], force[slides, 1]) == pytest.approx(0.3 * force[slides, 2], rel=1e-3)  # directions of the nodes differ a little
+    assert force[slides, 1] / force[slides, 0] == pytest.approx(0.75, rel=1e-2)
+    assert worst_energy_error(one.summary) <= 1e-12
+    for series in ("force_vector", "friction_loss"):
+        values = one.history[f"contact/{name}/{series}"][()]
+        assert np.abs(values - two.history[f"contact/{name}/{series}"][()]).max() <= 1e-10 * np.abs(values).max()
+
+
+@pytest.mark.parametrize("pairing", ["II", "EE"])
+def test_large_coefficient_is_a_tie(pairing, impakt):
+    """Without opening, friction that nothing overcomes is the tied solution with massless layers."""
+    move = "-lower_initial_velocity 0,0.01*x -upper_initial_velocity 0.03*y,0 -time_end 1e-4 -lower_dm_plex_box_faces 33,20 -upper_dm_plex_box_faces 40,20"
+    stick = impakt(joined(PULSE, PAIRINGS[pairing], move, "-contact_friction 1e8"))
+    options = [line for line in open("options/shear-pulse.opts").read().splitlines() if not line.startswith(("#", "-contact_law", "-contact_friction"))]
+    (stick.folder / "tied.opts").write_text("\n".join(options))
+    tie = "-contact_law tied -lower_mass_redistribute true -upper_mass_redistribute true"
+    tied = impakt(joined(f"-options_file {stick.folder}/tied.opts", PAIRINGS[pairing], move, tie))
+    for body in ("lower", "upper"):
+        for series in ("mean_velocity", "contact_velocity", "contact_position"):
+            a, b = (run.history[f"body/{body}/{series}"][()] for run in (stick, tied))
+            assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max()  # measured: 1e-12
+
+
+def test_turning_together(impakt):
+    """Two blocks that are pressed together and turn by 90 degrees as one do not rub, whatever their meshes."""
+    bodies = " ".join(
+        f"-{body}_dm_plex_dim 2 -{body}_dm_plex_box_lower -1,{lower} -{body}_dm_plex_box_upper 1,{upper} -{body}_dm_plex_box_faces {n},4 "
+        f"-{body}_density 1000 -{body}_youngs_modulus 1e9 -{body}_poissons_ratio 0 -{body}_material_type neo_hookean "
+        f"-{body}_initial_velocity -10*y,10*x -{body}_initial_displacement 0,-1e-3*y -{body}_boundary_traction {end} "
+        f"-{body}_boundary_traction_{end} {sign}1e6*sin(10*t),{other}1e6*cos(10*t)"
+        for body, lower, upper, n, end, sign, other in (("lower", -0.5, 0, 11, "ymin", "-", ""), ("upper", 0, 0.5, 14, "ymax", "", "-"))
+    )
+    run = impakt(f"-bodies lower,upper -contact_pairs lower.ymax:upper.ymin -contact_law coulomb -contact_friction 0.3 -time_step 2e-4 -time_end 0.157 {bodies}")
+    (name,) = run.history["contact"]
+    energy = run.history["body/lower/kinetic"][0] + run.history["body/upper/kinetic"][0]
+    assert run.history[f"contact/{name}/sliding"][()].max() == 0
+    assert np.abs(run.history[f"contact/{name}/friction_loss"][()]).max() <= 1e-9 * energy  # measured: 1e-12
+    assert run.summary["schwarz"]["max"] <= 4
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("-contact_friction -0.1", "must not be negative"),
+        ("-contact_friction_kinetic 0.4 -contact_friction_decay 1", "is above the coefficient"),
+        ("-contact_friction_kinetic 0.2", "go together"),
+        ("-contact_type penalty", "has no friction"),
+        ("-contact_type augmented_lagrangian", "has no friction"),
+        ("-block_mass_redistribute false", "massless contact nodes"),
+        ("-contact_law sticky", "sticky"),
+    ],
+)
+def test_refused(options, message, impakt):
+    assert message in impakt(joined(SLOPE, options), expect_failure=True).stderr
+
+
+def test_missing_coefficient(impakt):
+    words = "-bodies a,b -contact_law coulomb -a_dm_plex_dim 2 -b_dm_plex_dim 2 -b_dm_plex_box_lower 1.1,0 -b_dm_plex_box_upper 2,1"
+    words += " -time_end 1e-3 -time_step 1e-3 -a_density 1 -b_density 1 -a_youngs_modulus 1 -b_youngs_modulus 1"
+    assert "needs the coefficient of friction of the pair " in impakt(words, expect_failure=True).stderr
