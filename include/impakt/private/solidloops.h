@@ -166,7 +166,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
       const PetscInt now = (POINTS == 1 ? first / SIMD_WIDTH : g) % 2;
 
       if (g + 1 < POINTS) GetGradients(X, U, points[g + 1], &at[1 - now]);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at[now].H, P);
+      SolidStress(solid, first, g, (const SimdReal *)at[now].H, P);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at[now].cofactor[part], points[g], F[part]);
     }
     for (PetscInt part = 0; part < SIMD_PARTS; part++)
@@ -275,7 +275,7 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, W);
+      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
     }
     bad = FindNaN(sum);
@@ -323,7 +323,7 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, P);
+      SolidStress(solid, first, g, (const SimdReal *)at.H, P);
       if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, at.H);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
         PetscReal sigma[6];
@@ -335,6 +335,33 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
     }
     for (PetscInt p = 0; p < n; p++)
       for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];
+  }
+}
+
+/* Plastic work of all elements but for the weight of a point, and the mean equivalent plastic strain of each */
+SIMD_CLONES static void GetPlastic(const Solid *solid, PetscInt count, const PetscInt connectivity[], PetscReal *work, PetscReal strain[])
+{
+  const ElementHistory *history = solid->history;
+  Gradients             at      = {0};
+
+  *work = 0;
+  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
+    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
+    SimdVector     X[SIMD_PARTS][DIM][MODES];
+    SimdReal       sum = {0}, volume = {0};
+
+    GetModes(connectivity, first, count, solid->coordinates, X);
+    for (PetscInt g = 0; g < POINTS; g++) {
+      const PetscReal *point = history->start + SolidHistoryOffset(history, first, g);
+
+      GetGradients(X, X, points[g], &at);
+      for (PetscInt p = 0; p < n; p++) {
+        *work += at.determinant[p] * point[solid->kernels.plastic_work * SIMD_WIDTH + p];
+        sum[p] += at.determinant[p] * point[solid->kernels.plastic_strain * SIMD_WIDTH + p];
+        volume[p] += at.determinant[p];
+      }
+    }
+    for (PetscInt p = 0; p < n && strain; p++) strain[first + p] = sum[p] / volume[p];
   }
 }
 
@@ -369,6 +396,16 @@ static PetscErrorCode Stress(Element element, const PetscScalar u[], PetscReal s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Plastic(Element element, PetscReal *work, PetscReal strain[])
+{
+  const Solid *solid = (const Solid *)element->data;
+
+  PetscFunctionBegin;
+  GetPlastic(solid, element->count, element->connectivity, work, strain);
+  *work *= WEIGHT * element->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Create(Element element, const SolidShape *shape)
 {
   PetscFunctionBegin;
@@ -377,5 +414,6 @@ static PetscErrorCode Create(Element element, const SolidShape *shape)
   element->ops->viscousforce  = ViscousForce;
   element->ops->energy        = Energy;
   element->ops->stress        = Stress;
+  element->ops->plastic       = Plastic;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

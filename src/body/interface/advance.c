@@ -35,6 +35,7 @@ PetscErrorCode BodySave(Body body)
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
   if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
   PetscCall(BodyStateCopy(&body->state, &body->saved));
+  BodyHistorySave(body);
   body->start.changed = PETSC_FALSE;
   /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
@@ -83,6 +84,7 @@ PetscErrorCode BodyKeep(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(&body->state, &body->kept));
+  PetscCall(BodyHistoryKeep(body, PETSC_FALSE));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,6 +107,7 @@ PetscErrorCode BodyReinstate(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(&body->kept, &body->state));
+  PetscCall(BodyHistoryKeep(body, PETSC_TRUE));
   if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
   body->repeats = PETSC_FALSE;
@@ -229,6 +232,7 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
     PetscCall(PetscTime(&begin));
     PetscCall((*body->integrator->ops.complete)(body));
     body->state.incomplete = PETSC_FALSE;
+    PetscCall(BodyHistoryEnd(body));
     PetscCall(BodyCheckSubstep(body));
     PetscCall(BodyWriteTraces(body, body->time.substeps));
     PetscCall(PetscTime(&end));

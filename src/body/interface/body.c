@@ -251,6 +251,7 @@ PetscErrorCode BodySetUp(Body body)
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySetUpSteps(body));
   PetscCall(CreateTraces(body));
+  PetscCall(BodySetUpHistory(body));
   PetscCall(BodyCreateCompliance(body));
   PetscCall(BodySetUpDamping(body));
   PetscCall(BodySetUpPoints(body));
@@ -301,6 +302,7 @@ PetscErrorCode BodyDestroy(Body *body)
     Trace     *traces[] = {&b->traces.displacement_in, &b->traces.velocity_in, &b->traces.acceleration_in, &b->traces.force_in,
                            &b->traces.displacement,    &b->traces.velocity,    &b->traces.acceleration,    &b->traces.reaction};
 
+    PetscCall(BodyDestroyHistory(b));
     PetscCall(BodyDestroyRepeat(b));
     PetscCall(BodyIntegratorDestroy(b));
     PetscCall(BodyDestroyLevels(b));

@@ -10,6 +10,7 @@
 typedef struct _n_LayerElements *LayerElements;
 typedef struct _n_LayerSolver   *LayerSolver;
 typedef struct _n_BodyGram      *BodyGram;
+typedef struct _n_BodyHistory   *BodyHistory;
 
 /* Nodes of this rank are numbered owned first, then ghosts */
 typedef struct {
@@ -186,6 +187,7 @@ struct _p_Body {
   ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
   BodyState         state, saved;  /* as it is; at the start of the controller step */
   BodyState         kept;          /* put aside by BodyKeep() */
+  BodyHistory       history;       /* of the material at the points of integration; NULL where it has none */
   BodyState         substep_start; /* u and v, which are NULL unless loads or the integrator read them */
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
@@ -287,6 +289,23 @@ PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySetUpHistory(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyHistory(Body);
+PETSC_INTERN PetscErrorCode BodyHistoryBegin(Body);
+PETSC_INTERN PetscErrorCode BodyHistoryNote(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyHistoryEnd(Body);
+PETSC_INTERN void           BodyHistorySave(Body);
+PETSC_INTERN void           BodyHistoryRestore(Body);
+PETSC_INTERN PetscErrorCode BodyHistoryKeep(Body, PetscBool);
+PETSC_INTERN void           BodyHistoryLook(Body, ElementHistory *);
+PETSC_INTERN void           BodyHistoryForget(Body, ElementHistory *);
+PETSC_INTERN void           BodyHistoryLookBack(Body, const ElementHistory *);
+PETSC_INTERN void           BodyHistoryUse(Body, const PetscReal[], PetscReal, ElementHistory *);
+PETSC_INTERN PetscErrorCode BodyHistoryCreateBuffer(Body, PetscInt, PetscInt *, char **, PetscReal **);
+PETSC_INTERN PetscErrorCode BodyHistoryCopyStart(Body, PetscReal[], PetscReal *);
+PETSC_INTERN void           BodyHistoryGather(Body, PetscBool, PetscInt, const PetscInt[], PetscReal[]);
+PETSC_INTERN PetscInt       BodyHistoryGetEpoch(Body);
+PETSC_INTERN PetscReal     *BodyHistoryGetSaved(Body, size_t *);
 PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
 PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
@@ -294,7 +313,9 @@ PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
 PETSC_INTERN PetscErrorCode BodyCreateLayerVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodyGatherLayer(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySpreadLayer(Body, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
+PETSC_INTERN PetscErrorCode BodyLayerCreateHistory(Body, PetscInt *, char **, PetscReal **);
+PETSC_INTERN PetscErrorCode BodyLayerCopyHistory(Body, PetscReal[], PetscReal *);
+PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, const PetscReal[], PetscReal, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
