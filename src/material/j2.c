@@ -19,6 +19,11 @@
 
 /* Largest norm of A for the series; beyond, eigenvalues */
 #define SERIES_LIMIT 0.2
+/* Its terms: (-1)^n / (n + 1) */
+#define MAX_TERMS 23
+static const PetscReal terms_of_series[MAX_TERMS] = {1,       -1. / 2,  1. / 3,  -1. / 4,  1. / 5,  -1. / 6,  1. / 7,  -1. / 8,
+                                                     1. / 9,  -1. / 10, 1. / 11, -1. / 12, 1. / 13, -1. / 14, 1. / 15, -1. / 16,
+                                                     1. / 17, -1. / 18, 1. / 19, -1. / 20, 1. / 21, -1. / 22, 1. / 23};
 /* Largest norm of a plastic increment for the series of the exponential; beyond, that of a half of it, or a quarter, is squared */
 #define EXPONENT_LIMIT 0.1
 #define EXPONENT_TERMS 9
@@ -68,12 +73,12 @@ SIMD_INLINE void TakeSeries(PetscInt part, PetscInt terms, Trial *trial)
   const SimdVector third = SymmetricDeterminant(a);
   SimdVector       x = 0 * first, y = x, z = x;
 
-  for (PetscInt n = terms; n > 0; n--) {
+  for (PetscInt n = terms - 1; n >= 0; n--) {
     const SimdVector last = z;
 
     z = y + first * last;
     y = x - second * last;
-    x = third * last + (n % 2 ? 1. : -1.) / (PetscReal)n;
+    x = third * last + terms_of_series[n];
   }
   SymmetricStore(SymmetricPolynomial(0.5 * third * z, 0.5 * (x - second * z), 0.5 * (y + first * z), a, square), trial->E, part);
 }
@@ -105,7 +110,7 @@ static void TakeEigenvalues(int p, Trial *trial)
 
   for (int i = 0; i < 6; i++) a[i] = trial->A[i][p];
   ToMatrix(a, m);
-  SymmetricLogCreate((const PetscReal(*)[3])m, &log);
+  SymmetricLogCreate((const PetscReal(*)[3])m, PETSC_FALSE, &log);
   SymmetricLogGet(&log, m);
   FromMatrix(m, a);
   for (int i = 0; i < 6; i++) trial->E[i][p] = 0.5 * a[i];
@@ -114,7 +119,7 @@ static void TakeEigenvalues(int p, Trial *trial)
 /* Terms after which the series of the logarithm has all its digits */
 SIMD_INLINE PetscInt CountTerms(PetscReal norm)
 {
-  return norm < 1e-3 ? 5 : norm < 0.02 ? 9 : norm < 0.08 ? 14 : 23;
+  return norm < 1e-3 ? 5 : norm < 0.02 ? 9 : norm < 0.08 ? 14 : MAX_TERMS;
 }
 
 SIMD_INLINE void GetTrial(const PetscReal H[9][8], const PetscReal history[][8], Trial *trial)
@@ -222,7 +227,7 @@ static void StoreCentredStress(const Trial *trial, const PetscReal history[][8],
     GetMatrices(trial, history, p, f, g, a);
     for (int i = 0; i < 6; i++) packed[i] = M[i][p];
     ToMatrix(packed, m);
-    SymmetricLogCreate((const PetscReal(*)[3])a, &log);
+    SymmetricLogCreate((const PetscReal(*)[3])a, PETSC_FALSE, &log);
     GetStressOfPoint(&log, f, g, m, stress);
     for (int i = 0; i < 9; i++) P[i][p] = stress[i / 3][i % 3];
   }
@@ -430,7 +435,7 @@ static void AdvanceTangent(const void *data, PetscReal dt, const PetscReal H[9],
   }
   GetMatrices(&trial, (const PetscReal(*)[8])history, 0, f, g, a);
   ToMatrix(packed, m);
-  SymmetricLogCreate((const PetscReal(*)[3])a, &log);
+  SymmetricLogCreate((const PetscReal(*)[3])a, PETSC_TRUE, &log);
   SymmetricLogApply(&log, (const PetscReal(*)[3])m, S);
   defined = Defined(f);
   for (int kl = 0; kl < 9; kl++) {

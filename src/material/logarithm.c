@@ -28,7 +28,7 @@ static void Diagonalise(PetscReal a[3][3], PetscReal Q[3][3])
         PetscReal       t, c, s;
 
         if (b == 0) continue;
-        t = b / (PetscAbsReal(half) + PetscSqrtReal(half * half + b * b));
+        t = b / (PetscAbsReal(half) + hypot(half, b)); /* their squares may underflow */
         if (half < 0) t = -t;
         c = 1 / PetscSqrtReal(1 + t * t);
         s = t * c;
@@ -83,8 +83,8 @@ static PetscReal Second(PetscReal a, PetscReal b, PetscReal c)
   }
 }
 
-/* SymmetricLogCreate - eigenvalues and divided differences of ln(1 + a) */
-void SymmetricLogCreate(const PetscReal a[3][3], SymmetricLog *log)
+/* SymmetricLogCreate - eigenvalues and divided differences of ln(1 + a); those of three only if the second derivative is wanted */
+void SymmetricLogCreate(const PetscReal a[3][3], PetscBool second, SymmetricLog *log)
 {
   PetscReal d[3][3];
 
@@ -95,7 +95,7 @@ void SymmetricLogCreate(const PetscReal a[3][3], SymmetricLog *log)
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       log->first[i][j] = First(d[i][i], d[j][j]);
-      for (int k = 0; k < 3; k++) log->second[i][j][k] = Second(d[i][i], d[j][j], d[k][k]);
+      for (int k = 0; k < 3 && second; k++) log->second[i][j][k] = Second(d[i][i], d[j][j], d[k][k]);
     }
 }
 

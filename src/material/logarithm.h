@@ -9,7 +9,7 @@ typedef struct {
   PetscReal second[3][3][3]; /* and of three */
 } SymmetricLog;
 
-PETSC_INTERN void SymmetricLogCreate(const PetscReal[3][3], SymmetricLog *);
+PETSC_INTERN void SymmetricLogCreate(const PetscReal[3][3], PetscBool, SymmetricLog *);
 PETSC_INTERN void SymmetricLogGet(const SymmetricLog *, PetscReal[3][3]);
 PETSC_INTERN void SymmetricLogApply(const SymmetricLog *, const PetscReal[3][3], PetscReal[3][3]);
 PETSC_INTERN void SymmetricLogApplySecond(const SymmetricLog *, const PetscReal[3][3], const PetscReal[3][3], PetscReal[3][3]);

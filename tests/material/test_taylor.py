@@ -23,6 +23,19 @@ def test_energy(impakt):
     assert max(abs(run.summary["system"][f"energy_error_{end}"]) for end in ("min", "max")) < 1e-3
 
 
+@pytest.mark.long
+def test_flat_elements(impakt):
+    """The stable step falls from 5.9e-8 s to less than half of it: the body takes smaller substeps by itself, and nothing grows. With no cuts allowed
+    the run ends with an error that tells why. Measured: energy to 5e-4."""
+    case = TAYLOR + "-rod_rod_elements 70 -time_step 5e-8 -time_end 30e-6 "
+    run = impakt(case)
+    assert run.summary["step_control"]["step_cuts"] > 50
+    total, _ = energies(run)
+    assert abs(total / total[0] - 1).max() < 1e-3
+    refused = impakt(case + "-controller_step_cuts 0", expect_failure=True)
+    assert "its stable step has fallen from" in refused.stderr
+
+
 @pytest.mark.parametrize(
     ("more", "says"),
     [

@@ -36,6 +36,7 @@ PetscErrorCode BodySave(Body body)
   if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
   PetscCall(BodyStateCopy(&body->state, &body->saved));
   BodyHistorySave(body);
+  if (stepped) PetscCall(BodyUpdateStableStep(body));
   body->start.changed = PETSC_FALSE;
   /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
@@ -192,8 +193,9 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
   PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
   PetscCall(PetscTime(&begin));
   StepFailureClear(&body->failure);
-  PetscCall(BodyRepeat(body, &done));
-  if (!done) PetscCall(BodyMakeSubsteps(body));
+  PetscCall(BodyCheckStableStep(body));
+  if (body->failure.reason >= 0) PetscCall(BodyRepeat(body, &done));
+  if (body->failure.reason >= 0 && !done) PetscCall(BodyMakeSubsteps(body));
   PetscCall(CheckSolver(body));
   if (!done && body->failure.reason >= 0) PetscCall(BodyNoteInputs(body));
   PetscCall(PetscTime(&end));

@@ -331,6 +331,9 @@ PetscErrorCode BodyVisitShared(Body body, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "time", 1, &state->time));
   PetscCall(CheckpointVisitInts(checkpoint, "step", 1, &state->step));
   PetscCall(CheckpointVisitInts(checkpoint, "accepted level", 1, &body->time.accepted_level));
+  PetscCall(CheckpointVisitReals(checkpoint, "stable step now", 1, &body->time.stable_now));
+  PetscCall(CheckpointVisitReals(checkpoint, "stable step found", 1, &body->time.stable_found));
+  PetscCall(CheckpointVisitReals(checkpoint, "thinness", 1, &body->time.thinness));
   PetscCall(CheckpointVisitInt64s(checkpoint, "substeps", 1, &body->statistics.substeps));
   body->saved.external_work = state->external_work;
   body->saved.damping_work  = state->damping_work;

@@ -79,10 +79,12 @@ typedef struct {
   PetscReal whole_step;                   /* the controller step before any cut [s] */
   PetscInt  level, accepted_level;        /* how often the controller step is cut in halves; how often that was which was accepted last */
   PetscReal requested_step;               /* 0: the controller step; < 0: automatic */
-  PetscReal stable_step;                  /* 0 until BodyComputeStableStep() */
-  PetscInt  shared;                       /* parts of the controller step, at whose ends all bodies have a time in common */
-  PetscInt  substeps;                     /* of one part */
-  PetscInt  substep;                      /* the one that is being made, 0 to substeps - 1 */
+  PetscReal stable_step;                  /* of the undeformed body; 0 until BodyComputeStableStep() */
+  /* of a nonlinear explicit body, see deformedstep.c: stable step as it is deformed, 0: not known; where and when it was found last */
+  PetscReal stable_now, stable_found, thinness;
+  PetscInt  shared;   /* parts of the controller step, at whose ends all bodies have a time in common */
+  PetscInt  substeps; /* of one part */
+  PetscInt  substep;  /* the one that is being made, 0 to substeps - 1 */
 } BodyTime;
 
 /* What a step starts from and ends with. A member that is NULL in one of two states is left out where one is copied to the other. */
@@ -286,6 +288,9 @@ PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
 PETSC_INTERN PetscErrorCode BodyFindOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
+PETSC_INTERN PetscErrorCode BodyComputeStableStepAt(Body, const PetscScalar[], PetscReal *);
+PETSC_INTERN PetscErrorCode BodyUpdateStableStep(Body);
+PETSC_INTERN PetscErrorCode BodyCheckStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
