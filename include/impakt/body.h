@@ -48,6 +48,7 @@ typedef struct {
   PetscReal potential;           /* J */
   PetscReal external_work;       /* done since the start by forces from outside and by held displacements, J */
   PetscReal damping_work;        /* taken since the start by Rayleigh damping, J */
+  PetscReal plastic_work;        /* taken since the start by plastic flow, with what hardening stores of it, J */
   PetscReal momentum[3];         /* kg m/s */
   PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
   PetscReal mean_velocity[3];    /* mass-averaged, m/s */
@@ -159,5 +160,7 @@ PETSC_EXTERN PetscErrorCode BodyGetReactions(Body, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyComputePlasticStrain(Body, PetscReal[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyHasHistory(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDouble *);

@@ -17,7 +17,10 @@ typedef struct _p_Material *Material;
    Values:
 + `MATERIAL_LINEAR_ELASTIC`          - isotropic linear elasticity
 . `MATERIAL_SAINT_VENANT_KIRCHHOFF` - stress proportional to the Green-Lagrange strain
-- `MATERIAL_NEO_HOOKEAN`            - compressible neo-Hookean hyperelasticity
+. `MATERIAL_NEO_HOOKEAN`            - compressible neo-Hookean hyperelasticity
+. `MATERIAL_J2`                     - metal plasticity at finite strain: von Mises' yield condition, Hencky's elasticity
+. `MATERIAL_J2_SMALL`               - the same for small strains and rotations
+- `MATERIAL_JOHNSON_COOK`           - metal plasticity at finite strain, whose strength depends on rate and temperature
 
    Level: beginner
 
@@ -27,6 +30,9 @@ typedef const char *MaterialType;
 #define MATERIAL_LINEAR_ELASTIC         "linear_elastic"
 #define MATERIAL_SAINT_VENANT_KIRCHHOFF "saint_venant_kirchhoff"
 #define MATERIAL_NEO_HOOKEAN            "neo_hookean"
+#define MATERIAL_J2                     "j2"
+#define MATERIAL_J2_SMALL               "j2_small"
+#define MATERIAL_JOHNSON_COOK           "johnson_cook"
 
 /*S
    MaterialKernels - what the element loops call: plain functions of batches of 8 points, for speed without error codes
@@ -37,6 +43,10 @@ typedef const char *MaterialType;
    Tensors are laid out component first: H[3 i + k][p] is du_i/dX_k of point p. In plane strain the third row and column are zero.
    In plane stress (`MaterialSetPlaneStress()`) what is given for H[8], and for H[2], H[5], H[6], H[7], is not read, and the stress
    across the plane is zero.
+
+   A material with history has `n_history` numbers for each point, all zero to begin with: history[c][p] is number c of point p. Its
+functions advance() and advancetangent() are the response to a step from the history at the start of the step; hold() is that of a history
+as it is. stress(), energy() and tangent() are those of the virgin material as if nothing irreversible happened.
 
    Every function returns NaN for a point at which the material is not defined: for nonlinear models an inverted one, det(I + H) <= 0, and
    in plane stress one at which no stretch across the plane leaves it free of stress. Linear elasticity is defined everywhere.
@@ -51,6 +61,17 @@ typedef struct {
   void (*energy)(const void *data, const PetscReal H[9][8], PetscReal W[8]);
   /* dP/dH at one point: tangent[9 (3 i + j) + 3 k + l] = dP_ij / dH_kl [Pa] */
   void (*tangent)(const void *data, const PetscReal H[9], PetscReal tangent[81]);
+  /* of materials with history */
+  PetscInt n_history;                    /* numbers for each point; 0: none */
+  PetscInt plastic_strain, plastic_work; /* which of them are the equivalent plastic strain, and plastic work [J/m^3] */
+  /* stress at the end of a step of dt [s] to H, from the history at its start; `end`, unless NULL, becomes the history at its end. A
+     negative dt: nothing flows. */
+  void (*advance)(const void *data, PetscReal dt, const PetscReal H[9][8], const PetscReal start[][8], PetscReal end[][8],
+                  PetscReal P[9][8]);
+  /* stress and stored energy for a history as it is */
+  void (*hold)(const void *data, const PetscReal H[9][8], const PetscReal now[][8], PetscReal W[8], PetscReal P[9][8]);
+  /* derivative of advance()'s stress at one point */
+  void (*advancetangent)(const void *data, PetscReal dt, const PetscReal H[9], const PetscReal start[], PetscReal tangent[81]);
 } MaterialKernels;
 
 PETSC_EXTERN PetscClassId MATERIAL_CLASSID;
@@ -70,6 +91,13 @@ PETSC_EXTERN PetscErrorCode MaterialSetYoungsModulus(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialGetYoungsModulus(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetPoissonsRatio(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialGetPoissonsRatio(Material, PetscReal *);
+PETSC_EXTERN PetscErrorCode MaterialSetYieldStress(Material, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialSetHardeningModulus(Material, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialSetKinematicModulus(Material, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialSetVoceHardening(Material, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialSetHardeningTable(Material, PetscInt, const PetscReal[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode MaterialSetJohnsonCook(Material, PetscReal, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialSetJohnsonCookHeat(Material, PetscReal, PetscReal, PetscReal, PetscReal, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialSetFromOptions(Material);
 PETSC_EXTERN PetscErrorCode MaterialSetUp(Material);
 PETSC_EXTERN PetscErrorCode MaterialView(Material, PetscViewer);

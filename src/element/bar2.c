@@ -1,5 +1,6 @@
 /* Two-node bar along a line: linear displacement, uniaxial stress. */
 #include <impakt/private/elementimpl.h>
+#include <impakt/private/materialimpl.h>
 #include <impakt/private/simd.h>
 
 typedef struct {
@@ -34,7 +35,10 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
 
   PetscFunctionBegin;
   bar->coordinates = coordinates;
-  element->flops   = 6; /* strain 2, stress 1 where it is linear, force 3 */
+  PetscCheck(element->material->ops->uniaxial, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "Bars take no material of type %s, which has no uniaxial form: mesh the bar with solid elements, quad4 or hex8",
+             ((PetscObject)element->material)->type_name);
+  element->flops = 6; /* strain 2, stress 1 where it is linear, force 3 */
   PetscCall(MaterialIsLinear(element->material, &bar->linear));
   PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain,
                          element->count, &bar->stress));

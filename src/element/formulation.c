@@ -65,7 +65,8 @@ PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char f
   `ELEMENT_FULL` integrates the energy of the displacements as they are; all shapes have it, and it is their default.
 
   `ELEMENT_MEAN_DILATATION` gives all points of an element the mean change of its volume, so that nearly incompressible materials do not
-  lock. Quadrilaterals, not in plane stress, and hexahedra have it. It is their default where Poisson's ratio is larger than 0.4.
+  lock. Quadrilaterals, not in plane stress, and hexahedra have it. It is their default where Poisson's ratio is larger than 0.4
+  and where the material flows.
 
   `ELEMENT_ENHANCED` adds modes that bend to the displacements of each element, and eliminates them there. Quadrilaterals and hexahedra
   have it.
@@ -139,18 +140,32 @@ static PetscErrorCode GetPoissonsRatio(Element element, PetscReal *ratio)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the material has a history, as that of metals that flow */
+static PetscErrorCode HasHistory(Element element, PetscBool *has)
+{
+  MaterialKernels kernels;
+
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  PetscCall(MaterialGetKernels(element->material, &kernels));
+  *has = (PetscBool)(kernels.n_history > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The formulation that nobody has chosen */
 static PetscErrorCode ChooseFormulation(Element element)
 {
   PetscErrorCode (*create)(Element);
   PetscReal ratio;
+  PetscBool flows;
   char      key[128];
 
   PetscFunctionBegin;
   PetscCall(GetPoissonsRatio(element, &ratio));
+  PetscCall(HasHistory(element, &flows));
   PetscCall(GetKey(element->cell_type, ELEMENT_MEAN_DILATATION, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
-  PetscCall(PetscStrallocpy(create && ratio > LOCKING_RATIO && !element->plane_stress ? ELEMENT_MEAN_DILATATION : ELEMENT_FULL,
+  PetscCall(PetscStrallocpy(create && (ratio > LOCKING_RATIO || flows) && !element->plane_stress ? ELEMENT_MEAN_DILATATION : ELEMENT_FULL,
                             &element->formulation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,7 +174,7 @@ static PetscErrorCode ChooseFormulation(Element element)
 PetscErrorCode ElementApplyFormulation(Element element)
 {
   PetscErrorCode (*create)(Element);
-  PetscBool full;
+  PetscBool full, mean, flows;
   char      key[128];
 
   PetscFunctionBegin;
@@ -176,6 +191,11 @@ PetscErrorCode ElementApplyFormulation(Element element)
             "-%selement_formulation %s: elements of shape '%s' do not have it; they have %s", Prefix(element), element->formulation,
             DMPolytopeTypes[element->cell_type], names);
   }
+  PetscCall(PetscStrcmp(element->formulation, ELEMENT_MEAN_DILATATION, &mean));
+  PetscCall(HasHistory(element, &flows));
+  PetscCheck(mean || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
+             "-%selement_formulation %s: it keeps no history of plastic flow; use mean_dilatation or full", Prefix(element),
+             element->formulation);
   PetscCall((*create)(element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -67,7 +67,7 @@ static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool finite,
 
 /* What has to do with the mean: theta, and its derivative by each degree of freedom; then F' and the stress of each point. Returns theta.
  */
-static PetscReal FillMean(Element element, PetscBool finite, PetscInt n_points, Point points[], PetscReal dtheta[])
+static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscInt n_points, Point points[], PetscReal dtheta[])
 {
   const Solid   *solid  = (const Solid *)element->data;
   const PetscInt n      = element->nodes * element->dim;
@@ -83,7 +83,6 @@ static PetscReal FillMean(Element element, PetscBool finite, PetscInt n_points, 
   for (PetscInt i = 0; i < n; i++) dtheta[i] /= volume;
   for (PetscInt g = 0; g < n_points; g++) {
     Point    *point = &points[g];
-    SimdReal  H[9], P[9];
     PetscReal F[9];
 
     point->ratio = finite ? PetscPowReal(theta / point->J, 1. / 3) : 1; /* NaN where the point is inverted */
@@ -94,13 +93,8 @@ static PetscReal FillMean(Element element, PetscBool finite, PetscInt n_points, 
 
       for (PetscInt i = 0; i < 9; i += 4) point->H[i] += change;
     }
-    for (PetscInt i = 0; i < 9; i++)
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[i][p] = point->H[i];
-    (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
-    for (PetscInt i = 0; i < 9; i++) {
-      point->P[i] = P[i][0];
-      F[i]        = (i % 4 ? 0 : 1) + point->H[i];
-    }
+    SolidPointStress(solid, e, g, point->H, point->P);
+    for (PetscInt i = 0; i < 9; i++) F[i] = (i % 4 ? 0 : 1) + point->H[i];
     point->third = Contract(point->P, F) / 3;
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal *gradient = point->gradient + i / element->dim * element->dim;
@@ -164,7 +158,7 @@ static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool visc
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(K, n * n));
   for (PetscInt g = 0; g < n_points; g++) FillPoint(element, e, g, finite, u, &points[g]);
-  theta = FillMean(element, finite, n_points, points, dtheta);
+  theta = FillMean(element, e, finite, n_points, points, dtheta);
   for (PetscInt g = 0; g < n_points; g++) {
     volume += points[g].weight;
     pressure += points[g].weight * points[g].third / theta;
@@ -172,7 +166,7 @@ static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool visc
   for (PetscInt g = 0; g < n_points; g++) {
     PetscReal tangent[81];
 
-    (*solid->kernels.tangent)(solid->kernels.data, points[g].H, tangent);
+    SolidTangent(solid, e, g, points[g].H, tangent);
     if (viscous) SolidTurnTangent(points[g].H, tangent);
     AddMaterialPart(element, &points[g], tangent, K);
     if (finite && !viscous) AddGeometricPart(element, &points[g], theta, pressure / volume, dtheta, K);

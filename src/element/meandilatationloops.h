@@ -242,7 +242,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
       /* gradients two points ahead, and F' one, as what is written in parts and read in whole right after would go through the cache */
       if (g + 2 < POINTS) GetGradients(X, U, points[g + 2], &at[(g + 2) % 3]);
       if (g + 1 < POINTS) DilateAny(linear, &means, at[(g + 1) % 3].H, &dilated[(g + 1) % 2]);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])now->H, P);
+      SolidStress(solid, first, g, (const SimdReal *)now->H, P);
       if (linear) UndilateLinear(now->determinant, P, pressure);
       else Undilate((const PetscReal(*)[SIMD_WIDTH])now->H, &dilated[g % 2], now->determinant, P, pressure);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, now->cofactor[part], points[g], F[part]);
@@ -347,11 +347,11 @@ SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt c
     GetGradients(X, U, points[g], &at);
     DilateAny(solid->linear, &means, at.H, &dilated);
     if (energy) {
-      (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, W);
+      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) stored[p] += at.determinant[p] * W[p];
       continue;
     }
-    (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, P);
+    SolidStress(solid, first, g, (const SimdReal *)at.H, P);
     for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
       PetscReal sigma[6];
 
@@ -386,4 +386,6 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) (void)ObserveBatch(solid, first, count, connectivity, u, NULL, stress);
 }
 
+#include <impakt/private/solidplastic.h>
+#define SOLID_HAS_HISTORY
 #include <impakt/private/solidops.h>

@@ -155,6 +155,11 @@ static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordi
   PetscCall(MaterialGetKernels(element->material, &solid->unconstrained));
   PetscCall(MaterialSetPlaneStress(element->material, solid->plane_stress));
   PetscCall(MaterialGetKernels(element->material, &solid->kernels));
+  element->history.n      = solid->kernels.n_history;
+  element->history.points = solid->shape->n_points;
+  PetscCheck(solid->kernels.n_history <= SOLID_MAX_HISTORY, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "The material has %" PetscInt_FMT " numbers of history for each point; at most %d", solid->kernels.n_history,
+             SOLID_MAX_HISTORY);
   element->flops = CountFlops(solid->shape, solid->linear);
   PetscCall(CheckElements(element));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -178,6 +183,45 @@ void SolidTurnTangent(const PetscReal H[9], PetscReal tangent[81])
       }
 }
 
+/* The history of point g of element e at the start of the step */
+static void GetHistory(const ElementHistory *history, PetscInt e, PetscInt g, PetscReal start[])
+{
+  for (PetscInt c = 0; c < history->n; c++)
+    start[c] = history->start[SolidHistoryOffset(history, e, g) + (size_t)(c * SIMD_WIDTH + e % SIMD_WIDTH)];
+}
+
+/* The derivative of the stress at point g of element e, at displacement gradient H */
+void SolidTangent(const Solid *solid, PetscInt e, PetscInt g, const PetscReal H[9], PetscReal tangent[81])
+{
+  PetscReal start[SOLID_MAX_HISTORY];
+
+  if (!solid->history->start) {
+    (*solid->kernels.tangent)(solid->kernels.data, H, tangent);
+    return;
+  }
+  GetHistory(solid->history, e, g, start);
+  (*solid->kernels.advancetangent)(solid->kernels.data, solid->history->step, H, start, tangent);
+}
+
+/* The stress there */
+void SolidPointStress(const Solid *solid, PetscInt e, PetscInt g, const PetscReal H[9], PetscReal P[9])
+{
+  SimdReal all_H[9], all_P[9], all_start[SOLID_MAX_HISTORY];
+
+  for (PetscInt i = 0; i < 9; i++)
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) all_H[i][p] = H[i];
+  if (solid->history->start) {
+    PetscReal start[SOLID_MAX_HISTORY];
+
+    GetHistory(solid->history, e, g, start);
+    for (PetscInt c = 0; c < solid->history->n; c++)
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) all_start[c][p] = start[c];
+    (*solid->kernels.advance)(solid->kernels.data, solid->history->step, (const PetscReal(*)[SIMD_WIDTH])all_H,
+                              (const PetscReal(*)[SIMD_WIDTH])all_start, NULL, all_P);
+  } else (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])all_H, all_P);
+  for (PetscInt i = 0; i < 9; i++) P[i] = all_P[i][0];
+}
+
 /* K_(a i)(b k) = sum over the points of w dN_a/dX_j (dP_ij/dH_kl) dN_b/dX_l; `viscous`: of the stress F C : dE/dt, by the velocity */
 static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
@@ -196,7 +240,7 @@ static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool vi
     for (PetscInt a = 0; a < element->nodes; a++)
       for (PetscInt i = 0; i < dim; i++)
         for (PetscInt j = 0; j < dim; j++) H[3 * i + j] += u[dim * nodes[a] + i] * gradient[dim * a + j];
-    (*solid->kernels.tangent)(solid->kernels.data, H, tangent);
+    SolidTangent(solid, e, g, H, tangent);
     if (viscous) SolidTurnTangent(H, tangent);
     for (PetscInt b = 0; b < element->nodes; b++)
       for (PetscInt k = 0; k < dim; k++) {
@@ -378,6 +422,7 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   solid->shape = shape;
   for (PetscInt g = 0; g < shape->n_load_points; g++)
     (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, gradient);
+  solid->history               = &element->history;
   element->data                = solid;
   element->dim                 = shape->dim;
   element->nodes               = shape->nodes;

@@ -46,7 +46,7 @@ static PetscErrorCode SetInterval(Fields fields, PetscInt steps, PetscInt interv
 /* Ends with an error if the frames of the whole run would not fit on the disk */
 static PetscErrorCode CheckSpace(Fields fields)
 {
-  const double needed = (double)FieldsFileGetSize(&fields->mesh, fields->n_fields, fields->n_frames, fields->precision);
+  const double needed = (double)FieldsFileGetSize(&fields->mesh, fields->set, fields->n_frames, fields->precision);
   double       space  = 0;
 
   PetscFunctionBegin;
@@ -65,11 +65,12 @@ static PetscErrorCode CreateBuffers(Fields fields)
   size_t            length = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < fields->n_fields; i++)
+  for (PetscInt i = 0; i < FIELDS_PER_FRAME; i++)
     length = PetscMax(length,
                       (size_t)fields_of_a_frame[i].components * (size_t)(fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).local);
   PetscCall(PetscMalloc(PetscMax(1, length * (fields->precision == OUTPUT_DOUBLE ? sizeof(double) : sizeof(float))), &fields->buffer));
   PetscCall(PetscMalloc1((size_t)mesh->cells.local * 6, &fields->stress));
+  if (FieldsSetHas(fields->set, FIELDS_PLASTIC_STRAIN)) PetscCall(PetscMalloc1((size_t)mesh->cells.local, &fields->plastic));
   if (fields->contact) PetscCall(PetscMalloc1((size_t)mesh->nodes.local * CONTACT_FIELDS_SIZE, &fields->nodal));
   PetscCall(PetscMalloc1(fields->n_frames, &fields->times));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -95,6 +96,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   Contact     contact;
   PetscInt    steps, n_bodies, n_pairs;
   PetscMPIInt rank;
+  PetscBool   plastic = PETSC_FALSE;
   Fields      f;
 
   PetscFunctionBegin;
@@ -119,7 +121,9 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscCall(FieldsMeshCreate(n_bodies, bodies, &f->mesh));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  f->n_fields = n_pairs ? FIELDS_PER_FRAME : FIELDS_WITHOUT_CONTACT;
+  f->set = (1u << (n_pairs ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_CONTACT)) - 1;
+  for (PetscInt i = 0; i < n_bodies && !plastic; i++) PetscCall(BodyHasHistory(bodies[i], &plastic));
+  if (!plastic) f->set &= ~(1u << FIELDS_PLASTIC_STRAIN);
   PetscCall(CheckSpace(f));
   if (n_pairs) PetscCall(ContactFieldsCreate(contact, &f->contact));
   PetscCall(CreateBuffers(f));
@@ -158,7 +162,7 @@ static PetscErrorCode List(Fields fields, PetscBool always)
   PetscCall(PetscTime(&begin));
   if (!fields->first_rank || fields->listed == fields->written) PetscFunctionReturn(PETSC_SUCCESS);
   if (!always && begin - fields->list_ended < XDMF_SHARE * fields->list_seconds) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(XdmfWrite(fields->path, &fields->mesh, fields->n_fields, fields->precision, fields->written, fields->times));
+  PetscCall(XdmfWrite(fields->path, &fields->mesh, fields->set, fields->precision, fields->written, fields->times));
   PetscCall(PetscTime(&fields->list_ended));
   fields->list_seconds = fields->list_ended - begin;
   fields->listed       = fields->written;
@@ -343,6 +347,7 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscCall(PetscFree(f->times));
   PetscCall(PetscFree(f->stress));
   PetscCall(PetscFree(f->nodal));
+  PetscCall(PetscFree(f->plastic));
   PetscCall(PetscFree(f->buffer));
   PetscCall(PetscFree(*fields));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -13,6 +13,7 @@ const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
     /* all nine components: with six, ParaView's readers differ in their order */
     {"stress", "Pa", 9, "Tensor", PETSC_TRUE},
     {"von_mises", "Pa", 1, "Scalar", PETSC_TRUE},
+    {"plastic_strain", "1", 1, "Scalar", PETSC_TRUE},
     {"contact_force", "N", 3, "Vector", PETSC_FALSE},
     {"contact_pressure", "Pa", 1, "Scalar", PETSC_FALSE},
     {"contact_gap", "m", 1, "Scalar", PETSC_FALSE},
@@ -28,16 +29,17 @@ const char *const OutputPrecisions[] = {"single", "double", "OutputPrecision", "
 
   Input Parameters:
 + mesh      - the mesh
-. n_fields  - number of fields in each frame, the first ones of `FieldsKind`
+. set       - the fields of each frame
 . n_frames  - number of frames
 - precision - of their numbers
 */
-PetscInt64 FieldsFileGetSize(const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, OutputPrecision precision)
+PetscInt64 FieldsFileGetSize(const FieldsMesh *mesh, FieldsSet set, PetscInt n_frames, OutputPrecision precision)
 {
   hsize_t numbers = 0;
 
-  for (PetscInt i = 0; i < n_fields; i++)
-    numbers += (hsize_t)fields_of_a_frame[i].components * (fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).total;
+  for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++)
+    numbers += (hsize_t)FieldsSetHas(set, i) * (hsize_t)fields_of_a_frame[i].components *
+               (fields_of_a_frame[i].on_cells ? mesh->cells : mesh->nodes).total;
   return (PetscInt64)(numbers * (hsize_t)n_frames * (precision == OUTPUT_DOUBLE ? sizeof(double) : sizeof(float)) +
                       mesh->nodes.total * 3 * sizeof(double) +
                       (mesh->topology.total * (hsize_t)mesh->cell_nodes + 2 * mesh->cells.total) * sizeof(int));
@@ -167,12 +169,12 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char 
   Input Parameters:
 + path      - where, replacing what is there
 . mesh      - the mesh
-. n_fields  - number of fields in each frame, the first ones of `FieldsKind`
+. set       - the fields of each frame
 . n_frames  - number of frames
 . precision - of their numbers
 - options   - all options of the run, as `PetscOptionsGetAll()` gives them: they become attributes of the root, beside `version`
 */
-PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, PetscInt n_fields, PetscInt n_frames, OutputPrecision precision,
+PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, FieldsSet set, PetscInt n_frames, OutputPrecision precision,
                                 const char options[])
 {
   const hid_t type = precision == OUTPUT_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
@@ -185,9 +187,10 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Petsc
   PetscCall(HDF5WriteRun(file, options, path));
   PetscCall(CreateMesh(file, mesh, path));
   PetscCall(CreateTimes(file, n_frames, path));
-  for (FieldsKind i = 0; i < (FieldsKind)n_fields; i++) {
+  for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++) {
     const FieldsField *field = &fields_of_a_frame[i];
 
+    if (!FieldsSetHas(set, i)) continue;
     PetscCall(CreateGroup(file, field->name, path));
     for (PetscInt k = 0; k < n_frames; k++) {
       PetscCall(FieldsFileGetDataset(i, k, sizeof(name), name));

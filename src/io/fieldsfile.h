@@ -5,10 +5,13 @@
 
 /* The names of frames have four digits, and all datasets of a run are made before its first frame */
 #define FIELDS_MAX_FRAMES 10000
-#define FIELDS_PER_FRAME  8
+#define FIELDS_PER_FRAME  9
 
-/* If no bodies can touch, the fields from this one on are left out */
-#define FIELDS_WITHOUT_CONTACT FIELDS_CONTACT_FORCE
+/* The fields of contact begin with this one, and are the last */
+#define FIELDS_FIRST_OF_CONTACT FIELDS_CONTACT_FORCE
+
+/* Which fields a frame has: bit k is set for number k of `FieldsKind` */
+typedef unsigned FieldsSet;
 
 /* What is written of each frame */
 typedef enum {
@@ -16,6 +19,7 @@ typedef enum {
   FIELDS_VELOCITY,
   FIELDS_STRESS,
   FIELDS_VON_MISES,
+  FIELDS_PLASTIC_STRAIN, /* where some body's material flows */
   FIELDS_CONTACT_FORCE,
   FIELDS_CONTACT_PRESSURE,
   FIELDS_CONTACT_GAP,
@@ -31,8 +35,13 @@ typedef struct {
 
 PETSC_INTERN const FieldsField fields_of_a_frame[FIELDS_PER_FRAME];
 
-PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, PetscInt, PetscInt, OutputPrecision);
-PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, PetscInt, PetscInt, OutputPrecision, const char[]);
+static inline PetscBool FieldsSetHas(FieldsSet set, FieldsKind kind)
+{
+  return (PetscBool)(set >> kind & 1);
+}
+
+PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, FieldsSet, PetscInt, OutputPrecision);
+PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, FieldsSet, PetscInt, OutputPrecision, const char[]);
 PETSC_INTERN PetscErrorCode FieldsFileCut(const char[], PetscInt, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode FieldsFileOpen(MPI_Comm, const char[], hid_t *);
 PETSC_INTERN PetscErrorCode FieldsFileWrite(MPI_Comm, hid_t, const char[], const FieldsRows *, PetscInt, hid_t, const void *);

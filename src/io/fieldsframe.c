@@ -16,7 +16,7 @@ PetscErrorCode FieldsWriteMesh(Fields fields)
   if (fields->first_rank) {
     PetscCall(PetscOptionsGetAll(NULL, &options));
     error = OutputFileMakeParents(fields->part); /* which may be gone since they were checked */
-    if (!error) error = FieldsFileCreate(fields->part, mesh, fields->n_fields, fields->n_frames, fields->precision, options);
+    if (!error) error = FieldsFileCreate(fields->part, mesh, fields->set, fields->n_frames, fields->precision, options);
     PetscCall(PetscFree(options));
   }
   PetscCall(FieldsShareError(fields, error));
@@ -108,6 +108,23 @@ static PetscErrorCode WriteStress(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode WritePlasticStrain(Fields fields)
+{
+  const FieldsMesh *mesh  = &fields->mesh;
+  size_t            first = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    PetscReal work;
+
+    PetscCall(BodyComputePlasticStrain(mesh->bodies[b], fields->plastic + first, &work));
+    first += (size_t)mesh->cells.count[b];
+  }
+  for (size_t i = 0; i < first; i++) Store(fields, i, fields->plastic[i]);
+  PetscCall(WriteField(fields, FIELDS_PLASTIC_STRAIN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode WriteContact(Fields fields)
 {
   static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE]    = CONTACT_FIELDS_FORCE,
@@ -122,7 +139,7 @@ static PetscErrorCode WriteContact(Fields fields)
     PetscCall(ContactFieldsCompute(fields->contact, b, fields->nodal + CONTACT_FIELDS_SIZE * first));
     first += (size_t)mesh->nodes.count[b];
   }
-  for (FieldsKind kind = FIELDS_WITHOUT_CONTACT; kind < FIELDS_PER_FRAME; kind++) {
+  for (FieldsKind kind = FIELDS_FIRST_OF_CONTACT; kind < FIELDS_PER_FRAME; kind++) {
     const size_t n = (size_t)fields_of_a_frame[kind].components;
 
     for (size_t i = 0; i < first; i++)
@@ -150,6 +167,7 @@ PetscErrorCode FieldsWriteFrame(Fields fields, PetscReal time)
   PetscCall(WriteNodes(fields, FIELDS_DISPLACEMENT));
   PetscCall(WriteNodes(fields, FIELDS_VELOCITY));
   PetscCall(WriteStress(fields));
+  if (fields->plastic) PetscCall(WritePlasticStrain(fields));
   if (fields->contact) PetscCall(WriteContact(fields));
   PetscCall(WriteTime(fields, time));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -10,11 +10,12 @@ struct _n_Fields {
   OutputPrecision precision;
   PetscInt        interval, n_frames; /* controller steps from frame to frame; frames of the whole run */
   FieldsMesh      mesh;
-  PetscInt        n_fields;                 /* fields of each frame */
+  FieldsSet       set;                      /* fields of each frame */
   ContactFields   contact;                  /* NULL if no bodies can touch */
   PetscInt        written;                  /* frames in the file */
   PetscReal      *times;                    /* their times [s] */
   PetscReal      *stress;                   /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
+  PetscReal      *plastic;                  /* equivalent plastic strain of each cell of this rank; NULL where nothing flows */
   PetscReal      *nodal;                    /* of each node of this rank, what ContactFieldsCompute() gives */
   void           *buffer;                   /* one field of a frame, in the file's precision */
   hid_t           file;                     /* -1 until it is begun */

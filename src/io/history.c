@@ -25,6 +25,7 @@ struct _n_History {
   PetscInt       n_bodies, *dims; /* space dimension of each body */
   PetscBool     *damped;          /* per body: it has Rayleigh damping */
   PetscBool      friction;        /* contact has friction */
+  PetscBool     *plastic;         /* per body: its material flows */
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
@@ -67,10 +68,10 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ControllerGetProbes(controller, &n_probes, &probes));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(PetscMalloc2(history->n_bodies, &history->dims, history->n_bodies, &history->damped));
+  PetscCall(PetscMalloc3(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->plastic));
   PetscCall(ContactGetLaw(contact, &law));
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
-  PetscCall(PetscCalloc1(2 + 9 * n_pairs + 9 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscCalloc1(2 + 9 * n_pairs + 10 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -103,6 +104,8 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(BodyGetDamping(bodies[i], &mass, &stiffness));
     history->damped[i] = (PetscBool)(mass > 0 || stiffness > 0);
     if (history->damped[i]) PetscCall(AddSeries(history, "/body/", name, "damping_work", "J", 1, PETSC_FALSE));
+    PetscCall(BodyHasHistory(bodies[i], &history->plastic[i]));
+    if (history->plastic[i]) PetscCall(AddSeries(history, "/body/", name, "plastic_work", "J", 1, PETSC_FALSE));
   }
   for (PetscInt i = 0; i < n_supports; i++) {
     const ControllerSupport *support = &supports[i];
@@ -255,6 +258,7 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
     for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
     for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
     if (history->damped[i]) *next++ = frame->bodies[i].damping_work;
+    if (history->plastic[i]) *next++ = frame->bodies[i].plastic_work;
   }
   for (PetscInt i = 0; i < frame->n_supports; i++) {
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
@@ -382,7 +386,7 @@ PetscErrorCode HistoryDestroy(History *history)
   if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(*history)->failed) PetscCall(HistoryFlush(*history));
   PetscCall(PetscFree((*history)->options));
-  PetscCall(PetscFree2((*history)->dims, (*history)->damped));
+  PetscCall(PetscFree3((*history)->dims, (*history)->damped, (*history)->plastic));
   PetscCall(PetscFree((*history)->series));
   PetscCall(PetscFree((*history)->records));
   PetscCall(OutputFileRelease(&(*history)->held));

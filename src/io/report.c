@@ -116,6 +116,7 @@ static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults 
       PetscCall(PrintValue(viewer, "    rotation, far for linear", body->rotation_max, "rad", NAN));
     if (body->external_work != 0) PetscCall(PrintValue(viewer, "    work of its loads", body->external_work, "J", NAN));
     if (body->damping_work != 0) PetscCall(PrintValue(viewer, "    taken by its damping", body->damping_work, "J", NAN));
+    if (body->plastic_work != 0) PetscCall(PrintValue(viewer, "    taken by plastic flow", body->plastic_work, "J", NAN));
   }
   PetscCall(PrintPercent(viewer, "system energy error, worst", worst));
   PetscCall(PrintPercent(viewer, "system energy error, final", results->energy_error_final));

@@ -62,6 +62,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
     PetscReal arm = 0;
 
     s->results.bodies[i].displacement_error = NAN;
+    PetscCall(BodyHasHistory(bodies[i], &s->results.bodies[i].plastic));
     PetscCall(GetArm(bodies[i], &arm));
     s->arm = PetscMax(s->arm, arm);
   }
@@ -125,6 +126,7 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
     body->potential      = measures->potential;
     body->external_work  = measures->external_work;
     body->damping_work   = measures->damping_work;
+    body->plastic_work   = measures->plastic_work;
     body->peak_potential = PetscMax(body->peak_potential, measures->potential);
     NoteChange(s->body_change + 2 * i, energy - start);
     body->energy_error_min = Relative(s->body_change[2 * i], Scale(start, scale));

@@ -90,7 +90,7 @@ static void BeginAttribute(FILE *out, const char name[], const char type[], Pets
   fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", name, type, on_cells ? "Cell" : "Node");
 }
 
-static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_fields, OutputPrecision precision, PetscInt frame,
+static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, FieldsSet set, OutputPrecision precision, PetscInt frame,
                                  PetscReal time, const char file[])
 {
   static const char *const fixed[] = {"body", "rank"};
@@ -99,9 +99,10 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
   PetscFunctionBegin;
   fprintf(out, "      <Grid Name=\"bodies\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n", (double)time);
   WriteMesh(out, mesh, file);
-  for (FieldsKind i = 0; i < (FieldsKind)n_fields; i++) {
+  for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++) {
     const FieldsField *field = &fields_of_a_frame[i];
 
+    if (!FieldsSetHas(set, i)) continue;
     PetscCall(FieldsFileGetDataset(i, frame, sizeof(dataset), dataset));
     BeginAttribute(out, field->name, field->attribute_type, field->on_cells);
     WriteItem(out, "Float", precision == OUTPUT_DOUBLE ? sizeof(double) : sizeof(float),
@@ -122,7 +123,8 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, PetscInt n_f
 typedef struct {
   const char       *file; /* name of the HDF5 file */
   const FieldsMesh *mesh;
-  PetscInt          n_fields, n_frames;
+  FieldsSet         set;
+  PetscInt          n_frames;
   OutputPrecision   precision;
   const PetscReal  *times;
 } List;
@@ -140,7 +142,7 @@ static PetscErrorCode WriteList(const char part[], void *ctx)
   fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" "
                "CollectionType=\"Temporal\">\n");
   for (PetscInt k = 0; k < list->n_frames; k++)
-    PetscCall(WriteFrame(out, list->mesh, list->n_fields, list->precision, k, list->times[k], list->file));
+    PetscCall(WriteFrame(out, list->mesh, list->set, list->precision, k, list->times[k], list->file));
   fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
   failed = ferror(out);
   failed = fclose(out) || failed;
@@ -156,15 +158,15 @@ static PetscErrorCode WriteList(const char part[], void *ctx)
   Input Parameters:
 + fields    - path of the HDF5 file
 . mesh      - the mesh
-. n_fields  - number of fields in each frame, the first ones of `FieldsKind`
+. set       - the fields of each frame
 . precision - of the numbers in the frames
 . n_frames  - how many frames to list
 - times     - their times [s]
 */
-PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, PetscInt n_fields, OutputPrecision precision, PetscInt n_frames,
+PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsSet set, OutputPrecision precision, PetscInt n_frames,
                          const PetscReal times[])
 {
-  List list = {FileName(fields), mesh, n_fields, n_frames, precision, times};
+  List list = {FileName(fields), mesh, set, n_frames, precision, times};
   char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;

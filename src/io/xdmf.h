@@ -4,4 +4,4 @@
 
 PETSC_INTERN PetscErrorCode XdmfGetPath(const char[], size_t, char[]);
 PETSC_INTERN PetscErrorCode XdmfCheckPath(MPI_Comm, const char[]);
-PETSC_INTERN PetscErrorCode XdmfWrite(const char[], const FieldsMesh *, PetscInt, OutputPrecision, PetscInt, const PetscReal[]);
+PETSC_INTERN PetscErrorCode XdmfWrite(const char[], const FieldsMesh *, FieldsSet, OutputPrecision, PetscInt, const PetscReal[]);

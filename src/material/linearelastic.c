@@ -81,8 +81,9 @@ static void PlaneTangent(const void *data, const PetscReal H[9], PetscReal tange
 static PetscErrorCode MaterialKernels_LinearElastic(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
-  if (plane_stress) *kernels = (MaterialKernels){material->data, PlaneStress, PlaneEnergy, PlaneTangent};
-  else *kernels = (MaterialKernels){material->data, Stress, Energy, Tangent};
+  if (plane_stress)
+    *kernels = (MaterialKernels){.data = material->data, .stress = PlaneStress, .energy = PlaneEnergy, .tangent = PlaneTangent};
+  else *kernels = (MaterialKernels){.data = material->data, .stress = Stress, .energy = Energy, .tangent = Tangent};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

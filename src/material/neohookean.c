@@ -98,7 +98,7 @@ SIMD_CLONES static void Thickness(const void *data, const PetscReal H[9][8], Pet
 static PetscErrorCode MaterialKernels_NeoHookean(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
-  *kernels = (MaterialKernels){material->data, Stress, Energy, Tangent};
+  *kernels = (MaterialKernels){.data = material->data, .stress = Stress, .energy = Energy, .tangent = Tangent};
   if (plane_stress) PetscCall(MaterialCondenseKernels(material, Thickness, kernels));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

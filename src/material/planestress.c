@@ -90,6 +90,6 @@ PetscErrorCode MaterialCondenseKernels(Material         material, void (*thickne
 {
   PetscFunctionBegin;
   material->plane = (PlaneStressData){*kernels, thickness};
-  *kernels        = (MaterialKernels){&material->plane, Stress, Energy, Tangent};
+  *kernels        = (MaterialKernels){.data = &material->plane, .stress = Stress, .energy = Energy, .tangent = Tangent};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -221,10 +221,10 @@ static PetscErrorCode AddBack(MeshFile *file, const Ball *ball, PetscInt sphere)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillBall(void *ctx)
+/* MeshFillBall - nodes, cells and surfaces of a disc or ball */
+PetscErrorCode MeshFillBall(BallGrid *grid)
 {
   static const char *const cut_names[] = {"cut_x", "cut_y"};
-  BallGrid                *grid        = (BallGrid *)ctx;
   const Ball              *ball        = grid->ball;
   const PetscInt           all[3] = {0, 1, 2}, begin[3] = {0};
   const DMPolytopeType     shapes[2][2] = {{DM_POLYTOPE_QUADRILATERAL, DM_POLYTOPE_TRIANGLE},
@@ -257,6 +257,13 @@ static PetscErrorCode FillBall(void *ctx)
       if (blocks[b].axis != cut) PetscCall(AddFaces(grid, &blocks[b], cut, 0));
   }
   PetscCall(AddBack(grid->file, ball, sphere));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FillBall(void *ctx)
+{
+  PetscFunctionBegin;
+  PetscCall(MeshFillBall((BallGrid *)ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

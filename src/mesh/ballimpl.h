@@ -28,6 +28,7 @@ typedef struct {
   PetscReal   missing;   /* part of the ball's volume that the mesh lacks */
 } BallGrid;
 
+PETSC_INTERN PetscErrorCode MeshFillBall(BallGrid *);
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);
 PETSC_INTERN PetscInt       BallGetNode(const BallGrid *, const BallBlock *, const PetscInt[3]);
 PETSC_INTERN PetscBool      BallBlockIsMirrored(const BallBlock *);

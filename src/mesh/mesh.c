@@ -129,6 +129,14 @@ static PetscErrorCode SetPrefix(DM dm, const char prefix[])
 . -<body>_ball_grading g                              - largest by smallest size of elements, default 1
 . -<body>_ball_pole x,y,z                             - direction from the centre to where they are small, default down the last axis
 . -<body>_ball_part (full|half|quarter)               - all of it, x >= centre, or in 3-D also y >= centre
+. -<body>_dm_plex_shape rod                           - a rod along z from 0 instead, of hexahedra: a disc drawn out
+. -<body>_rod_radius r                                - its radius [m], default 1
+. -<body>_rod_length l                                - its length [m], default 1
+. -<body>_rod_divisions n                             - elements along an edge of the central block of a section, default 4
+. -<body>_rod_layers m                                - elements around it, default n/2
+. -<body>_rod_elements k                              - elements along the axis, default 10
+. -<body>_rod_part (full|half|quarter)                - all of it, x >= 0, or also y >= 0
+. -<body>_rod_keep_volume (true|false)                - nodes move outward until a section has the area of the disc, default true
 . -<body>_scale s                                     - factor for all coordinates, 0.001 for a file in millimetres
 . -<body>_rotate (degrees|ax,ay,az,degrees)           - turns it: in 2-D, or in 3-D about an axis through the origin
 . -<body>_rotate_centre x,y,z                         - about another point [m], after scaling
@@ -162,7 +170,7 @@ elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   char      path[PETSC_MAX_PATH_LEN];
-  PetscBool from_file, blocks, ball = PETSC_FALSE, whole = PETSC_TRUE;
+  PetscBool from_file, blocks, ball = PETSC_FALSE, rod = PETSC_FALSE, whole = PETSC_TRUE;
 
   PetscFunctionBegin;
   PetscAssertPointer(dm, 4);
@@ -172,7 +180,9 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   PetscCheck(from_file || !blocks, comm, PETSC_ERR_USER_INPUT, "-%smesh_blocks needs a mesh file: give -%sdm_plex_filename", prefix,
              prefix);
   if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
+  if (!from_file) PetscCall(MeshIsRod(prefix, &rod));
   if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm));
+  else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, dm));
   else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm));
   else PetscCall(MeshCreateBox(comm, prefix, name, dm, &whole));
   PetscCall(SetPrefix(*dm, prefix));

@@ -99,6 +99,8 @@ PETSC_INTERN PetscErrorCode MeshSpreadContact(DM, const char[], const char[], Pe
 PETSC_INTERN PetscErrorCode MeshBoxMarkContact(MPI_Comm, const char[], const char[], MeshBox *);
 PETSC_INTERN PetscErrorCode MeshBricksChoose(MPI_Comm, MeshBox *, PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBricks(MPI_Comm, const MeshBox *, DM *);
+PETSC_INTERN PetscErrorCode MeshIsRod(const char[], PetscBool *);
+PETSC_INTERN PetscErrorCode MeshCreateRod(MPI_Comm, const char[], const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshIsBall(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBall(MPI_Comm, const char[], const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshReadNumbers(MPI_Comm, const char[], const char[], PetscInt, const char[], PetscReal[], PetscBool *);

@@ -25,6 +25,7 @@ BLOCKS = (
 )
 NONLINEAR = BLOCKS + "-left_material_type neo_hookean -right_material_type saint_venant_kirchhoff "
 EXPLICIT = "-left_ts_type centraldifference -left_ts_time_step auto "
+TAYLOR = "-options_file options/taylor-bar.opts -rod_rod_divisions 2 -rod_rod_elements 12 -time_step 1e-7 -time_end 2e-5 "
 VARIANTS = {
     "nonlinear": NONLINEAR,
     "nonlinear, explicit": NONLINEAR + EXPLICIT,
@@ -50,6 +51,9 @@ VARIANTS = {
     "gap rate": BLOCKS + "-contact_constraint gap_rate",
     "mass not diagonal": BLOCKS + "-left_mass_type consistent -right_mass_type averaged",
     "substeps": BLOCKS + EXPLICIT,
+    "plastic": NONLINEAR.replace("neo_hookean", "j2 -left_yield_stress 2e6 -left_hardening_modulus 1e7"),
+    "plastic, explicit": TAYLOR,
+    "plastic, explicit, with mass": TAYLOR + "-rod_mass_redistribute false",
     "damped": BLOCKS + "-left_ts_alpha_radius 0.8",
 }
 LONG = [
@@ -241,6 +245,7 @@ def test_bad_options(launch, folder, options, says):
 
 
 RANKS = [
+    (TAYLOR, 1, 2),
     ("-options_file options/blocks.opts", 1, 2),
     ("-options_file options/beam-hit.opts -contact_rows second", 2, 1),
     ("-options_file options/discs.opts", 1, 3),

@@ -24,6 +24,9 @@ struct _ElementOps {
   PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]); /* consistent mass of one element [kg] */
   PetscErrorCode (*stress)(Element, const PetscScalar[],
                            PetscReal[]); /* Cauchy stress, mean of each element: xx yy zz xy yz xz, 6 x count [Pa] */
+  PetscErrorCode (*plastic)(Element, PetscReal *,
+                            PetscReal[]); /* of elements with history: plastic work of all elements of this rank [J], and the equivalent
+                                             plastic strain, mean of each element; may be missing */
   PetscErrorCode (*points)(Element, PetscInt, PetscReal[], PetscReal[]); /* of one element: reference positions of its load points, n_points
                                                                             x dim [m], and their weights [m^3, m^2 x thickness] */
   PetscErrorCode (*nearest)(Element, PetscInt, const PetscReal[], PetscReal[],
@@ -32,6 +35,16 @@ struct _ElementOps {
   PetscErrorCode (*view)(Element, PetscViewer);
   PetscErrorCode (*destroy)(Element);
 };
+
+/* History of the points of integration where the material has one, owned by the body: number c of point g of element e is at
+   [((e / 8 * points + g) * n + c) * 8 + e % 8]; aligned to 64 bytes, with room for a whole batch at the end */
+typedef struct {
+  PetscInt         n;      /* numbers of a point; 0: the material has none */
+  PetscInt         points; /* of integration, of an element */
+  const PetscReal *start;  /* at the start of the step; NULL: as if the material were virgin, and nothing irreversible happened */
+  PetscReal       *end;    /* becomes that at the end of the step with each internal force; NULL: it is not wanted */
+  PetscReal        step;   /* [s]; negative: nothing flows */
+} ElementHistory;
 
 struct _p_Element {
   PETSCHEADER(struct _ElementOps);
@@ -53,7 +66,8 @@ struct _p_Element {
   const PetscInt *connectivity; /* count x nodes: local node numbers, in VTK's order of vertices; owned by the body */
   PetscBool       setup;
   /* state */
-  PetscInt inverted; /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
+  ElementHistory history;
+  PetscInt       inverted; /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
 };
 
 PETSC_INTERN PetscFunctionList ElementList, ElementFormulationList;

@@ -4,8 +4,9 @@
 #include <impakt/private/elementimpl.h>
 #include <impakt/private/simd.h>
 
-#define SOLID_MAX_NODES  8
-#define SOLID_MAX_POINTS 8
+#define SOLID_MAX_NODES   8
+#define SOLID_MAX_POINTS  8
+#define SOLID_MAX_HISTORY 32 /* numbers of a point */
 
 /* A reference element, all of whose integration points of one rule have the same weight */
 typedef struct {
@@ -18,20 +19,56 @@ typedef struct {
 } SolidShape;
 
 typedef struct {
-  const SolidShape *shape;
-  const PetscReal  *coordinates; /* of the rank's nodes; owned by the body */
-  MaterialKernels   kernels;
-  MaterialKernels   unconstrained; /* of the same material when not in plane stress */
-  PetscBool         plane_stress, linear;
-  PetscReal         load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
-  SolidShape        reduced; /* the shape with another rule, where a formulation has one */
-  void             *own;     /* of the formulation */
+  const SolidShape     *shape;
+  const PetscReal      *coordinates; /* of the rank's nodes; owned by the body */
+  const ElementHistory *history;     /* of the element */
+  MaterialKernels       kernels;
+  MaterialKernels       unconstrained; /* of the same material when not in plane stress */
+  PetscBool             plane_stress, linear;
+  PetscReal             load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
+  SolidShape            reduced; /* the shape with another rule, where a formulation has one */
+  void                 *own;     /* of the formulation */
 } Solid;
+
+/* The first number of the history of point g of a batch */
+SIMD_INLINE size_t SolidHistoryOffset(const ElementHistory *history, PetscInt first, PetscInt g)
+{
+  return (size_t)(first / SIMD_WIDTH * history->points + g) * (size_t)history->n * SIMD_WIDTH;
+}
+
+/* What every loop over elements asks the material for: the stress of point g of the batch that begins with element `first` */
+SIMD_INLINE void SolidStress(const Solid *solid, PetscInt first, PetscInt g, const SimdReal H[9], SimdReal P[9])
+{
+  const ElementHistory *history = solid->history;
+
+  if (history->start) {
+    const size_t at = SolidHistoryOffset(history, first, g);
+
+    (*solid->kernels.advance)(solid->kernels.data, history->step, (const PetscReal(*)[SIMD_WIDTH])H,
+                              (const PetscReal(*)[SIMD_WIDTH])(history->start + at),
+                              history->end ? (PetscReal(*)[SIMD_WIDTH])(history->end + at) : NULL, P);
+  } else (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
+}
+
+/* And for the stored energy */
+SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, const SimdReal H[9], SimdReal W)
+{
+  const ElementHistory *history = solid->history;
+
+  if (history->start) {
+    SimdReal P[9];
+
+    (*solid->kernels.hold)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H,
+                           (const PetscReal(*)[SIMD_WIDTH])(history->start + SolidHistoryOffset(history, first, g)), W, P);
+  } else (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, W);
+}
 
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid_MeanDilatation(Element);
 PETSC_EXTERN PetscReal      SolidGetShape(Element, PetscInt, const PetscReal xi[], PetscReal N[], PetscReal gradient[]);
 PETSC_EXTERN void           SolidStretchThickness(const Solid *, PetscReal H[9][SIMD_WIDTH]);
+PETSC_EXTERN void           SolidTangent(const Solid *, PetscInt, PetscInt, const PetscReal H[9], PetscReal tangent[81]);
+PETSC_EXTERN void           SolidPointStress(const Solid *, PetscInt, PetscInt, const PetscReal H[9], PetscReal P[9]);
 PETSC_EXTERN void           SolidTurnTangent(const PetscReal H[9], PetscReal tangent[81]);
 
 /* sigma = P F^T / det F; of linear materials P, for which they are the same */

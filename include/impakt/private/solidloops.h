@@ -31,7 +31,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
       const PetscInt now = (POINTS == 1 ? first / SIMD_WIDTH : g) % 2;
 
       if (g + 1 < POINTS) GetGradients(X, U, points[g + 1], &at[1 - now]);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at[now].H, P);
+      SolidStress(solid, first, g, (const SimdReal *)at[now].H, P);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at[now].cofactor[part], points[g], F[part]);
     }
     for (PetscInt part = 0; part < SIMD_PARTS; part++)
@@ -114,7 +114,7 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, W);
+      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
     }
     bad = FindNaN(sum);
@@ -138,7 +138,7 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])at.H, P);
+      SolidStress(solid, first, g, (const SimdReal *)at.H, P);
       if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, at.H);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
         PetscReal sigma[6];
@@ -153,6 +153,8 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
   }
 }
 
+#include <impakt/private/solidplastic.h>
+#define SOLID_HAS_HISTORY
 #include <impakt/private/solidops.h>
 
 static PetscErrorCode Create(Element element, const SolidShape *shape)

@@ -30,10 +30,25 @@ static PetscErrorCode Stress(Element element, const PetscScalar u[], PetscReal s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#if defined(SOLID_HAS_HISTORY)
+static PetscErrorCode Plastic(Element element, PetscReal *work, PetscReal strain[])
+{
+  const Solid *solid = (const Solid *)element->data;
+
+  PetscFunctionBegin;
+  GetPlastic(solid, element->count, element->connectivity, work, strain);
+  *work *= WEIGHT * element->cross_section;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+#endif
+
 static void SetLoops(Element element)
 {
   element->ops->internalforce = InternalForce;
   element->ops->viscousforce  = ViscousForce;
   element->ops->energy        = Energy;
   element->ops->stress        = Stress;
+#if defined(SOLID_HAS_HISTORY)
+  element->ops->plastic = Plastic;
+#endif
 }

@@ -9,7 +9,8 @@ static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal 
 
   PetscFunctionBegin;
   if (back) {
-    if (numbers[0] != 0) PetscCall(BodyImplicitRefactor(body, point));
+    /* a displacement of earlier steps goes with the history of these steps, which is not there any more */
+    if (numbers[0] != 0) PetscCall(BodyImplicitRefactor(body, body->history ? body->saved.u : point));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   numbers[0] = implicit->deformed[0];
@@ -43,13 +44,18 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
  * eliminated */
 static PetscErrorCode AssembleMatrix(Body body, Vec u)
 {
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  const Vec     point    = implicit->points[body->time.level];
+  BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
+  const PetscInt level    = body->time.level;
+  const Vec      point    = implicit->points[level];
+  ElementHistory before;
 
   PetscFunctionBegin;
-  implicit->deformed[body->time.level] = (PetscBool)(u != NULL);
+  implicit->deformed[level] = (PetscBool)(u != NULL);
   if (u && u != point) PetscCall(VecCopy(u, point));
+  if (u && u != point && body->history) PetscCall(BodyHistoryCopyStart(body, implicit->history[level], &implicit->history_step[level]));
+  if (u && body->history) BodyHistoryUse(body, implicit->history[level], implicit->history_step[level], &before);
   PetscCall(BodyAssembleTangent(body, u, implicit->matrix));
+  if (u && body->history) BodyHistoryLookBack(body, &before);
   if (implicit->shift > 0) PetscCall(BodyAddMassMatrix(body, implicit->shift, implicit->matrix));
   PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, implicit->matrix));
   PetscCall(BodyAddSpringStiffness(body, implicit->matrix));
@@ -106,6 +112,12 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
   PetscCall(BodyCreateMatrix(body, &implicit->matrix));
   implicit->matrices[body->time.level] = implicit->matrix;
   if (!body->model.linear) PetscCall(BodyCreateVec(body, &implicit->points[body->time.level]));
+  if (body->history) {
+    PetscInt size;
+
+    PetscCall(BodyHistoryCreateBuffer(body, body->model.element->count, &size, &implicit->memory[body->time.level],
+                                      &implicit->history[body->time.level]));
+  }
   if (!body->model.linear && implicit->unit_strain == 0) PetscCall(BodyImplicitComputeUnitStrainForce(body));
   PetscCall(AssembleMatrix(body, u));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
@@ -169,6 +181,13 @@ PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoin
   PetscCall(CheckpointVisitBools(checkpoint, "linearised", 1, &deformed));
   if (!deformed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckpointVisitVec(checkpoint, "linearised at", implicit->points[level]));
+  if (body->history) {
+    size_t size;
+
+    (void)BodyHistoryGetSaved(body, &size);
+    PetscCall(CheckpointVisitReals(checkpoint, "linearised from", (PetscInt)size, implicit->history[level]));
+    PetscCall(CheckpointVisitReals(checkpoint, "linearised step", 1, &implicit->history_step[level]));
+  }
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyImplicitRefactor(body, implicit->points[level]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -184,6 +203,7 @@ PetscErrorCode BodyImplicitDestroy(Body body)
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
     PetscCall(MatDestroy(&implicit->matrices[k]));
     PetscCall(VecDestroy(&implicit->points[k]));
+    PetscCall(PetscFree(implicit->memory[k]));
   }
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -7,12 +7,15 @@ typedef struct {
   Mat       matrix;                        /* K + shift M, its held dofs eliminated: body->solver has its factors */
   Mat       matrices[STEP_MAX_CUTS + 1];   /* that of each level of cut steps which there has been */
   Vec       points[STEP_MAX_CUTS + 1];     /* displacement at which that of a nonlinear body was assembled last [m] */
-  PetscBool deformed[STEP_MAX_CUTS + 1];   /* it was, and not at none */
-  PetscReal shift;                         /* [1/s^2]; 0 without inertia */
-  PetscReal shift_velocity;                /* of C where the body is damped [1/s] */
-  PetscReal terms, round_off; /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
-  PetscReal unit_strain;      /* norm of the forces of strains of size 1, of a nonlinear body [N] */
-  Vec       u, v, a, next;    /* state of a body at rest while a column of the compliance is made; NULL until then */
+  /* the history of the material then, where it has one, and the length of the step */
+  char      *memory[STEP_MAX_CUTS + 1];
+  PetscReal *history[STEP_MAX_CUTS + 1], history_step[STEP_MAX_CUTS + 1];
+  PetscBool  deformed[STEP_MAX_CUTS + 1]; /* it was, and not at none */
+  PetscReal  shift;                       /* [1/s^2]; 0 without inertia */
+  PetscReal  shift_velocity;              /* of C where the body is damped [1/s] */
+  PetscReal  terms, round_off;            /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
+  PetscReal  unit_strain;                 /* norm of the forces of strains of size 1, of a nonlinear body [N] */
+  Vec        u, v, a, next;               /* state of a body at rest while a column of the compliance is made; NULL until then */
 } BodyImplicit;
 
 typedef PetscErrorCode BodyResidualFn(TS, PetscReal, Vec, Vec, Vec, Vec, void *);

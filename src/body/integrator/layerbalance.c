@@ -16,6 +16,9 @@
 /* A balance that takes so many is slow. With new factors, a block that turns by half a degree in a step (tests/unit/body_repeat.c) takes
    3 to 6 rounds at first. */
 #define SLOW_ROUNDS 20
+/* Of a material that flows, stiffness changes within a step by orders of magnitude: after so many rounds with the same factors there are
+   new ones, where the layer is then */
+#define ROUNDS_OF_FACTORS 8
 /* The layer is in balance when its last change is below this part of the largest one in this balance, */
 #define TOLERANCE 1e-12
 /* or below this part of the norm of displacements and reference positions of all nodes, whose round-off is part of any change */
@@ -23,9 +26,12 @@
 
 /* Factors of a nonlinear layer */
 typedef struct {
-  Vec       point;  /* the displacement that they are made at [m] */
-  PetscInt  number; /* of these factors, counted as they are made */
-  PetscBool slow;   /* the last balance with them was */
+  Vec        point;   /* the displacement that they are made at [m] */
+  char      *memory;  /* of the history */
+  PetscReal *history; /* that the elements of the layer had then, and the length of their step; NULL where the material has none */
+  PetscReal  step;
+  PetscInt   number; /* of these factors, counted as they are made */
+  PetscBool  slow;   /* the last balance with them was */
 } Factors;
 
 struct _n_LayerBalance {
@@ -39,7 +45,18 @@ struct _n_LayerBalance {
   PetscReal  reach;         /* norm of the reference positions of all nodes [m] */
   Factors    now, aside[BODY_SLOTS];
   PetscInt   n_made;
+  PetscInt   n_history; /* numbers of that history */
 };
+
+/* What factors are made from, from one place to another */
+static PetscErrorCode CopyOrigin(LayerBalance layer, const Factors *from, Factors *to)
+{
+  PetscFunctionBegin;
+  PetscCall(VecCopy(from->point, to->point));
+  PetscCall(PetscArraycpy(to->history, from->history, layer->n_history));
+  to->step = from->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* With contact: under the constraints of the rows; else as if there were no rows */
 static PetscErrorCode SolveLayer(LayerBalance layer, Body body, PetscBool contact)
@@ -58,7 +75,7 @@ static PetscErrorCode Refactor(LayerBalance layer, Body body)
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
   PetscCall(KSPGetOperators(ksp, &K, NULL));
-  PetscCall(BodyAssembleLayer(body, layer->now.point, K));
+  PetscCall(BodyAssembleLayer(body, layer->now.point, layer->now.history, layer->now.step, K));
   PetscCall(ConstrainedSolverRefactor(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -68,6 +85,7 @@ static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
 {
   PetscFunctionBegin;
   PetscCall(BodyGatherLayer(body, u, layer->now.point));
+  PetscCall(BodyLayerCopyHistory(body, layer->now.history, &layer->now.step));
   layer->now.number = ++layer->n_made;
   layer->now.slow   = PETSC_FALSE;
   PetscCall(Refactor(layer, body));
@@ -82,7 +100,7 @@ PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body, BodySlot slot)
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
   if (slot == BODY_SLOT_SAVED && layer->now.slow) PetscCall(RefactorAt(layer, body, body->state.u));
-  if (aside->number != layer->now.number) PetscCall(VecCopy(layer->now.point, aside->point));
+  if (aside->number != layer->now.number) PetscCall(CopyOrigin(layer, &layer->now, aside));
   aside->number = layer->now.number;
   aside->slow   = layer->now.slow;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -97,7 +115,7 @@ PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body, BodySlot slot)
   layer->now.slow = aside->slow;
   if (aside->number == layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
   layer->now.number = aside->number;
-  PetscCall(VecCopy(aside->point, layer->now.point));
+  PetscCall(CopyOrigin(layer, aside, &layer->now));
   PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,6 +138,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
   for (PetscInt round = 0; round < (linear ? 1 : MAX_ROUNDS); round++) {
     PetscReal change;
 
+    if (body->history && contact && round && round % ROUNDS_OF_FACTORS == 0) PetscCall(RefactorAt(layer, body, u));
     if (round && robin) PetscCall(BodyComputeOutsideForce(body, time, position, contact, u, force));
     if (outside) {
       PetscCall(VecScatterBegin(layer->scatter, force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
@@ -282,7 +301,9 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   if (!body->model.linear) {
     PetscCall(BodyCreateLayerVec(body, &layer->now.point));
     PetscCall(VecZeroEntries(layer->now.point));
+    PetscCall(BodyLayerCreateHistory(body, &layer->n_history, &layer->now.memory, &layer->now.history));
     for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
+      PetscCall(BodyLayerCreateHistory(body, NULL, &layer->aside[slot].memory, &layer->aside[slot].history));
       PetscCall(VecDuplicate(layer->now.point, &layer->aside[slot].point));
       PetscCall(VecZeroEntries(layer->aside[slot].point));
     }
@@ -298,7 +319,7 @@ static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool other
   for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
     layer->aside[slot].number = layer->now.number;
     layer->aside[slot].slow   = layer->now.slow;
-    PetscCall(VecCopy(layer->now.point, layer->aside[slot].point));
+    PetscCall(CopyOrigin(layer, &layer->now, &layer->aside[slot]));
   }
   if (others) PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -313,7 +334,9 @@ PetscErrorCode LayerBalanceCopyPoint(LayerBalance layer, Body body, PetscBool ba
     layer->n_made = layer->now.number = (PetscInt)numbers[0];
     layer->now.slow                   = (PetscBool)(numbers[1] != 0);
     if (!layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(BodyGatherLayer(body, point, layer->now.point));
+    /* a displacement of earlier steps goes with the history of these steps: with that of now there are factors where the body is now */
+    PetscCall(BodyGatherLayer(body, body->history ? body->saved.u : point, layer->now.point));
+    PetscCall(BodyLayerCopyHistory(body, layer->now.history, &layer->now.step));
     PetscCall(TakeFactors(layer, body, PETSC_TRUE));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -334,6 +357,10 @@ PetscErrorCode LayerBalanceVisit(LayerBalance layer, Body body, Checkpoint check
   PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
   PetscCall(CheckpointVisitBools(checkpoint, "layer slow", 1, &layer->now.slow));
   PetscCall(CheckpointVisitVec(checkpoint, "layer point", layer->now.point));
+  if (body->history) {
+    PetscCall(CheckpointVisitReals(checkpoint, "layer history", layer->n_history, layer->now.history));
+    PetscCall(CheckpointVisitReals(checkpoint, "layer step", 1, &layer->now.step));
+  }
   if (CheckpointLoads(checkpoint)) PetscCall(TakeFactors(layer, body, (PetscBool)(layer->now.number != before)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -346,7 +373,11 @@ PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
   PetscCall(VecDestroy(&(*layer)->rhs));
   PetscCall(VecDestroy(&(*layer)->solution));
   PetscCall(VecDestroy(&(*layer)->now.point));
-  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) PetscCall(VecDestroy(&(*layer)->aside[slot].point));
+  PetscCall(PetscFree((*layer)->now.memory));
+  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
+    PetscCall(VecDestroy(&(*layer)->aside[slot].point));
+    PetscCall(PetscFree((*layer)->aside[slot].memory));
+  }
   PetscCall(VecScatterDestroy(&(*layer)->scatter));
   PetscCall(MatDestroy(&(*layer)->rows));
   PetscCall(RowPatternDestroy(&(*layer)->pattern));

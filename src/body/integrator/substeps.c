@@ -33,6 +33,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     }
     if (body->substep_start.damping) PetscCall(VecCopy(body->state.damping, body->substep_start.damping));
     if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyTurnToMeanForce(body));
+    PetscCall(BodyHistoryBegin(body));
     PetscCall(TSStep(body->time.ts));
     body->state.step++;
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
@@ -40,6 +41,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     if (body->failure.reason < 0) break;
     if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyEndMeanForce(body));
     PetscCall((*body->integrator->ops.finishsubstep)(body));
+    if (!body->state.incomplete) PetscCall(BodyHistoryEnd(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));
     if (body->time.substeps > 1) {
       PetscCall(BodyAddWork(body, body->substep_start.u));

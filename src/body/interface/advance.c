@@ -35,6 +35,8 @@ PetscErrorCode BodySave(Body body)
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
   if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
   PetscCall(BodyStateCopy(&body->state, &body->saved));
+  BodyHistorySave(body);
+  if (stepped) PetscCall(BodyUpdateStableStep(body));
   body->start.changed = PETSC_FALSE;
   /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
@@ -83,6 +85,7 @@ PetscErrorCode BodyKeep(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(&body->state, &body->kept));
+  PetscCall(BodyHistoryKeep(body, PETSC_FALSE));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,6 +108,7 @@ PetscErrorCode BodyReinstate(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(&body->kept, &body->state));
+  PetscCall(BodyHistoryKeep(body, PETSC_TRUE));
   if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
   body->repeats = PETSC_FALSE;
@@ -189,8 +193,9 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
   PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
   PetscCall(PetscTime(&begin));
   StepFailureClear(&body->failure);
-  PetscCall(BodyRepeat(body, &done));
-  if (!done) PetscCall(BodyMakeSubsteps(body));
+  PetscCall(BodyCheckStableStep(body));
+  if (body->failure.reason >= 0) PetscCall(BodyRepeat(body, &done));
+  if (body->failure.reason >= 0 && !done) PetscCall(BodyMakeSubsteps(body));
   PetscCall(CheckSolver(body));
   if (!done && body->failure.reason >= 0) PetscCall(BodyNoteInputs(body));
   PetscCall(PetscTime(&end));
@@ -229,6 +234,7 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
     PetscCall(PetscTime(&begin));
     PetscCall((*body->integrator->ops.complete)(body));
     body->state.incomplete = PETSC_FALSE;
+    PetscCall(BodyHistoryEnd(body));
     PetscCall(BodyCheckSubstep(body));
     PetscCall(BodyWriteTraces(body, body->time.substeps));
     PetscCall(PetscTime(&end));

@@ -230,6 +230,7 @@ PetscErrorCode BodySetUp(Body body)
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySetUpSteps(body));
   PetscCall(BodyCreateTraces(body));
+  PetscCall(BodySetUpHistory(body));
   PetscCall(BodyCreateCompliance(body));
   PetscCall(BodySetUpDamping(body));
   PetscCall(BodySetUpPoints(body));
@@ -277,6 +278,7 @@ PetscErrorCode BodyDestroy(Body *body)
                    &b->mass.diagonal, &b->mass.inverse, &b->work.nodes[0],      &b->work.nodes[1],  &b->work.nodes[2], &b->start.change};
     BodyState *states[] = {&b->state, &b->saved, &b->kept, &b->substep_start};
 
+    PetscCall(BodyDestroyHistory(b));
     PetscCall(BodyDestroyRepeat(b));
     PetscCall(BodyIntegratorDestroy(b));
     PetscCall(BodyDestroyLevels(b));

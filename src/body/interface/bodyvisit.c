@@ -20,6 +20,18 @@ static PetscErrorCode VisitState(BodyState *state, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The saved state is the present one too */
+static PetscErrorCode VisitHistory(Body body, Checkpoint checkpoint)
+{
+  size_t     size;
+  PetscReal *saved = BodyHistoryGetSaved(body, &size);
+
+  PetscFunctionBegin;
+  if (saved) PetscCall(CheckpointVisitReals(checkpoint, "history", (PetscInt)size, saved));
+  if (CheckpointLoads(checkpoint)) BodyHistoryRestore(body);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode VisitTraces(Body body, Checkpoint checkpoint)
 {
   const BodyTraces *t        = &body->traces;
@@ -162,6 +174,7 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
   PetscCall(CheckpointCheckInts(checkpoint, "nodes, dimensions, rows and substeps", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
   PetscCall(VisitState(&body->saved, checkpoint));
+  PetscCall(VisitHistory(body, checkpoint));
   PetscCall(VisitLevels(body, checkpoint));
   PetscCall(VisitState(&body->state, checkpoint));
   PetscCall(VisitTraces(body, checkpoint));

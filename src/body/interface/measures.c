@@ -19,6 +19,7 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
   const PetscScalar *u, *force;
   const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   Vec                local;
+  ElementHistory     before;
 
   PetscFunctionBegin;
   if (body->model.linear) {
@@ -30,7 +31,9 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
+  BodyHistoryLook(body, &before);
   PetscCall((*body->model.element->ops->energy)(body->model.element, u, potential));
+  BodyHistoryLookBack(body, &before);
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -134,7 +137,7 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  PetscReal sums[14] = {0}, drag;
+  PetscReal sums[15] = {0}, drag;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -146,11 +149,13 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
     for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
   }
   PetscCall(BodySumRotation(body, sums + 11));
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 14, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(BodyComputePlasticStrain(body, NULL, &sums[14]));
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 15, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   measures->kinetic       = sums[0];
   measures->potential     = sums[1];
   measures->external_work = body->state.external_work;
   measures->damping_work  = body->state.damping_work;
+  measures->plastic_work  = sums[14];
   BodyFinishRotation(body, sums + 11, measures->rotation);
   PetscCall(BodyGetDamping(body, &drag, NULL)); /* which takes momentum */
   measures->loaded = (PetscBool)(body->loads != NULL || drag > 0);
@@ -173,11 +178,11 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   Level: intermediate
 
   Note:
-  Kinetic and potential energy, with what dashpots have taken, less the work of loads and of held displacements [J].
+  Kinetic and potential energy, with what dashpots and plastic flow have taken, less the work of loads and of held displacements [J].
 
 .seealso: `Body`, `BodyMeasures`, `BodyGetMeasures()`
 @*/
 PetscReal BodyMeasuresGetBalance(const BodyMeasures *measures)
 {
-  return measures->kinetic + measures->potential + measures->damping_work - measures->external_work;
+  return measures->kinetic + measures->potential + measures->damping_work + measures->plastic_work - measures->external_work;
 }

@@ -24,6 +24,9 @@ struct _BodyPoints {
   Place     *places;
   PetscInt  *connectivity; /* of the elements of the places, one by one */
   Element    element;      /* these: their stress is computed */
+  PetscInt  *of_body;      /* the number of each in the body */
+  char      *memory;       /* of their history */
+  PetscReal *history;      /* NULL where the material has none */
   PetscReal *stress, *sums;
 };
 
@@ -201,6 +204,7 @@ PetscErrorCode BodySetUpPoints(Body body)
   MPI_Comm            comm   = PetscObjectComm((PetscObject)body);
   struct _BodyPoints *points = body->points;
   const PetscInt      nodes  = body->model.element->nodes;
+  PetscInt            size;
 
   PetscFunctionBegin;
   if (!points) PetscFunctionReturn(PETSC_SUCCESS);
@@ -225,6 +229,9 @@ PetscErrorCode BodySetUpPoints(Body body)
     PetscCall(PetscArraycpy(points->connectivity + i * nodes, body->mesh.connectivity + points->places[i].element * nodes, nodes));
   PetscCall(ElementDuplicate(body->model.element, NULL, &points->element));
   PetscCall(ElementSetUp(points->element, points->n_places, points->connectivity, body->mesh.coordinates));
+  PetscCall(PetscMalloc1(points->n_places, &points->of_body));
+  for (PetscInt i = 0; i < points->n_places; i++) points->of_body[i] = points->places[i].element;
+  PetscCall(BodyHistoryCreateBuffer(body, points->n_places, &size, &points->memory, &points->history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,6 +240,8 @@ PetscErrorCode BodyDestroyPoints(Body body)
   PetscFunctionBegin;
   if (!body->points) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElementDestroy(&body->points->element));
+  PetscCall(PetscFree(body->points->of_body));
+  PetscCall(PetscFree(body->points->memory));
   PetscCall(PetscFree3(body->points->connectivity, body->points->stress, body->points->sums));
   PetscCall(PetscFree(body->points->places));
   PetscCall(PetscFree(body->points->x));
@@ -292,6 +301,9 @@ PetscErrorCode BodyGetProbes(Body body, PetscReal position[], PetscReal displace
   PetscCall(PetscArrayzero(points->sums, N_SUMS * points->n));
   PetscCall(BodyGetLocalRead(body, body->state.u, &u_local, &u));
   PetscCall(BodyGetLocalRead(body, body->state.v, &v_local, &v));
+  if (points->history) BodyHistoryGather(body, PETSC_TRUE, points->n_places, points->of_body, points->history);
+  points->element->history.start = points->history;
+  points->element->history.step  = -1;
   PetscCall((*points->element->ops->stress)(points->element, u, points->stress));
   SumPlaces(body, u, v);
   PetscCall(BodyRestoreLocalRead(body, body->state.v, &v_local, &v));

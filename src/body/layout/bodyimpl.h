@@ -10,6 +10,7 @@
 typedef struct _n_LayerElements *LayerElements;
 typedef struct _n_LayerSolver   *LayerSolver;
 typedef struct _n_BodyGram      *BodyGram;
+typedef struct _n_BodyHistory   *BodyHistory;
 
 /* Nodes of this rank are numbered owned first, then ghosts */
 typedef struct {
@@ -78,10 +79,12 @@ typedef struct {
   PetscReal whole_step;                   /* the controller step before any cut [s] */
   PetscInt  level, accepted_level;        /* how often the controller step is cut in halves; how often that was which was accepted last */
   PetscReal requested_step;               /* 0: the controller step; < 0: automatic */
-  PetscReal stable_step;                  /* 0 until BodyComputeStableStep() */
-  PetscInt  shared;                       /* parts of the controller step, at whose ends all bodies have a time in common */
-  PetscInt  substeps;                     /* of one part */
-  PetscInt  substep;                      /* the one that is being made, 0 to substeps - 1 */
+  PetscReal stable_step;                  /* of the undeformed body; 0 until BodyComputeStableStep() */
+  /* of a nonlinear explicit body, see deformedstep.c: stable step as it is deformed, 0: not known; where and when it was found last */
+  PetscReal stable_now, stable_found, thinness;
+  PetscInt  shared;   /* parts of the controller step, at whose ends all bodies have a time in common */
+  PetscInt  substeps; /* of one part */
+  PetscInt  substep;  /* the one that is being made, 0 to substeps - 1 */
 } BodyTime;
 
 /* What a step starts from and ends with. A member that is NULL in one of two states is left out where one is copied to the other. */
@@ -187,6 +190,7 @@ struct _p_Body {
   ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
   BodyState         state, saved;  /* as it is; at the start of the controller step */
   BodyState         kept;          /* put aside by BodyKeep() */
+  BodyHistory       history;       /* of the material at the points of integration; NULL where it has none */
   BodyState         substep_start; /* u and v, which are NULL unless loads or the integrator read them */
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
@@ -285,9 +289,29 @@ PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
 PETSC_INTERN PetscErrorCode BodyFindOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
+PETSC_INTERN PetscErrorCode BodyComputeStableStepAt(Body, const PetscScalar[], PetscReal *);
+PETSC_INTERN PetscErrorCode BodyUpdateStableStep(Body);
+PETSC_INTERN PetscErrorCode BodyCheckStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodySetUpHistory(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyHistory(Body);
+PETSC_INTERN PetscErrorCode BodyHistoryBegin(Body);
+PETSC_INTERN PetscErrorCode BodyHistoryNote(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyHistoryEnd(Body);
+PETSC_INTERN void           BodyHistorySave(Body);
+PETSC_INTERN void           BodyHistoryRestore(Body);
+PETSC_INTERN PetscErrorCode BodyHistoryKeep(Body, PetscBool);
+PETSC_INTERN void           BodyHistoryLook(Body, ElementHistory *);
+PETSC_INTERN void           BodyHistoryForget(Body, ElementHistory *);
+PETSC_INTERN void           BodyHistoryLookBack(Body, const ElementHistory *);
+PETSC_INTERN void           BodyHistoryUse(Body, const PetscReal[], PetscReal, ElementHistory *);
+PETSC_INTERN PetscErrorCode BodyHistoryCreateBuffer(Body, PetscInt, PetscInt *, char **, PetscReal **);
+PETSC_INTERN PetscErrorCode BodyHistoryCopyStart(Body, PetscReal[], PetscReal *);
+PETSC_INTERN void           BodyHistoryGather(Body, PetscBool, PetscInt, const PetscInt[], PetscReal[]);
+PETSC_INTERN PetscInt       BodyHistoryGetEpoch(Body);
+PETSC_INTERN PetscReal     *BodyHistoryGetSaved(Body, size_t *);
 PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
 PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
@@ -295,7 +319,9 @@ PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
 PETSC_INTERN PetscErrorCode BodyCreateLayerVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodyGatherLayer(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySpreadLayer(Body, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, Mat);
+PETSC_INTERN PetscErrorCode BodyLayerCreateHistory(Body, PetscInt *, char **, PetscReal **);
+PETSC_INTERN PetscErrorCode BodyLayerCopyHistory(Body, PetscReal[], PetscReal *);
+PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, const PetscReal[], PetscReal, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);

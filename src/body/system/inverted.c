@@ -7,32 +7,7 @@
    stores less than that, which the energy balance knows anyway, no element is looked at. That holds for fully integrated elements; those of
    other formulations are looked at whenever the body stores energy.
 */
-#include <body/layout/bodyimpl.h>
-
-enum { MOST_CORNERS = 8 };
-
-/* The ends of the edges of each corner, in an order that makes their Jacobian positive */
-typedef struct {
-  DMPolytopeType shape;
-  PetscInt       corners;
-  PetscInt       ends[MOST_CORNERS][3];
-  PetscReal      part; /* c in the head of this file */
-} Shape;
-
-static const Shape shapes[] = {
-    {DM_POLYTOPE_SEGMENT, 1, {{1}}, 1},
-    {DM_POLYTOPE_TRIANGLE, 1, {{1, 2}}, 1},
-    {DM_POLYTOPE_QUADRILATERAL, 4, {{1, 3}, {2, 0}, {3, 1}, {0, 2}}, 1. / 16},
-    {DM_POLYTOPE_TETRAHEDRON, 1, {{1, 2, 3}}, 1},
-    {DM_POLYTOPE_HEXAHEDRON, 8, {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}, 1. / 64},
-};
-
-static const Shape *FindShape(Body body)
-{
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(shapes); i++)
-    if (shapes[i].shape == body->mesh.cell_shape) return &shapes[i];
-  return NULL;
-}
+#include "corners.h"
 
 /* The Jacobian at a corner, as moved by u; NULL: undeformed */
 static PetscReal Jacobian(PetscInt dim, const PetscInt nodes[], PetscInt corner, const PetscInt ends[3], const PetscReal x[],
@@ -54,7 +29,7 @@ static PetscReal Jacobian(PetscInt dim, const PetscInt nodes[], PetscInt corner,
 
 /* The energy that the body must store before an element of this rank can be inside out; infinity where nobody can tell [J]. Volumes are
    those of the corners' Jacobians, scaled so that their sum is the volume of the body, with thickness and cross section. */
-static PetscErrorCode ComputeLeastEnergy(Body body, const Shape *shape, PetscReal *energy)
+static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscReal *energy)
 {
   const PetscInt n   = body->model.element->nodes;
   PetscReal      sum = 0, least = PETSC_MAX_REAL, modulus, density;
@@ -102,7 +77,7 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Shape *shape, PetscRea
 @*/
 PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number, PetscReal centre[3])
 {
-  const Shape       *shape = FindShape(body);
+  const Corners     *shape = BodyFindCorners(body);
   const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim;
   PetscInt           found = -1;
   PetscMPIInt        first;

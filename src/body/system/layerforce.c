@@ -11,8 +11,12 @@ struct _n_LayerElements {
   Vec        u, f;    /* n_dofs each, of this rank alone */
   VecScatter gather;  /* from a vector of the body to u */
   VecScatter add;     /* from f to a vector of the layer */
-  PetscInt   n_near;  /* of contact nodes and of the nodes of these elements, on whatever rank the elements are */
-  PetscInt  *near;    /* owned ones, rank numbering */
+  PetscInt  *of_body; /* the number of each element in the body */
+  char      *memory;  /* of the history that these elements begin the substep with, NULL where the material has none */
+  PetscReal *history;
+  PetscInt   epoch;  /* of the substep */
+  PetscInt   n_near; /* of contact nodes and of the nodes of these elements, on whatever rank the elements are */
+  PetscInt  *near;   /* owned ones, rank numbering */
 };
 
 /* The number of each dof of this rank's nodes, ghosts too, within the layer; -1 for others */
@@ -61,6 +65,7 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
   for (PetscInt e = 0; e < body->model.element->count; e++)
     if (TouchesLayer(body, e, number)) (*count)++;
   PetscCall(PetscMalloc1(*count * n, &layer->connectivity));
+  PetscCall(PetscMalloc1(*count, &layer->of_body));
   PetscCall(PetscMalloc1(*count * n, nodes));
   PetscCall(PetscMalloc1(body->mesh.local_nodes, &compact));
   for (PetscInt node = 0; node < body->mesh.local_nodes; node++) compact[node] = -1;
@@ -76,6 +81,7 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
       }
       layer->connectivity[*count * n + a] = compact[node];
     }
+    layer->of_body[*count] = e;
     (*count)++;
   }
   PetscCall(PetscFree(compact));
@@ -143,6 +149,46 @@ static PetscErrorCode FindNear(Body body, LayerElements layer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BodyLayerCreateHistory - room for the history of the elements that touch the layer; of no size where the material has none */
+PetscErrorCode BodyLayerCreateHistory(Body body, PetscInt *size, char **memory, PetscReal **history)
+{
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(BodyHistoryCreateBuffer(body, body->layer.elements->element->count, &n, memory, history));
+  if (size) *size = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The elements answer for a substep from its start, also where the body as a whole is at rest in its state: what is asked of the layer is
+   where it gets in a step */
+static void PrepareHistory(Body body)
+{
+  LayerElements layer = body->layer.elements;
+
+  if (!layer->history) return;
+  if (layer->epoch != BodyHistoryGetEpoch(body))
+    BodyHistoryGather(body, PETSC_FALSE, layer->element->count, layer->of_body, layer->history);
+  layer->epoch                  = BodyHistoryGetEpoch(body);
+  layer->element->history.start = layer->history;
+  layer->element->history.end   = NULL;
+  layer->element->history.step  = body->time.step;
+}
+
+/* BodyLayerCopyHistory - what these elements answer from at present, and how long their step is */
+PetscErrorCode BodyLayerCopyHistory(Body body, PetscReal history[], PetscReal *step)
+{
+  LayerElements layer = body->layer.elements;
+
+  PetscFunctionBegin;
+  *step = body->time.step;
+  if (!layer->history) PetscFunctionReturn(PETSC_SUCCESS);
+  PrepareHistory(body);
+  PetscCall(PetscArraycpy(history, layer->history,
+                          (layer->element->count + 7) / 8 * 8 * layer->element->history.points * layer->element->history.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* of_layer: any vector of the layer, one number for each of its dofs */
 PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
 {
@@ -163,6 +209,8 @@ PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
   }
   PetscCall(ElementDuplicate(body->model.element, NULL, &layer->element));
   PetscCall(ElementSetUp(layer->element, count, layer->connectivity, layer->coordinates));
+  PetscCall(BodyLayerCreateHistory(body, NULL, &layer->memory, &layer->history));
+  layer->epoch = -1;
   PetscCall(CreateScatters(body, layer, n_nodes, nodes, of_layer));
   PetscCall(FindNear(body, layer));
   PetscCall(PetscFree(nodes));
@@ -183,6 +231,8 @@ PetscErrorCode BodyLayerElementsDestroy(LayerElements *layer)
   PetscCall(PetscFree2((*layer)->coordinates, (*layer)->numbers));
   PetscCall(PetscFree((*layer)->connectivity));
   PetscCall(PetscFree((*layer)->near));
+  PetscCall(PetscFree((*layer)->of_body));
+  PetscCall(PetscFree((*layer)->memory));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -216,6 +266,7 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(BODY_LayerForce, body, 0, 0, 0));
+  PrepareHistory(body);
   PetscCall(BodyGatherLayer(body, u, layer->u));
   PetscCall(VecGetArrayRead(layer->u, &u_array));
   PetscCall(VecGetArrayWrite(layer->f, &f_array));
@@ -256,8 +307,9 @@ PetscErrorCode BodySpreadLayer(Body body, Vec near, Vec u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m] */
-PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
+/* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m], from a history that BodyLayerCopyHistory()
+   has given, with its step; NULL: that of the present substep */
+PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[], PetscReal step, Mat K)
 {
   LayerElements      layer = body->layer.elements;
   const PetscInt     nodes = body->model.element->nodes, n = nodes * body->mesh.dim;
@@ -266,6 +318,11 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, Mat K)
   const PetscScalar *at;
 
   PetscFunctionBegin;
+  PrepareHistory(body);
+  if (layer->history && history) {
+    layer->element->history.start = history;
+    layer->element->history.step  = step;
+  }
   PetscCall(MatZeroEntries(K));
   PetscCall(VecGetArrayRead(near, &at));
   for (PetscInt e = 0; e < layer->element->count; e++) {
@@ -290,6 +347,7 @@ PetscErrorCode BodyMultiplyLayerTangent(Body body, Vec near, Vec du, Vec f)
   const PetscScalar *at, *change;
 
   PetscFunctionBegin;
+  PrepareHistory(body);
   PetscCall(BodyGatherLayer(body, du, layer->u));
   PetscCall(VecGetArrayRead(near, &at));
   PetscCall(VecGetArrayRead(layer->u, &change));
@@ -321,6 +379,6 @@ PetscErrorCode BodyCreateLayerMatrix(Body body, Mat *K)
   PetscCall(MatSetUp(*K));
   PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(VecZeroEntries(body->layer.elements->u));
-  PetscCall(BodyAssembleLayer(body, body->layer.elements->u, *K));
+  PetscCall(BodyAssembleLayer(body, body->layer.elements->u, NULL, 0, *K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -69,7 +69,7 @@ PetscErrorCode BodyPrepareLayer(Body body, Vec u)
   layer = body->layer.solver;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGatherLayer(body, u, layer->point));
-  PetscCall(BodyAssembleLayer(body, layer->point, layer->K));
+  PetscCall(BodyAssembleLayer(body, layer->point, NULL, 0, layer->K));
   PetscCall(ConstrainedSolverRefactor(layer->own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

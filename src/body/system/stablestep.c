@@ -30,9 +30,9 @@ static PetscBool IsMassless(Body body, PetscInt node)
   return (PetscBool)(body->mass.redistribute && body->layer.contains[node]);
 }
 
-/* Largest eigenvalue of one element with its massless nodes held, which is a bound whether they are free or prescribed; zero: a
-   displacement of this rank's nodes */
-static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscScalar zero[], PetscReal *largest)
+/* Largest eigenvalue of one element with its massless nodes held, which is a bound whether they are free or prescribed; u: displacement of
+   this rank's nodes */
+static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], PetscReal *largest)
 {
   const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
   const PetscInt  n     = body->model.element->nodes * body->mesh.dim;
@@ -43,7 +43,7 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscSca
 
   PetscFunctionBegin;
   *largest = 0;
-  PetscCall((*body->model.element->ops->stiffness)(body->model.element, e, zero, K));
+  PetscCall((*body->model.element->ops->stiffness)(body->model.element, e, u, K));
   PetscCall(BodyGetElementMass(body, e, M));
   for (PetscInt i = 0; i < n; i++)
     if (!IsMassless(body, nodes[i / body->mesh.dim])) kept[n_kept++] = i;
@@ -65,12 +65,15 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscSca
 /* Work space of power iteration on a chunk of elements, each with nodes of its own */
 typedef struct {
   PetscInt   count;
-  PetscInt  *connectivity;
+  PetscInt  *connectivity, *elements;
   PetscReal *coordinates, *size;
   PetscReal *inverse_mass, *u, *f;
+  PetscReal *at, *moved, *force; /* displacement that the eigenvalues are those at, with u, and the force there */
+  char      *memory;             /* of the history */
+  PetscReal *history;            /* NULL: the material is virgin, or has none */
 } Chunk;
 
-static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
+static PetscErrorCode FillChunk(Body body, PetscInt begin, const PetscScalar u[], Chunk *chunk)
 {
   const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
@@ -80,6 +83,7 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
     const PetscInt *nodes  = body->mesh.connectivity + (begin + c) * n;
     PetscReal       extent = 0;
 
+    chunk->elements[c] = begin + c;
     PetscCall(BodyGetElementMass(body, begin + c, M));
     for (PetscInt a = 0; a < n; a++) {
       const PetscInt own = c * n + a;
@@ -90,6 +94,7 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
         const PetscReal mass = M[i * n * dim + i];
 
         chunk->coordinates[own * dim + d] = body->mesh.coordinates[nodes[a] * dim + d];
+        chunk->at[own * dim + d]          = PetscRealPart(u[nodes[a] * dim + d]);
         extent = PetscMax(extent, PetscAbsReal(body->mesh.coordinates[nodes[a] * dim + d] - body->mesh.coordinates[nodes[0] * dim + d]));
         chunk->inverse_mass[own * dim + d] = mass > 0 && !IsMassless(body, nodes[a]) ? 1 / mass : 0;
         /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
@@ -102,11 +107,19 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, Chunk *chunk)
 }
 
 /* Rayleigh quotients after some iterations, one for each element of the chunk */
-static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscReal eigenvalues[])
+static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscBool deformed, PetscReal eigenvalues[])
 {
   const PetscInt n = body->model.element->nodes * body->mesh.dim;
 
   PetscFunctionBegin;
+  if (deformed) {
+    if (chunk->history) BodyHistoryGather(body, PETSC_TRUE, chunk->count, chunk->elements, chunk->history);
+    element->history.start = chunk->history;
+    element->history.end   = NULL;
+    element->history.step  = -1;
+    PetscCall(PetscArrayzero(chunk->force, chunk->count * n));
+    PetscCall((*element->ops->internalforce)(element, chunk->at, chunk->force));
+  }
   for (PetscInt iteration = 0; iteration <= POWER_ITERATIONS; iteration++) {
     for (PetscInt c = 0; c < chunk->count; c++) {
       PetscReal *u = chunk->u + c * n, norm = 0;
@@ -118,7 +131,11 @@ static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscRea
       for (PetscInt i = 0; i < n && norm > 0; i++) u[i] *= PROBE_STRAIN * chunk->size[c] / norm;
     }
     PetscCall(PetscArrayzero(chunk->f, chunk->count * n));
-    PetscCall((*element->ops->internalforce)(element, chunk->u, chunk->f));
+    if (deformed) {
+      for (PetscInt i = 0; i < chunk->count * n; i++) chunk->moved[i] = chunk->at[i] + chunk->u[i];
+      PetscCall((*element->ops->internalforce)(element, chunk->moved, chunk->f));
+      for (PetscInt i = 0; i < chunk->count * n; i++) chunk->f[i] -= chunk->force[i];
+    } else PetscCall((*element->ops->internalforce)(element, chunk->u, chunk->f));
     for (PetscInt c = 0; c < chunk->count; c++) {
       PetscReal *u = chunk->u + c * n, *f = chunk->f + c * n, uKu = 0, uMu = 0;
 
@@ -134,28 +151,33 @@ static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscRea
 }
 
 /* Estimates for all elements of this rank */
-static PetscErrorCode EstimateEigenvalues(Body body, PetscReal eigenvalues[])
+static PetscErrorCode EstimateEigenvalues(Body body, const PetscScalar u[], PetscBool deformed, PetscReal eigenvalues[])
 {
   const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   Chunk          chunk;
   Element        element;
+  PetscInt       size;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc6(CHUNK * n, &chunk.connectivity, CHUNK * n * dim, &chunk.coordinates, CHUNK, &chunk.size, CHUNK * n * dim,
                          &chunk.inverse_mass, CHUNK * n * dim, &chunk.u, CHUNK * n * dim, &chunk.f));
+  PetscCall(PetscMalloc4(CHUNK, &chunk.elements, CHUNK * n * dim, &chunk.at, CHUNK * n * dim, &chunk.moved, CHUNK * n * dim, &chunk.force));
+  PetscCall(BodyHistoryCreateBuffer(body, deformed ? CHUNK : 0, &size, &chunk.memory, &chunk.history));
   for (PetscInt begin = 0; begin < body->model.element->count; begin += CHUNK) {
     chunk.count = PetscMin(CHUNK, body->model.element->count - begin);
-    PetscCall(FillChunk(body, begin, &chunk));
+    PetscCall(FillChunk(body, begin, u, &chunk));
     PetscCall(ElementDuplicate(body->model.element, NULL, &element));
     PetscCall(ElementSetUp(element, chunk.count, chunk.connectivity, chunk.coordinates));
-    PetscCall(Iterate(body, element, &chunk, eigenvalues + begin));
+    PetscCall(Iterate(body, element, &chunk, deformed, eigenvalues + begin));
     PetscCall(ElementDestroy(&element));
   }
+  PetscCall(PetscFree(chunk.memory));
+  PetscCall(PetscFree4(chunk.elements, chunk.at, chunk.moved, chunk.force));
   PetscCall(PetscFree6(chunk.connectivity, chunk.coordinates, chunk.size, chunk.inverse_mass, chunk.u, chunk.f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], PetscReal *largest)
+static PetscErrorCode LargestOfLumped(Body body, const PetscScalar u[], PetscBool deformed, PetscReal *largest)
 {
   const PetscInt count = body->model.element->count;
   PetscReal     *eigenvalues, top = 0, above = PETSC_MAX_REAL, exact, last = -1;
@@ -163,7 +185,7 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], Petsc
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(count, &eigenvalues));
-  PetscCall(EstimateEigenvalues(body, eigenvalues));
+  PetscCall(EstimateEigenvalues(body, u, deformed, eigenvalues));
   for (PetscInt e = 0; e < count; e++) top = PetscMax(top, eigenvalues[e]);
   /* from the top down, band by band */
   while (above > CLOSE * top && n_exact < MAX_EXACT) {
@@ -172,7 +194,7 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], Petsc
     for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
       if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
       last = eigenvalues[e];
-      PetscCall(GetElementEigenvalue(body, e, zero, &exact));
+      PetscCall(GetElementEigenvalue(body, e, u, &exact));
       *largest = PetscMax(*largest, exact);
       n_exact++;
     }
@@ -182,28 +204,44 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar zero[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* 2 / omega_max, from below; less with dashpots */
-PetscErrorCode BodyComputeStableStep(Body body)
+/* 2 / omega_max, from below; less with dashpots. u: displacement of this rank's nodes; NULL: none. Collective. */
+PetscErrorCode BodyComputeStableStepAt(Body body, const PetscScalar u[], PetscReal *step)
 {
-  PetscReal    largest = 0, alpha, beta, rate;
-  PetscScalar *zero;
+  PetscReal          largest = 0, alpha, beta, rate;
+  PetscScalar       *zero    = NULL;
+  const PetscScalar *at      = u;
+  ElementHistory     before;
 
   PetscFunctionBegin;
-  if (body->time.stable_step > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(body->mesh.local_nodes * body->mesh.dim, &zero));
-  if (body->mass.type == BODY_MASS_LUMPED && body->mesh.dim > 1) PetscCall(LargestOfLumped(body, zero, &largest));
+  if (!u) {
+    PetscCall(PetscCalloc1(body->mesh.local_nodes * body->mesh.dim, &zero));
+    at = zero;
+  }
+  if (u) BodyHistoryLook(body, &before);
+  else BodyHistoryForget(body, &before);
+  if (body->mass.type == BODY_MASS_LUMPED && body->mesh.dim > 1) PetscCall(LargestOfLumped(body, at, (PetscBool)(u != NULL), &largest));
   else
     for (PetscInt e = 0; e < body->model.element->count; e++) {
       PetscReal eigenvalue;
 
-      PetscCall(GetElementEigenvalue(body, e, zero, &eigenvalue));
+      PetscCall(GetElementEigenvalue(body, e, at, &eigenvalue));
       largest = PetscMax(largest, eigenvalue);
     }
+  BodyHistoryLookBack(body, &before);
   PetscCall(PetscFree(zero));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
   PetscCall(BodyGetDamping(body, &alpha, &beta));
   /* of dashpots that feel the velocity at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being alpha + beta omega^2 */
-  rate                   = alpha + beta * largest;
-  body->time.stable_step = 4 / (rate + PetscSqrtReal(PetscSqr(rate) + 4 * largest));
+  rate  = alpha + beta * largest;
+  *step = 4 / (rate + PetscSqrtReal(PetscSqr(rate) + 4 * largest));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of the undeformed body */
+PetscErrorCode BodyComputeStableStep(Body body)
+{
+  PetscFunctionBegin;
+  if (body->time.stable_step > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyComputeStableStepAt(body, NULL, &body->time.stable_step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -64,6 +64,7 @@ PetscErrorCode BodyRestore(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(&body->saved, &body->state));
+  BodyHistoryRestore(body);
   body->repeats = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_SAVED));

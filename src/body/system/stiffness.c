@@ -17,6 +17,7 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscCall((*element->ops->internalforce)(element, u_array, f_array));
   PetscCall(BodyRestoreLocalSum(body, f, &f_local, &f_array));
   PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
+  PetscCall(BodyHistoryNote(body, u));
   PetscCall(PetscLogEventEnd(BODY_InternalForce, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -154,10 +155,13 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
   PetscScalar        tangent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *zero = NULL;
   const PetscScalar *array;
   Element            element;
+  ElementHistory     before;
   Vec                local;
 
   PetscFunctionBegin;
   PetscCall(BodyGetElement(body, &element));
+  before = body->model.element->history;
+  if (!u) BodyHistoryForget(body, &before);
   PetscCall(PetscLogEventBegin(BODY_Tangent, body, 0, 0, 0));
   PetscCall(MatZeroEntries(K));
   if (u) PetscCall(BodyGetLocalRead(body, u, &local, &array));
@@ -171,6 +175,7 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
     PetscCall(MatSetValues(K, n, dofs, n, dofs, tangent, ADD_VALUES));
   }
   if (u) PetscCall(BodyRestoreLocalRead(body, u, &local, &array));
+  else BodyHistoryLookBack(body, &before);
   PetscCall(PetscFree(zero));
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
@@ -209,12 +214,72 @@ PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
 {
   const PetscScalar *u;
   Vec                local;
+  ElementHistory     before;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
+  BodyHistoryLook(body, &before);
   PetscCall((*body->model.element->ops->stress)(body->model.element, u, stress));
+  BodyHistoryLookBack(body, &before);
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputePlasticStrain - mean equivalent plastic strain of each element
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ strain - for each cell of this rank, in the order of `BodyGetCells()`; zero where the material is not plastic. May be `NULL`
+- work   - plastic work in the elements of this rank, with what hardening stores of it [J]
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyComputeStress()`, `BodyHasHistory()`
+@*/
+PetscErrorCode BodyComputePlasticStrain(Body body, PetscReal strain[], PetscReal *work)
+{
+  Element        element = body->model.element;
+  ElementHistory before;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(work, 3);
+  *work = 0;
+  if (strain) PetscCall(PetscArrayzero(strain, element->count));
+  if (!body->history || !element->ops->plastic) PetscFunctionReturn(PETSC_SUCCESS);
+  BodyHistoryLook(body, &before);
+  PetscCall((*element->ops->plastic)(element, work, strain));
+  BodyHistoryLookBack(body, &before);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyHasHistory - whether the material of a body flows plastically
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. has - `PETSC_TRUE` if so
+
+  Level: developer
+
+.seealso: `Body`, `BodyComputePlasticStrain()`
+@*/
+PetscErrorCode BodyHasHistory(Body body, PetscBool *has)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(has, 2);
+  *has = (PetscBool)(body->history != NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -66,7 +66,7 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
 static PetscErrorCode MaterialKernels_Stable(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
-  *kernels = (MaterialKernels){material->data, Stress, Energy, Tangent};
+  *kernels = (MaterialKernels){.data = material->data, .stress = Stress, .energy = Energy, .tangent = Tangent};
   if (plane_stress) PetscCall(MaterialCondenseKernels(material, NULL, kernels)); /* the thickness by Newton's method */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

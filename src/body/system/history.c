@@ -1,0 +1,257 @@
+/*
+   The history of a body's material, number by number at each point of integration. It is part of the state, and goes with it: there is one
+   of the saved state, one of the start of the substep, and one of its end, which every internal force writes that is computed in the
+   substep. Nothing is copied from step to step: buffers change their places.
+
+   What looks at a state, energies or stresses, does so with its history held, so that nothing flows while it looks.
+*/
+#include <body/layout/bodyimpl.h>
+
+enum { N_BUFFERS = 4 };
+
+#define ALIGNMENT 64 /* bytes, as vectors of element loops want it */
+
+struct _n_BodyHistory {
+  size_t           size; /* numbers of all points */
+  char            *memory;
+  PetscReal       *buffers[N_BUFFERS];  /* the last is for BodyKeep() */
+  PetscReal       *saved, *start, *end; /* some of them: of the saved state, of the start of the substep, and of its end */
+  PetscReal       *now;                 /* of the present state: one of these */
+  PetscObjectId    id;                  /* the displacement that `end` belongs to */
+  PetscObjectState state;               /* as it was then */
+  PetscInt         epoch;               /* changes with whatever `start` points to */
+};
+
+/* Numbers of some elements' points, with room for a whole batch at the end */
+static size_t GetSize(const ElementHistory *history, PetscInt count)
+{
+  return (size_t)((count + 7) / 8) * 8 * (size_t)(history->points * history->n);
+}
+
+static PetscBool HasHistory(Body body)
+{
+  return (PetscBool)(body->history != NULL && !body->model.linearized && !body->unloaded);
+}
+
+/* Elements are to answer with the history as it is, and nothing flows */
+static void Hold(Body body, const PetscReal *now)
+{
+  ElementHistory *history = &body->model.element->history;
+
+  history->start = now;
+  history->end   = NULL;
+  history->step  = -1;
+}
+
+/* Elements are to answer for a substep from `start` */
+static void Open(Body body)
+{
+  ElementHistory *history = &body->model.element->history;
+
+  history->start = body->history->start;
+  history->end   = body->history->end;
+  history->step  = body->time.step;
+}
+
+/* Where the end of a substep can be written */
+static PetscReal *FindFree(const struct _n_BodyHistory *history)
+{
+  for (PetscInt k = 0; k < N_BUFFERS - 1; k++)
+    if (history->buffers[k] != history->saved && history->buffers[k] != history->start) return history->buffers[k];
+  return NULL;
+}
+
+/* BodySetUpHistory - with the virgin material everywhere; after BodySetUpSteps() */
+PetscErrorCode BodySetUpHistory(Body body)
+{
+  const ElementHistory  *of_element = &body->model.element->history;
+  struct _n_BodyHistory *history;
+  char                  *first;
+
+  PetscFunctionBegin;
+  if (!of_element->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&history));
+  body->history = history;
+  history->size = GetSize(of_element, body->model.element->count);
+  PetscCall(PetscCalloc1(N_BUFFERS * history->size * sizeof(PetscReal) + ALIGNMENT, &history->memory));
+  first = history->memory + (ALIGNMENT - (size_t)history->memory % ALIGNMENT) % ALIGNMENT;
+  for (size_t k = 0; k < N_BUFFERS; k++) history->buffers[k] = (PetscReal *)(void *)first + k * history->size;
+  history->saved = history->start = history->now = history->buffers[0];
+  history->end                                   = FindFree(history);
+  Hold(body, history->now);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyDestroyHistory(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->history) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree(body->history->memory));
+  PetscCall(PetscFree(body->history));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistoryBegin - a substep begins with the present state */
+PetscErrorCode BodyHistoryBegin(Body body)
+{
+  struct _n_BodyHistory *history = body->history;
+
+  PetscFunctionBegin;
+  if (!HasHistory(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  history->start = history->now;
+  history->end   = FindFree(history);
+  history->id    = 0;
+  history->epoch++;
+  Open(body);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistoryNote - the internal force at a displacement has been computed, and the history at the end of the substep with it */
+PetscErrorCode BodyHistoryNote(Body body, Vec u)
+{
+  PetscFunctionBegin;
+  if (!HasHistory(body) || !body->model.element->history.end) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectGetId((PetscObject)u, &body->history->id));
+  PetscCall(PetscObjectStateGet((PetscObject)u, &body->history->state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistoryEnd - the displacement at the end of the substep is there: so is the history then, without another look at the elements where
+   the last internal force was at that displacement */
+PetscErrorCode BodyHistoryEnd(Body body)
+{
+  struct _n_BodyHistory *history = body->history;
+  PetscObjectId          id;
+  PetscObjectState       state;
+
+  PetscFunctionBegin;
+  if (!HasHistory(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectGetId((PetscObject)body->state.u, &id));
+  PetscCall(PetscObjectStateGet((PetscObject)body->state.u, &state));
+  if (id != history->id || state != history->state) PetscCall(BodyComputeInternalForce(body, body->state.u, body->work.nodes[0]));
+  history->now = history->end;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistorySave - the present state becomes the saved one */
+void BodyHistorySave(Body body)
+{
+  struct _n_BodyHistory *history = body->history;
+
+  if (!HasHistory(body)) return;
+  history->saved = history->start = history->now;
+  history->end                    = FindFree(history);
+  history->epoch++;
+  Hold(body, history->now);
+}
+
+/* BodyHistoryRestore - the saved state becomes the present one */
+void BodyHistoryRestore(Body body)
+{
+  struct _n_BodyHistory *history = body->history;
+
+  if (!HasHistory(body)) return;
+  history->now = history->start = history->saved;
+  history->end                  = FindFree(history);
+  history->epoch++;
+  Hold(body, history->now);
+}
+
+/* BodyHistoryKeep - the state has been put aside, or, `back`, brought back */
+PetscErrorCode BodyHistoryKeep(Body body, PetscBool back)
+{
+  struct _n_BodyHistory *history = body->history;
+  PetscReal             *kept    = history ? history->buffers[N_BUFFERS - 1] : NULL;
+
+  PetscFunctionBegin;
+  if (!HasHistory(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!back) {
+    PetscCall(PetscArraycpy(kept, history->now, history->size));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /* a step of one substep may go on to be completed; the start of the last one of several is gone, and nobody asks for it */
+  history->start = history->saved;
+  history->end   = FindFree(history);
+  history->id    = 0;
+  history->epoch++;
+  PetscCall(PetscArraycpy(history->end, kept, history->size));
+  history->now = history->end;
+  if (body->time.substeps == 1) Open(body);
+  else Hold(body, history->now);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistoryLook - elements answer for the present state, with its history as it is; `before`: for BodyHistoryLookBack() */
+void BodyHistoryLook(Body body, ElementHistory *before)
+{
+  *before = body->model.element->history;
+  if (body->history) Hold(body, body->history->now);
+}
+
+/* BodyHistoryForget - elements answer as if their material were virgin, and nothing irreversible happened */
+void BodyHistoryForget(Body body, ElementHistory *before)
+{
+  *before                            = body->model.element->history;
+  body->model.element->history.start = NULL;
+}
+
+void BodyHistoryLookBack(Body body, const ElementHistory *before)
+{
+  body->model.element->history = *before;
+}
+
+/* BodyHistoryCopyStart - what all elements of this rank answer from at present, and how long their step is */
+PetscErrorCode BodyHistoryCopyStart(Body body, PetscReal start[], PetscReal *step)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(start, body->model.element->history.start, body->history->size));
+  *step = body->model.element->history.step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistoryUse - elements answer for a step from another history, of all elements, as BodyHistoryCopyStart() has given it */
+void BodyHistoryUse(Body body, const PetscReal start[], PetscReal step, ElementHistory *before)
+{
+  *before                            = body->model.element->history;
+  body->model.element->history.start = start;
+  body->model.element->history.end   = NULL;
+  body->model.element->history.step  = step;
+}
+
+/* BodyHistoryCreateBuffer - room for the history of all elements, or of `n` of them; NULL where the material has none */
+PetscErrorCode BodyHistoryCreateBuffer(Body body, PetscInt n, PetscInt *size, char **memory, PetscReal **buffer)
+{
+  PetscFunctionBegin;
+  *memory = NULL;
+  *buffer = NULL;
+  *size   = body->history ? (PetscInt)GetSize(&body->model.element->history, n) : 0;
+  if (!body->history) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1((size_t)*size * sizeof(PetscReal) + ALIGNMENT, memory));
+  *buffer = (PetscReal *)(void *)(*memory + (ALIGNMENT - (size_t)*memory % ALIGNMENT) % ALIGNMENT);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistoryGather - what elements of this rank, by their numbers, begin the substep with; `now`: what the present state has */
+void BodyHistoryGather(Body body, PetscBool now, PetscInt n, const PetscInt elements[], PetscReal buffer[])
+{
+  const ElementHistory *history = &body->model.element->history;
+  const PetscReal      *from    = now ? body->history->now : body->history->start;
+  const PetscInt        width   = history->points * history->n;
+
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt k = 0; k < width; k++)
+      buffer[(i / 8 * width + k) * 8 + i % 8] = from[(elements[i] / 8 * width + k) * 8 + elements[i] % 8];
+}
+
+/* BodyHistoryGetEpoch - a number that changes with the start of the substep */
+PetscInt BodyHistoryGetEpoch(Body body)
+{
+  return body->history ? body->history->epoch : 0;
+}
+
+/* BodyHistoryGetSaved - the history of the saved state, of all elements, for checkpoints; NULL where the material has none */
+PetscReal *BodyHistoryGetSaved(Body body, size_t *size)
+{
+  *size = body->history ? body->history->size : 0;
+  return body->history ? body->history->saved : NULL;
+}

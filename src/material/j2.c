@@ -1,0 +1,484 @@
+/*
+   Plasticity of metals at finite strain: F = Fe Fp, elasticity by Hencky's energy of the logarithmic strain E = 1/2 ln(Fe^T Fe),
+   W = lambda/2 (tr E)^2 + mu E : E, von Mises' yield condition for the stress M = lambda tr(E) 1 + 2 mu E that works on it, and the
+   exponential map, by which the step is a radial return in logarithmic strains (A. L. Eterovic, K.-J. Bathe, 1990; J. C. Simo, 1992; M.
+   Ortiz, L. Stainier, 1999). With the plastic deformation at the start of the step, Fe = F Fp^-1 and C = Fe^T Fe,
+
+     P = Fe S Fp^-T,  S = D ln(C)[M],
+
+   which is C^-1 M where M has the axes of C, as without kinematic hardening. Plastic flow by the increment D turns Fp^-1 into Fp^-1
+   exp(-D).
+
+   E comes from C - 1 = A, which has the digits of small strains, by the series of the logarithm, a polynomial in A that becomes one of degree
+   2 by Cayley and Hamilton's A^3 = I A^2 - II A + III. Where strains are too large for the series it comes from eigenvalues.
+*/
+#include "logarithm.h"
+#include "symmetric.h"
+#include <impakt/private/plastic.h>
+#include <math.h>
+
+/* Largest norm of A for the series; beyond, eigenvalues */
+#define SERIES_LIMIT 0.2
+/* Its terms: (-1)^n / (n + 1) */
+#define MAX_TERMS 23
+static const PetscReal terms_of_series[MAX_TERMS] = {1,       -1. / 2,  1. / 3,  -1. / 4,  1. / 5,  -1. / 6,  1. / 7,  -1. / 8,
+                                                     1. / 9,  -1. / 10, 1. / 11, -1. / 12, 1. / 13, -1. / 14, 1. / 15, -1. / 16,
+                                                     1. / 17, -1. / 18, 1. / 19, -1. / 20, 1. / 21, -1. / 22, 1. / 23};
+/* Largest norm of a plastic increment for the series of the exponential; beyond, that of a half of it, or a quarter, is squared */
+#define EXPONENT_LIMIT 0.1
+#define EXPONENT_TERMS 9
+#define MAX_HALVES     40
+
+static const PetscReal virgin[PLASTIC_SIZE_CENTRED][SIMD_WIDTH] = {{0}};
+
+/* The elastic strain of a batch if nothing flows, and what leads there */
+typedef struct {
+  SimdReal Fe[9];   /* less 1 */
+  SimdReal A[6];    /* Fe^T Fe - 1 */
+  SimdReal E[6];    /* logarithmic strain */
+  SimdReal squares; /* A : A */
+} Trial;
+
+/* Fe - 1 = H + G + H G with G = Fp^-1 - 1, and A = Fe + Fe^T - 2 + (Fe - 1)^T (Fe - 1) */
+SIMD_INLINE void GetElasticPart(PetscInt part, const PetscReal H[9][8], const PetscReal history[][8], Trial *trial)
+{
+  SimdVector h[9], g[9], f[9];
+
+  for (PetscInt i = 0; i < 9; i++) {
+    h[i] = SymmetricLoad(H[i], part);
+    g[i] = SymmetricLoad(history[PLASTIC_DEFORMATION + i], part);
+  }
+#pragma GCC unroll 3
+  for (PetscInt i = 0; i < 3; i++)
+#pragma GCC unroll 3
+    for (PetscInt j = 0; j < 3; j++) {
+      f[3 * i + j] = h[3 * i + j] + g[3 * i + j] + h[3 * i] * g[j] + h[3 * i + 1] * g[3 + j] + h[3 * i + 2] * g[6 + j];
+      SimdGetParts(trial->Fe[3 * i + j])[part] = f[3 * i + j];
+    }
+  {
+    const Symmetric a = {2 * f[0] + f[0] * f[0] + f[3] * f[3] + f[6] * f[6],    2 * f[4] + f[1] * f[1] + f[4] * f[4] + f[7] * f[7],
+                         2 * f[8] + f[2] * f[2] + f[5] * f[5] + f[8] * f[8],    f[1] + f[3] + f[0] * f[1] + f[3] * f[4] + f[6] * f[7],
+                         f[5] + f[7] + f[1] * f[2] + f[4] * f[5] + f[7] * f[8], f[2] + f[6] + f[0] * f[2] + f[3] * f[5] + f[6] * f[8]};
+
+    SymmetricStore(a, trial->A, part);
+    SimdGetParts(trial->squares)[part] = SymmetricSquares(a);
+  }
+}
+
+/* E = 1/2 ln(1 + A) = 1/2 A (1 - A/2 + A^2/3 - ...), so many terms */
+SIMD_INLINE void TakeSeries(PetscInt part, PetscInt terms, Trial *trial)
+{
+  const Symmetric  a = SymmetricGet(trial->A, part), square = SymmetricProduct(a, a);
+  const SimdVector first = a.xx + a.yy + a.zz, second = 0.5 * (first * first - (square.xx + square.yy + square.zz));
+  const SimdVector third = SymmetricDeterminant(a);
+  SimdVector       x = 0 * first, y = x, z = x;
+
+  for (PetscInt n = terms - 1; n >= 0; n--) {
+    const SimdVector last = z;
+
+    z = y + first * last;
+    y = x - second * last;
+    x = third * last + terms_of_series[n];
+  }
+  SymmetricStore(SymmetricPolynomial(0.5 * third * z, 0.5 * (x - second * z), 0.5 * (y + first * z), a, square), trial->E, part);
+}
+
+static void ToMatrix(const PetscReal a[6], PetscReal m[3][3])
+{
+  m[0][0] = a[0];
+  m[1][1] = a[1];
+  m[2][2] = a[2];
+  m[0][1] = m[1][0] = a[3];
+  m[1][2] = m[2][1] = a[4];
+  m[0][2] = m[2][0] = a[5];
+}
+
+static void FromMatrix(PetscReal m[3][3], PetscReal a[6])
+{
+  a[0] = m[0][0];
+  a[1] = m[1][1];
+  a[2] = m[2][2];
+  a[3] = m[0][1];
+  a[4] = m[1][2];
+  a[5] = m[0][2];
+}
+
+static void TakeEigenvalues(int p, Trial *trial)
+{
+  PetscReal    a[6], m[3][3];
+  SymmetricLog log;
+
+  for (int i = 0; i < 6; i++) a[i] = trial->A[i][p];
+  ToMatrix(a, m);
+  SymmetricLogCreate((const PetscReal(*)[3])m, PETSC_FALSE, &log);
+  SymmetricLogGet(&log, m);
+  FromMatrix(m, a);
+  for (int i = 0; i < 6; i++) trial->E[i][p] = 0.5 * a[i];
+}
+
+/* Terms after which the series of the logarithm has all its digits */
+SIMD_INLINE PetscInt CountTerms(PetscReal norm)
+{
+  return norm < 1e-3 ? 5 : norm < 0.02 ? 9 : norm < 0.08 ? 14 : MAX_TERMS;
+}
+
+SIMD_INLINE void GetTrial(const PetscReal H[9][8], const PetscReal history[][8], Trial *trial)
+{
+  PetscReal largest = 0;
+  PetscInt  terms;
+
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) GetElasticPart(part, H, history, trial);
+  for (int p = 0; p < SIMD_WIDTH; p++) largest = PetscMax(largest, trial->squares[p]);
+  terms = CountTerms(PetscSqrtReal(PetscMin(largest, SERIES_LIMIT * SERIES_LIMIT)));
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) TakeSeries(part, terms, trial);
+  if (largest > SERIES_LIMIT * SERIES_LIMIT)
+    for (int p = 0; p < SIMD_WIDTH; p++)
+      if (trial->squares[p] > SERIES_LIMIT * SERIES_LIMIT) TakeEigenvalues(p, trial);
+}
+
+/* M = lambda tr(E) 1 + 2 mu E */
+SIMD_INLINE Symmetric Hencky(const Isotropic *elastic, Symmetric e)
+{
+  const SimdVector d      = elastic->lambda * (e.xx + e.yy + e.zz);
+  const PetscReal  two_mu = 2 * elastic->mu;
+
+  return (Symmetric){d + two_mu * e.xx, d + two_mu * e.yy, d + two_mu * e.zz, two_mu * e.xy, two_mu * e.yz, two_mu * e.zx};
+}
+
+/* P = Fe S Fp^-T where M has the axes of C: Fe^-T M Fp^-T. Returns NaN times P where the point is inverted. */
+SIMD_INLINE void StoreStress(PetscInt part, const Trial *trial, const PetscReal history[][8], Symmetric m, PetscReal P[9][8])
+{
+  SimdVector f[9], c[9], g[9], n[9];
+  SimdReal   determinant, inverse;
+
+  for (PetscInt i = 0; i < 9; i++) {
+    f[i] = SymmetricLoad(trial->Fe[i], part);
+    g[i] = SymmetricLoad(history[PLASTIC_DEFORMATION + i], part);
+  }
+  for (PetscInt i = 0; i < 9; i += 4) {
+    f[i] += 1;
+    g[i] += 1;
+  }
+  c[0] = f[4] * f[8] - f[5] * f[7];
+  c[1] = f[5] * f[6] - f[3] * f[8];
+  c[2] = f[3] * f[7] - f[4] * f[6];
+  c[3] = f[2] * f[7] - f[1] * f[8];
+  c[4] = f[0] * f[8] - f[2] * f[6];
+  c[5] = f[1] * f[6] - f[0] * f[7];
+  c[6] = f[1] * f[5] - f[2] * f[4];
+  c[7] = f[2] * f[3] - f[0] * f[5];
+  c[8] = f[0] * f[4] - f[1] * f[3];
+
+  SimdGetParts(determinant)[0] = f[0] * c[0] + f[1] * c[1] + f[2] * c[2];
+  for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) inverse[p] = determinant[p] > 0 ? 1 / determinant[p] : NAN;
+#pragma GCC unroll 3
+  for (PetscInt i = 0; i < 3; i++) {
+    n[3 * i]     = SimdGetParts(inverse)[0] * (c[3 * i] * m.xx + c[3 * i + 1] * m.xy + c[3 * i + 2] * m.zx);
+    n[3 * i + 1] = SimdGetParts(inverse)[0] * (c[3 * i] * m.xy + c[3 * i + 1] * m.yy + c[3 * i + 2] * m.yz);
+    n[3 * i + 2] = SimdGetParts(inverse)[0] * (c[3 * i] * m.zx + c[3 * i + 1] * m.yz + c[3 * i + 2] * m.zz);
+#pragma GCC unroll 3
+    for (PetscInt j = 0; j < 3; j++)
+      SimdGetParts(P[3 * i + j])[part] = n[3 * i] * g[3 * j] + n[3 * i + 1] * g[3 * j + 1] + n[3 * i + 2] * g[3 * j + 2];
+  }
+}
+
+/* NaN where a point is inverted, else 1 */
+static PetscReal Defined(PetscReal f[3][3])
+{
+  return f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) + f[0][1] * (f[1][2] * f[2][0] - f[1][0] * f[2][2]) +
+                     f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]) >
+                 0
+             ? 1
+             : NAN;
+}
+
+/* P = Fe S Fp^-T with S = D ln(C)[M] for one point */
+static void GetStressOfPoint(const SymmetricLog *log, PetscReal f[3][3], PetscReal g[3][3], PetscReal m[3][3], PetscReal P[3][3])
+{
+  const PetscReal defined = Defined(f);
+  PetscReal       S[3][3], half[3][3];
+
+  SymmetricLogApply(log, (const PetscReal(*)[3])m, S);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) half[i][j] = f[i][0] * S[0][j] + f[i][1] * S[1][j] + f[i][2] * S[2][j];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) P[i][j] = defined * (half[i][0] * g[j][0] + half[i][1] * g[j][1] + half[i][2] * g[j][2]);
+}
+
+static void GetMatrices(const Trial *trial, const PetscReal history[][8], int p, PetscReal f[3][3], PetscReal g[3][3], PetscReal a[3][3])
+{
+  PetscReal packed[6];
+
+  for (int i = 0; i < 9; i++) {
+    f[i / 3][i % 3] = (i % 4 == 0) + trial->Fe[i][p];
+    g[i / 3][i % 3] = (i % 4 == 0) + history[PLASTIC_DEFORMATION + i][p];
+  }
+  for (int i = 0; i < 6; i++) packed[i] = trial->A[i][p];
+  ToMatrix(packed, a);
+}
+
+/* With kinematic hardening M has axes of its own: point by point */
+static void StoreCentredStress(const Trial *trial, const PetscReal history[][8], PetscReal M[6][8], PetscReal P[9][8])
+{
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    PetscReal    f[3][3], g[3][3], a[3][3], m[3][3], stress[3][3], packed[6];
+    SymmetricLog log;
+
+    GetMatrices(trial, history, p, f, g, a);
+    for (int i = 0; i < 6; i++) packed[i] = M[i][p];
+    ToMatrix(packed, m);
+    SymmetricLogCreate((const PetscReal(*)[3])a, PETSC_FALSE, &log);
+    GetStressOfPoint(&log, f, g, m, stress);
+    for (int i = 0; i < 9; i++) P[i][p] = stress[i / 3][i % 3];
+  }
+}
+
+/* Deviator of M less the centre of the yield surface */
+SIMD_INLINE Symmetric Relative(const Plastic *plastic, Symmetric m, const PetscReal history[][8], PetscInt part)
+{
+  const SimdVector mean = (m.xx + m.yy + m.zz) / 3;
+  Symmetric        s    = {m.xx - mean, m.yy - mean, m.zz - mean, m.xy, m.yz, m.zx};
+
+  if (plastic->kinematic > 0) s = SymmetricAdd(s, SymmetricAll(-1), SymmetricGet(history + PLASTIC_CENTRE, part));
+  return s;
+}
+
+/* exp(-D) - 1 of a batch: the series of a small part of D, squared as often as it takes */
+SIMD_INLINE Symmetric ExponentialLess1(Symmetric d, PetscInt halves)
+{
+  const PetscReal  scale  = -1 / PetscPowRealInt(2, (int)halves);
+  const Symmetric  x      = {scale * d.xx, scale * d.yy, scale * d.zz, scale * d.xy, scale * d.yz, scale * d.zx};
+  const Symmetric  square = SymmetricProduct(x, x);
+  const SimdVector second = -0.5 * (square.xx + square.yy + square.zz), third = SymmetricDeterminant(x); /* x has no trace */
+  SimdVector       a = 0 * second, b = a, c = a;
+  PetscReal        factorial = 1;
+  Symmetric        sum;
+
+  for (PetscInt n = 2; n <= EXPONENT_TERMS; n++) factorial *= (PetscReal)n;
+  for (PetscInt n = EXPONENT_TERMS; n > 0; n--) {
+    const SimdVector last = c;
+
+    c = b;
+    b = a - second * last;
+    a = third * last + 1 / factorial;
+    factorial /= (PetscReal)n;
+  }
+  sum = SymmetricPolynomial(third * c, a - second * c, b, x, square);
+  for (PetscInt k = 0; k < halves; k++) {
+    const Symmetric once = sum;
+
+    sum = SymmetricAdd(SymmetricProduct(once, once), SymmetricAll(2), once);
+  }
+  return sum;
+}
+
+/* Fp^-1 exp(-D), equivalent strain, work and centre at the end of the step; `ratio`: of the increment D to the stress relative to the
+ * centre
+ */
+SIMD_INLINE void Flow(const Plastic *plastic, PetscInt part, PetscInt halves, Symmetric relative, SimdVector ratio, SimdVector work,
+                      const PetscReal start[][8], PetscReal end[][8])
+{
+  const Symmetric d = {ratio * relative.xx, ratio * relative.yy, ratio * relative.zz,
+                       ratio * relative.xy, ratio * relative.yz, ratio * relative.zx};
+  const Symmetric x = ExponentialLess1(d, halves);
+  SimdVector      g[9];
+
+  for (PetscInt i = 0; i < 9; i++) g[i] = SymmetricLoad(start[PLASTIC_DEFORMATION + i], part);
+#pragma GCC unroll 3
+  for (PetscInt i = 0; i < 3; i++) {
+    SimdVector *row = &g[3 * i], a = row[0] + (i == 0 ? 1 : 0), b = row[1] + (i == 1 ? 1 : 0), c = row[2] + (i == 2 ? 1 : 0);
+
+    SimdGetParts(end[PLASTIC_DEFORMATION + 3 * i])[part]     = row[0] + a * x.xx + b * x.xy + c * x.zx;
+    SimdGetParts(end[PLASTIC_DEFORMATION + 3 * i + 1])[part] = row[1] + a * x.xy + b * x.yy + c * x.yz;
+    SimdGetParts(end[PLASTIC_DEFORMATION + 3 * i + 2])[part] = row[2] + a * x.zx + b * x.yz + c * x.zz;
+  }
+  if (plastic->kinematic > 0) {
+    const PetscReal modulus = 2 * plastic->kinematic / 3;
+    const Symmetric centre  = SymmetricGet(start + PLASTIC_CENTRE, part);
+
+    SymmetricStore(SymmetricAdd(centre, SymmetricAll(modulus), d), end + PLASTIC_CENTRE, part);
+    work += SymmetricContract(SymmetricAdd(centre, SymmetricAll(0.5 * modulus), d), d);
+  }
+  SimdGetParts(end[PLASTIC_WORK])[part] = SymmetricLoad(start[PLASTIC_WORK], part) + work;
+}
+
+SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal H[9][8], const PetscReal start[][8], PetscReal end[][8],
+                                PetscReal P[9][8])
+{
+  const Plastic *plastic = (const Plastic *)data;
+  const PetscInt size    = plastic->kinematic > 0 ? PLASTIC_SIZE_CENTRED : PLASTIC_SIZE;
+  PetscReal      largest = 0;
+  PetscInt       halves  = 0;
+  Trial          trial;
+  PlasticFlow    flow;
+  SimdReal       M[6], relative[6], q, ratio;
+
+  GetTrial(H, start, &trial);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    const Symmetric m = Hencky(&plastic->elastic, SymmetricGet(trial.E, part)), s = Relative(plastic, m, start, part);
+
+    SymmetricStore(m, M, part);
+    SymmetricStore(s, relative, part);
+    SimdGetParts(q)[part] = 1.5 * SymmetricSquares(s);
+  }
+#pragma omp simd
+  for (int p = 0; p < SIMD_WIDTH; p++) q[p] = PetscSqrtReal(q[p]);
+  PlasticFindFlow(plastic, dt, q, start, &flow);
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    ratio[p] = flow.strain[p] != 0 ? 1.5 * flow.strain[p] / q[p] : 0;
+    largest  = PetscMax(largest, flow.strain[p]);
+  }
+  for (int p = 0; p < SIMD_WIDTH; p++) largest = isnan(flow.strain[p]) ? 1 : largest;
+  while (1.25 * largest > EXPONENT_LIMIT * PetscPowRealInt(2, (int)halves) && halves < MAX_HALVES) halves++;
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    const Symmetric s = SymmetricGet(relative, part);
+
+    SymmetricStore(SymmetricAdd(SymmetricGet(M, part), -2 * plastic->elastic.mu * SimdGetParts(ratio)[part], s), M, part);
+  }
+  if (plastic->kinematic > 0) StoreCentredStress(&trial, start, M, P);
+  else
+    for (PetscInt part = 0; part < SIMD_PARTS; part++) StoreStress(part, &trial, start, SymmetricGet(M, part), P);
+  if (!end) return;
+  if (largest == 0) {
+    for (PetscInt i = 0; i < size; i++)
+      for (int p = 0; p < SIMD_WIDTH; p++) end[i][p] = start[i][p];
+    return;
+  }
+  for (PetscInt part = 0; part < SIMD_PARTS; part++)
+    Flow(plastic, part, halves, SymmetricGet(relative, part), SimdGetParts(ratio)[part], SimdGetParts(flow.work)[part], start, end);
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    end[PLASTIC_STRAIN][p]   = start[PLASTIC_STRAIN][p] + flow.strain[p];
+    end[PLASTIC_STRENGTH][p] = flow.strength[p];
+  }
+}
+
+/* Stress and stored energy while nothing flows */
+SIMD_CLONES static void Hold(const void *data, const PetscReal H[9][8], const PetscReal now[][8], PetscReal W[8], PetscReal P[9][8])
+{
+  const Plastic *plastic = (const Plastic *)data;
+  Trial          trial;
+
+  GetTrial(H, now, &trial);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    const Symmetric  e     = SymmetricGet(trial.E, part);
+    const SimdVector trace = e.xx + e.yy + e.zz;
+
+    StoreStress(part, &trial, now, Hencky(&plastic->elastic, e), P);
+    SimdGetParts(W)[part] = 0.5 * plastic->elastic.lambda * trace * trace + plastic->elastic.mu * SymmetricSquares(e);
+  }
+  for (int p = 0; p < SIMD_WIDTH; p++) W[p] += 0 * P[0][p]; /* what is not a number of an inverted point */
+}
+
+/* The virgin material, as long as nothing flows */
+static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
+{
+  SimdReal W;
+
+  Hold(data, H, virgin, W, P);
+}
+
+static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
+{
+  SimdReal P[9];
+
+  Hold(data, H, virgin, W, P);
+}
+
+/* dM / dE of the step: q and the slope are those of PlasticFindFlow() */
+static void ReturnTangent(const Plastic *plastic, const PetscReal relative[6], PetscReal q, PetscReal growth, PetscReal slope,
+                          PetscReal dE[3][3], PetscReal dM[3][3])
+{
+  const PetscReal lambda = plastic->elastic.lambda, mu = plastic->elastic.mu, trace = dE[0][0] + dE[1][1] + dE[2][2];
+  const PetscReal keep = growth != 0 ? 1 - 3 * mu * growth / q : 1;
+  PetscReal       s[3][3], along = 0;
+
+  ToMatrix(relative, s);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) along += s[i][j] * dE[i][j];
+  /* the direction of flow is s / sqrt(s : s), and 3/2 s : s = q^2 */
+  along *= growth != 0 ? 9 * mu * mu * (growth / q - 1 / (3 * mu + plastic->kinematic + slope)) / (q * q) : 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      dM[i][j] = (i == j ? (lambda + 2 * mu / 3) * trace : 0) + 2 * mu * keep * (dE[i][j] - (i == j ? trace / 3 : 0)) + along * s[i][j];
+}
+
+/* dP = dFe S Fp^-T + Fe dS Fp^-T for a unit change of each entry of H */
+static void AdvanceTangent(const void *data, PetscReal dt, const PetscReal H[9], const PetscReal start[], PetscReal tangent[81])
+{
+  const Plastic *plastic = (const Plastic *)data;
+  const PetscInt size    = PlasticGetSize(plastic);
+  SimdReal       batch[9], history[PLASTIC_SIZE_CENTRED], M[6], rel[6], q;
+  PetscReal      f[3][3], g[3][3], a[3][3], m[3][3], S[3][3], relative[6], packed[6], defined;
+  Trial          trial;
+  PlasticFlow    flow;
+  SymmetricLog   log;
+
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    for (int i = 0; i < 9; i++) batch[i][p] = H[i];
+    for (PetscInt i = 0; i < size; i++) history[i][p] = start ? start[i] : 0;
+  }
+  GetTrial((const PetscReal(*)[8])batch, (const PetscReal(*)[8])history, &trial);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    const Symmetric mandel = Hencky(&plastic->elastic, SymmetricGet(trial.E, part)),
+                    s      = Relative(plastic, mandel, (const PetscReal(*)[8])history, part);
+
+    SymmetricStore(mandel, M, part);
+    SymmetricStore(s, rel, part);
+    SimdGetParts(q)[part] = 1.5 * SymmetricSquares(s);
+  }
+  for (int p = 0; p < SIMD_WIDTH; p++) q[p] = PetscSqrtReal(q[p]);
+  if (start) PlasticFindFlow(plastic, dt, q, (const PetscReal(*)[8])history, &flow);
+  else flow.strain[0] = flow.slope[0] = 0;
+  for (int i = 0; i < 6; i++) {
+    relative[i] = rel[i][0];
+    packed[i]   = M[i][0] - (flow.strain[0] != 0 ? 3 * plastic->elastic.mu * flow.strain[0] / q[0] * relative[i] : 0);
+  }
+  GetMatrices(&trial, (const PetscReal(*)[8])history, 0, f, g, a);
+  ToMatrix(packed, m);
+  SymmetricLogCreate((const PetscReal(*)[3])a, PETSC_TRUE, &log);
+  SymmetricLogApply(&log, (const PetscReal(*)[3])m, S);
+  defined = Defined(f);
+  for (int kl = 0; kl < 9; kl++) {
+    const int k = kl / 3, l = kl % 3;
+    PetscReal dC[3][3], dE[3][3], dM[3][3], dS[3][3], more[3][3], half[3][3];
+
+    /* dFe is zero but in row k, where it is row l of Fp^-1 */
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) dC[i][j] = f[k][i] * g[l][j] + f[k][j] * g[l][i];
+    SymmetricLogApply(&log, (const PetscReal(*)[3])dC, dE);
+    for (int i = 0; i < 9; i++) dE[i / 3][i % 3] *= 0.5;
+    ReturnTangent(plastic, relative, q[0], flow.strain[0], flow.slope[0], dE, dM);
+    SymmetricLogApply(&log, (const PetscReal(*)[3])dM, dS);
+    SymmetricLogApplySecond(&log, (const PetscReal(*)[3])m, (const PetscReal(*)[3])dC, more);
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        half[i][j] = i == k ? g[l][0] * S[0][j] + g[l][1] * S[1][j] + g[l][2] * S[2][j] : 0;
+        for (int n = 0; n < 3; n++) half[i][j] += f[i][n] * (dS[n][j] + more[n][j]);
+      }
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++)
+        tangent[9 * (3 * i + j) + kl] = defined * (half[i][0] * g[j][0] + half[i][1] * g[j][1] + half[i][2] * g[j][2]);
+  }
+}
+
+static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81])
+{
+  AdvanceTangent(data, 0, H, NULL, tangent);
+}
+
+/* PlasticKernels_Finite - the kernels of finite strain */
+PetscErrorCode PlasticKernels_Finite(Material material, PetscBool plane_stress, MaterialKernels *kernels)
+{
+  PetscFunctionBegin;
+  PetscCheck(!plane_stress, PetscObjectComm((PetscObject)material), PETSC_ERR_SUP,
+             "The material of type %s is there for solids and plane strain, not for plane stress: leave -%splane_stress out",
+             ((PetscObject)material)->type_name, ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "");
+  *kernels                = (MaterialKernels){.data = material->data, .stress = Stress, .energy = Energy, .tangent = Tangent};
+  kernels->n_history      = PlasticGetSize((const Plastic *)material->data);
+  kernels->plastic_strain = PLASTIC_STRAIN;
+  kernels->plastic_work   = PLASTIC_WORK;
+  kernels->advance        = Advance;
+  kernels->hold           = Hold;
+  kernels->advancetangent = AdvanceTangent;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
