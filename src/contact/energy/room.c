@@ -155,8 +155,7 @@ PetscErrorCode ContactBookWork(Contact contact)
     if (energy->group[b] == b) energy->work += energy->group_work[b];
   }
   PetscCall(PetscArrayzero(lost, contact->n_bodies));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    lost[energy->group[contact->pairs[p].body[0]]] += PetscMax(-energy->pair_sums[2 * p], 0);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) lost[energy->group[contact->pairs[p].body[0]]] += PetscMax(-energy->pair_sums[2 * p], 0);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const PetscInt  g    = energy->group[b];
     const PetscReal work = energy->group_work[g];
@@ -210,8 +209,8 @@ PetscErrorCode ContactSetUpEnergy(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc5(n, &energy->change, n, &energy->start_energy, n, &energy->first_work, n, &energy->room, n, &energy->group));
-  PetscCall(PetscCalloc5(n, &energy->group_work, n, &energy->first_energy, n, &energy->energies, n, &energy->search, 3 * n,
-                         &energy->of_group));
+  PetscCall(
+      PetscCalloc5(n, &energy->group_work, n, &energy->first_energy, n, &energy->energies, n, &energy->search, 3 * n, &energy->of_group));
   PetscCall(ContactSetUpRowEnergy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
