@@ -158,12 +158,13 @@ typedef struct {
 
 /* The rows of a body: those of the pairs that it is in */
 typedef struct {
-  PetscInt   n;     /* of this rank */
-  PetscInt   begin; /* the first of them has this number among those of the body on all ranks */
-  PetscInt   n_all; /* of all ranks */
-  PetscInt  *rows;  /* their numbers among the rows of this rank, ascending */
-  PetscInt  *all;   /* of those of all ranks: their numbers among the rows of all ranks, ascending */
-  PetscReal *area;  /* as that of rows; the body borrows it */
+  PetscInt   n;               /* of this rank */
+  PetscInt   begin;           /* the first of them has this number among those of the body on all ranks */
+  PetscInt   n_all;           /* of all ranks */
+  PetscInt  *rows;            /* their numbers among the rows of this rank, ascending */
+  PetscInt  *all;             /* of those of all ranks: their numbers among the rows of all ranks, ascending */
+  PetscReal *area;            /* as that of rows; the body borrows it */
+  PetscInt   n_pairs, *pairs; /* that it is in, ascending */
   /* its matrix in contact->interfaces, and the spare one */
   PetscBool  affected;    /* rows have got new entries in this attempt at a controller step */
   PetscBool  rewritten;   /* they have in any attempt at it */

@@ -193,7 +193,8 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+  for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
+    const PetscInt     p    = contact->body_rows[b].pairs[k];
     const ContactPair *pair = &contact->pairs[p];
 
     if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
