@@ -24,6 +24,7 @@ struct _n_History {
   char          *options;
   PetscInt       n_bodies, *dims; /* space dimension of each body */
   PetscBool     *damped;          /* per body: it has Rayleigh damping */
+  PetscBool     *hourglasses;     /* per body: its elements have one point */
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
@@ -65,7 +66,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ControllerGetProbes(controller, &n_probes, &probes));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(PetscMalloc2(history->n_bodies, &history->dims, history->n_bodies, &history->damped));
+  PetscCall(PetscMalloc3(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->hourglasses));
   PetscCall(PetscCalloc1(2 + 7 * n_pairs + 9 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
@@ -96,6 +97,8 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(BodyGetDamping(bodies[i], &mass, &stiffness));
     history->damped[i] = (PetscBool)(mass > 0 || stiffness > 0);
     if (history->damped[i]) PetscCall(AddSeries(history, "/body/", name, "damping_work", "J", 1, PETSC_FALSE));
+    PetscCall(BodyHasHourglasses(bodies[i], &history->hourglasses[i]));
+    if (history->hourglasses[i]) PetscCall(AddSeries(history, "/body/", name, "hourglass_energy", "J", 1, PETSC_FALSE));
   }
   for (PetscInt i = 0; i < n_supports; i++) {
     const ControllerSupport *support = &supports[i];
@@ -222,7 +225,8 @@ static PetscErrorCode MakeRoom(History history)
 }
 
 /* Fills a record, in the order of AddAllSeries() */
-static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], const PetscBool damped[], PetscReal *next)
+static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], const PetscBool damped[], const PetscBool hourglasses[],
+                       PetscReal *next)
 {
   *next++ = frame->time;
   *next++ = (PetscReal)frame->sweeps;
@@ -245,6 +249,7 @@ static void FillRecord(const ControllerFrame *frame, const PetscInt dims[], cons
     for (PetscInt d = 0; d < dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
     for (PetscInt d = 0; d < 3 && dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
     if (damped[i]) *next++ = frame->bodies[i].damping_work;
+    if (hourglasses[i]) *next++ = frame->bodies[i].hourglass_energy;
   }
   for (PetscInt i = 0; i < frame->n_supports; i++) {
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
@@ -279,7 +284,7 @@ PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *fram
   (void)controller;
   if (!history->writes) PetscFunctionReturn(PETSC_SUCCESS);
   if (history->n_records == history->capacity) PetscCall(MakeRoom(history));
-  FillRecord(frame, history->dims, history->damped, history->records + history->n_records * history->width);
+  FillRecord(frame, history->dims, history->damped, history->hourglasses, history->records + history->n_records * history->width);
   history->n_records++;
   PetscCall(PetscTime(&now));
   if (!history->written || now - history->flushed > PetscMax(FLUSH_INTERVAL, FLUSH_SHARE * history->flush_seconds))
@@ -372,7 +377,7 @@ PetscErrorCode HistoryDestroy(History *history)
   if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(*history)->failed) PetscCall(HistoryFlush(*history));
   PetscCall(PetscFree((*history)->options));
-  PetscCall(PetscFree2((*history)->dims, (*history)->damped));
+  PetscCall(PetscFree3((*history)->dims, (*history)->damped, (*history)->hourglasses));
   PetscCall(PetscFree((*history)->series));
   PetscCall(PetscFree((*history)->records));
   PetscCall(OutputFileRelease(&(*history)->held));
