@@ -46,6 +46,7 @@ S*/
 typedef struct {
   PetscReal kinetic;             /* J; staggered, for central differences */
   PetscReal potential;           /* J */
+  PetscReal hourglass_energy;    /* part of the potential that holds what elements with one point do not see, J */
   PetscReal external_work;       /* done since the start by forces from outside and by held displacements, J */
   PetscReal damping_work;        /* taken since the start by Rayleigh damping, J */
   PetscReal plastic_work;        /* taken since the start by plastic flow, with what hardening stores of it, J */
@@ -157,6 +158,7 @@ PETSC_EXTERN PetscReal      BodyMeasuresGetBalance(const BodyMeasures *);
 PETSC_EXTERN PetscErrorCode BodyGetNumReactions(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetReactionSurface(Body, PetscInt, const char *[]);
 PETSC_EXTERN PetscErrorCode BodyGetReactions(Body, PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyHasHourglasses(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);

@@ -180,7 +180,7 @@ PetscErrorCode ElementGetMaterial(Element element, Material *material)
 + -<body>_cross_section A           - of bars [m^2], default 1
 . -<body>_thickness h               - of plane elements [m], default 1
 . -<body>_plane_stress (true|false) - of plane elements, default false
-- -<body>_element_formulation (full|mean_dilatation|enhanced) - see `ElementSetFormulation()`
+- -<body>_element_formulation (full|mean_dilatation|enhanced|reduced) - see `ElementSetFormulation()`
 
   Level: developer
 

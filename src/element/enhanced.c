@@ -126,7 +126,7 @@ static PetscErrorCode Solve(PetscInt n, PetscInt n_rhs, PetscReal K[], PetscReal
   PetscCall(PetscBLASIntCast(n_rhs, &columns));
   for (PetscInt i = 0; i < n * n; i++)
     if (!(PetscAbsReal(K[i]) < PETSC_MAX_REAL)) K[0] = 0, x[0] = NAN; /* not for LAPACK */
-  if (x[0] == x[0]) PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&size, &columns, K, &size, pivots, x, &size, &info));
+  if (!isnan(x[0])) PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&size, &columns, K, &size, pivots, x, &size, &info));
   else info = 1;
   for (PetscInt i = 0; i < n * n_rhs && info; i++) x[i] = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,8 +136,8 @@ static PetscErrorCode Solve(PetscInt n, PetscInt n_rhs, PetscReal K[], PetscReal
 static PetscErrorCode Balance(const Solid *solid, Enhanced *enhanced, PetscReal f[])
 {
   const PetscInt n     = enhanced->n_modes;
-  PetscReal     *alpha = enhanced->values + enhanced->fixed, K[MAX_MODES * MAX_MODES], change[MAX_MODES];
-  PetscBool      last  = PETSC_FALSE;
+  PetscReal     *alpha = enhanced->values + enhanced->fixed, K[MAX_MODES * MAX_MODES], change[MAX_MODES] = {0};
+  PetscBool      last = PETSC_FALSE;
 
   PetscFunctionBegin;
   GetForces(solid, enhanced, f);
@@ -147,7 +147,7 @@ static PetscErrorCode Balance(const Solid *solid, Enhanced *enhanced, PetscReal 
     for (PetscInt i = 0; i < n; i++) change[i] = -f[enhanced->fixed + i];
     GetMatrix(solid, enhanced, PETSC_FALSE, enhanced->shapes - enhanced->dim, K);
     PetscCall(Solve(n, 1, K, change));
-    if (!(change[0] == change[0])) break;
+    if (isnan(change[0])) break;
     for (PetscInt k = 0; k < 9; k++)
       for (PetscInt p = 0; p < enhanced->n_points; p++) strain = PetscMax(strain, PetscAbsReal(enhanced->H[k][p]));
     for (PetscInt p = 0; p < enhanced->n_points; p++)
@@ -162,7 +162,7 @@ static PetscErrorCode Balance(const Solid *solid, Enhanced *enhanced, PetscReal 
     for (PetscInt i = 0; i < n; i++) alpha[i] += change[i];
     GetForces(solid, enhanced, f);
     /* steps into inverted states are cut */
-    for (PetscInt cut = 0; cut < 10 && !(f[enhanced->fixed] == f[enhanced->fixed]); cut++) {
+    for (PetscInt cut = 0; cut < 10 && isnan(f[enhanced->fixed]); cut++) {
       scale *= 0.5;
       for (PetscInt i = 0; i < n; i++) alpha[i] -= scale * change[i];
       GetForces(solid, enhanced, f);
@@ -186,7 +186,7 @@ static PetscErrorCode ElementInternalForce_Enhanced(Element element, const Petsc
     Prepare(element, e, u, &enhanced);
     PetscCall(Balance(solid, &enhanced, forces));
     for (PetscInt i = 0; i < enhanced.fixed; i++) f[enhanced.dim * nodes[i / enhanced.dim] + i % enhanced.dim] += forces[i];
-    if (element->inverted < 0 && !(forces[0] == forces[0])) element->inverted = e;
+    if (element->inverted < 0 && isnan(forces[0])) element->inverted = e;
   }
   PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)element->count));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -208,7 +208,7 @@ static PetscErrorCode ElementEnergy_Enhanced(Element element, const PetscScalar 
     PetscCall(Balance(solid, &enhanced, forces));
     (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])enhanced.H, W);
     for (PetscInt p = 0; p < enhanced.n_points; p++) *energy += enhanced.weight[p] * W[p];
-    if (element->inverted < 0 && !(forces[0] == forces[0])) element->inverted = e;
+    if (element->inverted < 0 && isnan(forces[0])) element->inverted = e;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -217,7 +217,7 @@ static PetscErrorCode ElementEnergy_Enhanced(Element element, const PetscScalar 
 static PetscErrorCode Condense(const Enhanced *enhanced, const PetscReal whole[], PetscScalar K[])
 {
   const PetscInt n = enhanced->fixed, m = enhanced->n_modes, all = n + m;
-  PetscReal      of_modes[MAX_MODES * MAX_MODES], x[MAX_MODES * SOLID_MAX_NODES * 3];
+  PetscReal      of_modes[MAX_MODES * MAX_MODES], x[MAX_MODES * SOLID_MAX_NODES * 3] = {0};
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < m; i++)
@@ -268,7 +268,7 @@ static PetscErrorCode ElementViscosity_Enhanced(Element element, PetscInt e, con
 static PetscErrorCode ElementViscousForce_Enhanced(Element element, const PetscScalar u[], const PetscScalar v[], PetscScalar f[])
 {
   const PetscInt dim = element->dim, n = element->nodes * dim;
-  PetscScalar    C[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscScalar    C[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS] = {0};
 
   PetscFunctionBegin;
   for (PetscInt e = 0; e < element->count; e++) {

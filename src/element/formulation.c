@@ -57,7 +57,7 @@ PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char f
 - formulation - one of the names below, or one of `ElementRegisterFormulation()`; `NULL`: the default
 
   Options Database Key:
-. -<body>_element_formulation (full|mean_dilatation|enhanced) - the formulation
+. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced) - the formulation
 
   Level: intermediate
 
@@ -70,6 +70,10 @@ PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char f
 
   `ELEMENT_ENHANCED` adds modes that bend to the displacements of each element, and eliminates them there. Quadrilaterals and hexahedra
   have it.
+
+  `ELEMENT_REDUCED` has one point of integration, for explicit bodies: more than twice as fast as the full hexahedron. What that point does
+  not see is held by the stiffness of linear elasticity; `hourglass_energy` of history and summary is what it stores, which should be small
+  against the potential energy where elements do not bend. Quadrilaterals and hexahedra have it.
 
 .seealso: `Element`, `ElementGetFormulation()`, `BodySetElementFormulation()`, `ElementRegisterFormulation()`
 @*/

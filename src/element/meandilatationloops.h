@@ -211,8 +211,11 @@ SIMD_INLINE void AddNodal(const PetscInt connectivity[], PetscInt first, PetscIn
   for (PetscInt p = 0; p < in_batch; p++) {
     const PetscInt *nodes = connectivity + NODES * (first + p);
 
-    for (PetscInt a = 0; a < NODES; a++)
-      for (PetscInt i = 0; i < DIM; i++) f[DIM * nodes[a] + i] += nodal[i][a][p];
+    for (PetscInt a = 0; a < NODES; a++) {
+      PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
+
+      for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
+    }
   }
 }
 

@@ -26,6 +26,7 @@ struct _n_History {
   PetscBool     *damped;          /* per body: it has Rayleigh damping */
   PetscBool      friction;        /* contact has friction */
   PetscBool     *plastic;         /* per body: its material flows */
+  PetscBool     *hourglasses;     /* per body: its elements have one point */
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
@@ -68,10 +69,11 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ControllerGetProbes(controller, &n_probes, &probes));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(PetscMalloc3(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->plastic));
+  PetscCall(PetscMalloc4(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->plastic,
+                         history->n_bodies, &history->hourglasses));
   PetscCall(ContactGetLaw(contact, &law));
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
-  PetscCall(PetscCalloc1(2 + 9 * n_pairs + 10 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscCalloc1(2 + 9 * n_pairs + 11 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -106,6 +108,8 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     if (history->damped[i]) PetscCall(AddSeries(history, "/body/", name, "damping_work", "J", 1, PETSC_FALSE));
     PetscCall(BodyHasHistory(bodies[i], &history->plastic[i]));
     if (history->plastic[i]) PetscCall(AddSeries(history, "/body/", name, "plastic_work", "J", 1, PETSC_FALSE));
+    PetscCall(BodyHasHourglasses(bodies[i], &history->hourglasses[i]));
+    if (history->hourglasses[i]) PetscCall(AddSeries(history, "/body/", name, "hourglass_energy", "J", 1, PETSC_FALSE));
   }
   for (PetscInt i = 0; i < n_supports; i++) {
     const ControllerSupport *support = &supports[i];
@@ -259,6 +263,7 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
     for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
     if (history->damped[i]) *next++ = frame->bodies[i].damping_work;
     if (history->plastic[i]) *next++ = frame->bodies[i].plastic_work;
+    if (history->hourglasses[i]) *next++ = frame->bodies[i].hourglass_energy;
   }
   for (PetscInt i = 0; i < frame->n_supports; i++) {
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
@@ -386,7 +391,7 @@ PetscErrorCode HistoryDestroy(History *history)
   if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(*history)->failed) PetscCall(HistoryFlush(*history));
   PetscCall(PetscFree((*history)->options));
-  PetscCall(PetscFree3((*history)->dims, (*history)->damped, (*history)->plastic));
+  PetscCall(PetscFree4((*history)->dims, (*history)->damped, (*history)->plastic, (*history)->hourglasses));
   PetscCall(PetscFree((*history)->series));
   PetscCall(PetscFree((*history)->records));
   PetscCall(OutputFileRelease(&(*history)->held));

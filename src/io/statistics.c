@@ -122,12 +122,14 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
     BodyStatistics     *body     = &r->bodies[i];
     const PetscReal     energy = BodyMeasuresGetBalance(measures), start = s->initial_energy[i];
 
-    body->kinetic        = measures->kinetic;
-    body->potential      = measures->potential;
-    body->external_work  = measures->external_work;
-    body->damping_work   = measures->damping_work;
-    body->plastic_work   = measures->plastic_work;
-    body->peak_potential = PetscMax(body->peak_potential, measures->potential);
+    body->kinetic              = measures->kinetic;
+    body->potential            = measures->potential;
+    body->external_work        = measures->external_work;
+    body->damping_work         = measures->damping_work;
+    body->plastic_work         = measures->plastic_work;
+    body->hourglass_energy     = measures->hourglass_energy;
+    body->hourglass_energy_max = PetscMax(body->hourglass_energy_max, measures->hourglass_energy);
+    body->peak_potential       = PetscMax(body->peak_potential, measures->potential);
     NoteChange(s->body_change + 2 * i, energy - start);
     body->energy_error_min = Relative(s->body_change[2 * i], Scale(start, scale));
     body->energy_error_max = Relative(s->body_change[2 * i + 1], Scale(start, scale));

@@ -27,14 +27,15 @@ typedef struct {
 } ContactStatistics;
 
 typedef struct {
-  PetscReal kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
-  PetscReal displacement_error;                 /* at the end, relative L2, against an exact displacement; not-a-number without one */
-  PetscReal external_work;                      /* at the end, by loads [J] */
-  PetscBool plastic;                            /* its material flows */
-  PetscReal plastic_work;                       /* at the end, with what hardening stores of it [J] */
-  PetscReal damping_work;                       /* at the end, taken by Rayleigh damping [J] */
-  PetscReal rotation_max;                       /* largest mean rotation of a linear body, 0 for others [rad] */
-  PetscInt  inverted_max;                       /* most elements of a linear body that were inside out at a time, 0 for others */
+  PetscReal kinetic, potential, peak_potential;     /* at the end, at the end, largest [J] */
+  PetscReal displacement_error;                     /* at the end, relative L2, against an exact displacement; not-a-number without one */
+  PetscReal external_work;                          /* at the end, by loads [J] */
+  PetscReal hourglass_energy, hourglass_energy_max; /* at the end, largest; 0 but for elements with one point [J] */
+  PetscReal damping_work;                           /* at the end, taken by Rayleigh damping [J] */
+  PetscReal rotation_max;                           /* largest mean rotation of a linear body, 0 for others [rad] */
+  PetscInt  inverted_max;                           /* most elements of a linear body that were inside out at a time, 0 for others */
+  PetscBool plastic;                                /* its material flows */
+  PetscReal plastic_work;                           /* at the end, with what hardening stores of it [J] */
   PetscReal energy_error_min,
       energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;

@@ -216,6 +216,8 @@ static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const Statist
     PetscCall(SetReal(object, "external_work", body->external_work));
     PetscCall(SetReal(object, "damping_work", body->damping_work));
     if (body->plastic) PetscCall(SetReal(object, "plastic_work", body->plastic_work));
+    PetscCall(SetReal(object, "hourglass_energy", body->hourglass_energy));
+    PetscCall(SetReal(object, "hourglass_energy_max", body->hourglass_energy_max));
     PetscCall(SetReal(object, "rotation_max", body->rotation_max));
     PetscCall(SetInteger(object, "inverted_max", body->inverted_max));
     if (!PetscIsNanReal(body->displacement_error)) PetscCall(SetReal(object, "displacement_error", body->displacement_error));

@@ -110,10 +110,11 @@ static const KnownOption options[] = {
     {"materials", OPTION_OF_BODY, "cross_section", "A", "cross-sectional area of a bar [m^2], default 1"},
     {"materials", OPTION_OF_BODY, "thickness", "h", "thickness of a plane body [m], default 1"},
     {"materials", OPTION_OF_BODY, "plane_stress", "true|false", "plane stress in 2-D, default false: plane strain"},
-    {"materials", OPTION_OF_BODY, "element_formulation", "full|mean_dilatation|enhanced",
+    {"materials", OPTION_OF_BODY, "element_formulation", "full|mean_dilatation|enhanced|reduced",
      "of quadrilaterals and hexahedra: fully integrated; with one change of volume for each element, against locking of nearly "
      "incompressible "
-     "bodies; or with modes of their own that bend, for implicit and static bodies. Default full, but mean_dilatation where Poisson's "
+     "bodies; with modes of their own that bend, for implicit and static bodies; or with one point, for explicit ones. Default full, but "
+     "mean_dilatation where Poisson's "
      "ratio is "
      "larger than 0.4, except in plane stress"},
 

@@ -7,7 +7,7 @@ from cases import long
 from solidmeshes import box, dim_of, sides, write_box
 from vibration import CANTILEVER, HEIGHT, first_mode, measured
 
-KINDS = [(shape, formulation) for shape in ("quad4", "hex8") for formulation in ("mean_dilatation", "enhanced")]
+KINDS = [(shape, formulation) for shape in ("quad4", "hex8") for formulation in ("mean_dilatation", "enhanced", "reduced")]
 MATERIALS = ["linear_elastic", "saint_venant_kirchhoff", "neo_hookean"]
 
 
@@ -170,3 +170,29 @@ def test_tetrahedra_warn(impakt):
     common = "-bodies b -b_dm_plex_dim 3 -b_dm_plex_simplex true -b_density 1 -b_youngs_modulus 1 -time_step 0.1 -time_end 0.1"
     assert "elements of shape 'tetrahedron' lock where Poisson's ratio is larger than 0.4" in impakt(f"{common} -b_poissons_ratio 0.45").stderr
     assert "lock" not in impakt(f"{common} -b_poissons_ratio 0.4").stderr
+
+
+
+def test_hourglass_energy(impakt):
+    """Explicit bars of neo-Hookean and linear material that hit each other, elements with one point: what holds them is part of the potential energy, in history and
+    summary. Measured: 0.32 and 0.37 % of the largest potential energy; the mean force differs from that of full elements by 2.5e-4."""
+    bars = "-left_material_type neo_hookean"
+    for name in ("left", "right"):
+        bars += f" -{name}_poissons_ratio 0.3 -{name}_ts_type centraldifference -{name}_ts_time_step auto"
+    full, reduced = (impakt(f"-options_file options/impact-solids.opts {bars} -left_element_formulation {f} -right_element_formulation {f}") for f in ("full", "reduced"))
+    for name in ("left", "right"):
+        body, series = reduced.summary["bodies"][name], reduced.history[f"body/{name}/hourglass_energy"][:]
+        assert 0 < body["hourglass_energy_max"] <= 0.01 * body["peak_potential"]
+        assert body["hourglass_energy_max"] == series.max() and body["hourglass_energy"] == series[-1]
+        assert (series <= reduced.history[f"body/{name}/potential"][:] + 1e-12).all()
+        assert full.summary["bodies"][name]["hourglass_energy_max"] == 0 and "hourglass_energy" not in full.history[f"body/{name}"]
+    assert reduced.summary["contact"]["force_mean"] == pytest.approx(full.summary["contact"]["force_mean"], rel=1e-3)
+
+
+def test_reduced_bends(impakt):
+    """One hexahedron through the height bends by its hourglass stiffness alone: measured 3.976 mm, as enhanced elements, where Timoshenko has 4.031 mm; and it
+    does not lock: 7.605 m at the corner of Cook's nearly incompressible membrane, as enhanced."""
+    run = impakt("-options_file options/cantilever-bending.opts -beam_element_formulation reduced")
+    assert probes(run, "beam")[0][2] == pytest.approx(4.0312e-3, rel=0.02)
+    run = impakt("-options_file options/cook-incompressible.opts -panel_element_formulation reduced")
+    assert probes(run, "panel")[1][1] == pytest.approx(7.76, rel=0.025)

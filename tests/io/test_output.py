@@ -64,6 +64,8 @@ SUMMARY = {
             "peak_potential": float,
             "external_work": float,
             "damping_work": float,
+            "hourglass_energy": float,
+            "hourglass_energy_max": float,
             "rotation_max": float,
             "inverted_max": int,
             "total_energy_error_min": float,

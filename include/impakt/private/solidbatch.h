@@ -31,8 +31,11 @@ SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscIn
   for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
     const PetscInt *nodes = connectivity + NODES * PetscMin(first + p, count - 1);
 
-    for (PetscInt a = 0; a < NODES; a++)
-      for (PetscInt i = 0; i < DIM; i++) nodal[i][a][p] = values[DIM * nodes[a] + i];
+    for (PetscInt a = 0; a < NODES; a++) {
+      const PetscReal *of_node = values + (size_t)(DIM * nodes[a]);
+
+      for (PetscInt i = 0; i < DIM; i++) nodal[i][a][p] = of_node[i];
+    }
   }
   for (PetscInt part = 0; part < SIMD_PARTS; part++)
     for (PetscInt i = 0; i < DIM; i++) {

@@ -52,8 +52,11 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
     for (PetscInt p = 0; p < in_batch; p++) {
       const PetscInt *nodes = connectivity + NODES * (first + p);
 
-      for (PetscInt a = 0; a < NODES; a++)
-        for (PetscInt i = 0; i < DIM; i++) f[DIM * nodes[a] + i] += nodal[i][a][p];
+      for (PetscInt a = 0; a < NODES; a++) {
+        PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
+
+        for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
+      }
     }
   }
   return inverted;
@@ -92,8 +95,11 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
     for (PetscInt p = 0; p < in_batch; p++) {
       const PetscInt *nodes = connectivity + NODES * (first + p);
 
-      for (PetscInt a = 0; a < NODES; a++)
-        for (PetscInt i = 0; i < DIM; i++) f[DIM * nodes[a] + i] += nodal[i][a][p];
+      for (PetscInt a = 0; a < NODES; a++) {
+        PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
+
+        for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
+      }
     }
   }
 }

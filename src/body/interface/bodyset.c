@@ -178,10 +178,11 @@ PetscErrorCode BodySetPlaneStress(Body body, PetscBool plane_stress)
 
   Input Parameters:
 + body        - the `Body`, before `BodySetFromOptions()`
-- formulation - `ELEMENT_FULL`, `ELEMENT_MEAN_DILATATION`, `ELEMENT_ENHANCED`, or a name of `ElementRegisterFormulation()`
+- formulation - `ELEMENT_FULL`, `ELEMENT_MEAN_DILATATION`, `ELEMENT_ENHANCED`, `ELEMENT_REDUCED`, or a name of
+`ElementRegisterFormulation()`
 
   Options Database Key:
-. -<body>_element_formulation (full|mean_dilatation|enhanced) - the formulation
+. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced) - the formulation
 
   Level: beginner
 

@@ -38,6 +38,46 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of this rank's elements with one point [J] */
+static PetscErrorCode ComputeHourglassEnergy(Body body, PetscReal *energy)
+{
+  const PetscScalar *u;
+  Vec                local;
+
+  PetscFunctionBegin;
+  *energy = 0;
+  if (!body->model.element->ops->hourglass) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
+  PetscCall((*body->model.element->ops->hourglass)(body->model.element, u, energy));
+  PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyHasHourglasses - whether the elements of a body have displacements that their points do not see, and a stiffness that holds them
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. hourglasses - `PETSC_TRUE` for elements of the formulation `ELEMENT_REDUCED`
+
+  Level: intermediate
+
+.seealso: `Body`, `BodyMeasures`, `BodySetElementFormulation()`
+@*/
+PetscErrorCode BodyHasHourglasses(Body body, PetscBool *hourglasses)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(hourglasses, 2);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  *hourglasses = (PetscBool)(body->model.element->ops->hourglass != NULL);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Kinetic energy [J], staggered for central differences */
 static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic)
 {
@@ -137,25 +177,27 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  PetscReal sums[15] = {0}, drag;
+  PetscReal sums[16] = {0}, drag;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(measures, 2);
   PetscCall(ComputePotential(body, &sums[1]));
+  PetscCall(ComputeHourglassEnergy(body, &sums[14]));
   if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
   else {
     PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
     for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
   }
   PetscCall(BodySumRotation(body, sums + 11));
-  PetscCall(BodyComputePlasticStrain(body, NULL, &sums[14]));
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 15, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  measures->kinetic       = sums[0];
-  measures->potential     = sums[1];
-  measures->external_work = body->state.external_work;
-  measures->damping_work  = body->state.damping_work;
-  measures->plastic_work  = sums[14];
+  PetscCall(BodyComputePlasticStrain(body, NULL, &sums[15]));
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 16, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  measures->kinetic          = sums[0];
+  measures->potential        = sums[1];
+  measures->external_work    = body->state.external_work;
+  measures->damping_work     = body->state.damping_work;
+  measures->plastic_work     = sums[15];
+  measures->hourglass_energy = sums[14];
   BodyFinishRotation(body, sums + 11, measures->rotation);
   PetscCall(BodyGetDamping(body, &drag, NULL)); /* which takes momentum */
   measures->loaded = (PetscBool)(body->loads != NULL || drag > 0);
