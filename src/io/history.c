@@ -70,7 +70,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(PetscMalloc2(history->n_bodies, &history->dims, history->n_bodies, &history->damped));
   PetscCall(ContactGetLaw(contact, &law));
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
-  PetscCall(PetscCalloc1(2 + 9 * n_pairs + 9 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscCalloc1(2 + 10 * n_pairs + 9 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -84,6 +84,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(AddSeries(history, "/contact/", name, "impulse", "N s", 3, PETSC_FALSE));
     if (!history->friction) continue;
     PetscCall(AddSeries(history, "/contact/", name, "friction_loss", "J", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "obstacle_work", "J", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/contact/", name, "sliding", "1", 1, PETSC_TRUE));
   }
   for (PetscInt i = 0; i < history->n_bodies; i++) {
@@ -243,6 +244,7 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].impulse[d];
     if (!history->friction) continue;
     *next++ = frame->pairs[i].friction_loss;
+    *next++ = frame->pairs[i].obstacle_work;
     *next++ = (PetscReal)frame->pairs[i].sliding;
   }
   for (PetscInt i = 0; i < frame->n_bodies; i++) {

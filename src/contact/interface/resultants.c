@@ -270,6 +270,7 @@ static PetscErrorCode ComputeStates(Contact contact, PetscInt begin, PetscInt en
     state->beyond_impulse = sums[SUM_BEYOND];
     state->sliding        = (PetscInt)sums[SUM_SLIDING];
     state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
+    state->obstacle_work  = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
