@@ -213,12 +213,14 @@ static PetscErrorCode BeginAttempts(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether friction brings energy on a row by the forces at both ends of the step */
+/* Whether friction brings energy on a row by the forces at both ends of the step. What a node that sticks slips is what the step has left
+   of its residual, and no other start makes it less. */
 static PetscBool Rubs(Contact contact, PetscInt i)
 {
   const PetscReal start = contact->energy.changed ? contact->energy.start_force[i] : contact->energy.last_force[i];
+  const PetscInt  first = i - (i - contact->pairs[contact->rows.pair[i]].begin) % contact->pairs[contact->rows.pair[i]].components;
 
-  if (!ContactRowRubs(contact, i)) return PETSC_FALSE;
+  if (!ContactRowRubs(contact, i) || (contact->end.active[first] && !contact->friction.slides[first])) return PETSC_FALSE;
   return (PetscBool)(0.5 * (start + contact->end.force[i]) * contact->friction.slip[i] > FRICTION_BRINGS * contact->energy.scale);
 }
 
