@@ -98,6 +98,7 @@ PETSC_EXTERN PetscErrorCode BodySetPlaneStress(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodySetElementFormulation(Body, const char[]);
 PETSC_EXTERN PetscErrorCode BodySetTSType(Body, TSType);
 PETSC_EXTERN PetscErrorCode BodySetTimeStep(Body, PetscReal);
+PETSC_EXTERN PetscErrorCode BodyGetStartTime(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTimeStep(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetMassType(Body, BodyMassType);
 PETSC_EXTERN PetscErrorCode BodyGetMassType(Body, BodyMassType *);

@@ -227,6 +227,7 @@ typedef struct {
   PetscReal impulse[3];      /* integral of the resultant over the accepted controller steps, whole or cut, trapezoidal [N s] */
   PetscReal normal_impulse;  /* the same of `force` [N s] */
   PetscReal friction_loss;   /* energy that friction has taken so far [J] */
+  PetscReal obstacle_work;   /* work that an obstacle whose surface moves has done so far [J] */
   PetscInt  sliding;         /* of the nodes in contact those that slide, with friction */
   PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that, see `TransferSetGuards()`; not trapezoidal [N s] */
 } ContactPairState;
@@ -296,6 +297,7 @@ PETSC_EXTERN PetscErrorCode ContactSetFriction(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetPairFriction(Contact, PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetKineticFriction(Contact, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetFrictionLoss(Contact, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactGetObstacleWork(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetConstraint(Contact, ContactConstraint);
 PETSC_EXTERN PetscErrorCode ContactGetConstraint(Contact, ContactConstraint *);
 PETSC_EXTERN PetscErrorCode ContactSetStabilization(Contact, ContactStabilization);

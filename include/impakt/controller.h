@@ -66,6 +66,7 @@ typedef struct {
   const ContactPairState  *pairs;              /* per pair */
   PetscInt                 sweeps;             /* of this step, or of that part of it which took most */
   PetscReal                penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
+  PetscReal                obstacle_work;      /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
   PetscReal                friction_loss;      /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
   PetscInt                 step_cuts;          /* how often a step had to be cut in halves in this controller step */
   PetscInt                 n_supports;

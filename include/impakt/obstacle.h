@@ -3,7 +3,7 @@
 #include <petscviewer.h>
 
 /*S
-   Obstacle - a rigid plane, sphere or cylinder that does not move
+   Obstacle - a rigid plane, sphere or cylinder that does not move, but perhaps along its surface
 
    Level: beginner
 
@@ -35,6 +35,8 @@ PETSC_EXTERN PetscErrorCode ObstacleCreateFromOptions(MPI_Comm, const char[], Ob
 PETSC_EXTERN PetscErrorCode ObstacleSetPlane(Obstacle, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ObstacleSetSphere(Obstacle, const PetscReal[], PetscReal);
 PETSC_EXTERN PetscErrorCode ObstacleSetCylinder(Obstacle, const PetscReal[], const PetscReal[], PetscReal);
+PETSC_EXTERN PetscErrorCode ObstacleSetVelocity(Obstacle, const char[]);
+PETSC_EXTERN PetscErrorCode ObstacleGetVelocity(Obstacle, const PetscReal[], PetscReal, PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode ObstacleSetFromOptions(Obstacle);
 PETSC_EXTERN PetscErrorCode ObstacleSetUp(Obstacle);
 PETSC_EXTERN PetscErrorCode ObstacleGetType(Obstacle, ObstacleType *);

@@ -52,7 +52,7 @@ PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, const C
     scale->start += BodyMeasuresGetBalance(body);
     if (scale->from_rest) PetscCall(StartsFromRest(bodies[b], body, &scale->from_rest));
   }
-  scale->largest = PetscMax(scale->largest, size);
+  scale->largest = PetscMax(scale->largest, size + PetscAbsReal(frame->obstacle_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,10 +63,11 @@ PetscReal EnergyScaleGet(const EnergyScale *scale)
   return scale->from_rest || scale->start <= 0 ? scale->largest : scale->start;
 }
 
-/* By how much there is more energy in a frame than at the start, with what friction has taken since [J] */
+/* By how much there is more energy in a frame than at the start, with what friction has taken since, and without the work of moving
+   obstacles [J] */
 PetscReal EnergyScaleChange(const EnergyScale *scale, const ControllerFrame *frame)
 {
-  PetscReal energy = frame->friction_loss;
+  PetscReal energy = frame->friction_loss - frame->obstacle_work;
 
   for (PetscInt b = 0; b < frame->n_bodies; b++) energy += BodyMeasuresGetBalance(&frame->bodies[b]);
   return energy - scale->start;

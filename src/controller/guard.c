@@ -102,7 +102,8 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
 /* Ends the run where energies have grown beyond the guard; collective, with the same frame on every rank */
 PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFrame *frame)
 {
-  PetscReal now = frame->penalty_energy + frame->friction_loss, start = 0, size = 0, work = 0, scale;
+  PetscReal now = frame->penalty_energy + frame->friction_loss - frame->obstacle_work, start = 0, size = 0, scale;
+  PetscReal work = PetscAbsReal(frame->obstacle_work);
 
   PetscFunctionBegin;
   if (controller->guard.part == 0 || !frame->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);

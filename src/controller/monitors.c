@@ -70,6 +70,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   frame.step_cuts = step ? controller->step_cuts : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
   PetscCall(ContactGetFrictionLoss(controller->contact, &frame.friction_loss));
+  PetscCall(ContactGetObstacleWork(controller->contact, &frame.obstacle_work));
   PetscCall(EnergyScaleAdd(&controller->scale, controller, &frame));
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)

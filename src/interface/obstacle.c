@@ -1,18 +1,8 @@
 /* Rigid obstacles: the class, its shapes, and how far a point is from one. */
-#include <impakt/obstacle.h>
-#include <petsc/private/petscimpl.h>
+#include "obstacleimpl.h"
 
 /* An axis whose first component is above this is crossed with the second unit vector, not the first, which it may be parallel to */
 #define NEARLY_PARALLEL 0.9
-
-struct _p_Obstacle {
-  PETSCHEADER(int);
-  ObstacleType type;
-  PetscBool    complete;     /* it has a shape and a place */
-  PetscReal    point[3];     /* of the plane or axis, or the centre [m] */
-  PetscReal    direction[3]; /* outward normal of the plane, or axis of the cylinder; zero for a sphere */
-  PetscReal    radius;       /* of the sphere or the cylinder [m] */
-};
 
 const char *const ObstacleTypes[] = {"plane", "sphere", "cylinder", "ObstacleType", "OBSTACLE_", NULL};
 
@@ -369,6 +359,7 @@ PetscErrorCode ObstacleDestroy(Obstacle *obstacle)
     *obstacle = NULL;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  for (PetscInt d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&(*obstacle)->velocity[d]));
   PetscCall(PetscHeaderDestroy(obstacle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,7 +38,8 @@ static PetscErrorCode CheckDirection(Obstacle obstacle, const char option[], con
 . -<obstacle>_point x,y,z                           - a point of the plane or of the cylinder's axis, or the centre of the sphere [m]
 . -<obstacle>_normal x,y,z                          - of the plane, away from what is solid
 . -<obstacle>_axis x,y,z                            - of the cylinder; across the plane (0,0,1) by default, a disc in two dimensions
-- -<obstacle>_radius r                              - of the sphere or cylinder [m]
+. -<obstacle>_radius r                              - of the sphere or cylinder [m]
+- -<obstacle>_velocity vx,vy[,vz]                   - of its surface along itself, with friction: formulas in x, y, z, t [m/s]
 
   Level: beginner
 
@@ -54,7 +55,8 @@ PetscErrorCode ObstacleSetFromOptions(Obstacle obstacle)
   PetscEnum   type     = (PetscEnum)OBSTACLE_PLANE;
   PetscReal   point[3] = {0, 0, 0}, direction[3] = {0, 0, 0}, radius = 0;
   PetscInt    n = 3, n_direction = 3;
-  PetscBool   set, has_point, has_direction = PETSC_FALSE, has_radius = PETSC_FALSE;
+  char        velocity[PETSC_MAX_OPTION_NAME];
+  PetscBool   set, has_velocity, has_point, has_direction = PETSC_FALSE, has_radius = PETSC_FALSE;
   const char *prefix;
 
   PetscFunctionBegin;
@@ -68,9 +70,12 @@ PetscErrorCode ObstacleSetFromOptions(Obstacle obstacle)
                                     &n_direction, &has_direction));
   if (type != (PetscEnum)OBSTACLE_PLANE)
     PetscCall(PetscOptionsReal("-radius", "Its radius [m]", words[type].setter, radius, &radius, &has_radius));
+  PetscCall(PetscOptionsString("-velocity", "Velocity of its surface along itself [m/s]", "ObstacleSetVelocity", "", velocity,
+                               sizeof(velocity), &has_velocity));
   PetscOptionsEnd();
   PetscCheck(set, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_USER_INPUT,
              "-%sobstacle_type is missing: obstacle '%s' is a plane, a sphere or a cylinder", prefix, ((PetscObject)obstacle)->name);
+  if (has_velocity) PetscCall(ObstacleSetVelocity(obstacle, velocity));
   PetscCall(CheckVector(obstacle, "point", words[type].point, has_point, n, point));
   if (type == (PetscEnum)OBSTACLE_PLANE) {
     PetscCall(CheckVector(obstacle, "normal", "the outward normal of the plane", has_direction, n_direction, direction));

@@ -47,6 +47,7 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   contact->active_max      = PetscMax(contact->active_max, state->active);
   contact->sliding_max     = PetscMax(contact->sliding_max, state->sliding);
   contact->friction_loss   = state->friction_loss;
+  contact->obstacle_work   = state->obstacle_work;
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
   contact->gap_final = state->gap;
   memory->touches    = touches;
@@ -90,6 +91,7 @@ PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
     any.area += frame->pairs[i].area;
     any.sliding += frame->pairs[i].sliding;
     any.friction_loss += frame->pairs[i].friction_loss;
+    any.obstacle_work += frame->pairs[i].obstacle_work;
     any.tension = PetscMax(any.tension, frame->pairs[i].tension);
   }
   AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time, cut);

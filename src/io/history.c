@@ -73,7 +73,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
                          history->n_bodies, &history->hourglasses));
   PetscCall(ContactGetLaw(contact, &law));
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
-  PetscCall(PetscCalloc1(2 + 9 * n_pairs + 11 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscCalloc1(2 + 10 * n_pairs + 11 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   for (PetscInt i = 0; i < n_pairs; i++) {
@@ -87,6 +87,7 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(AddSeries(history, "/contact/", name, "impulse", "N s", 3, PETSC_FALSE));
     if (!history->friction) continue;
     PetscCall(AddSeries(history, "/contact/", name, "friction_loss", "J", 1, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "obstacle_work", "J", 1, PETSC_FALSE));
     PetscCall(AddSeries(history, "/contact/", name, "sliding", "1", 1, PETSC_TRUE));
   }
   for (PetscInt i = 0; i < history->n_bodies; i++) {
@@ -250,6 +251,7 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].impulse[d];
     if (!history->friction) continue;
     *next++ = frame->pairs[i].friction_loss;
+    *next++ = frame->pairs[i].obstacle_work;
     *next++ = (PetscReal)frame->pairs[i].sliding;
   }
   for (PetscInt i = 0; i < frame->n_bodies; i++) {

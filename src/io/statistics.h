@@ -23,6 +23,7 @@ typedef struct {
   PetscInt            active_max;        /* nodes in contact at the same time */
   PetscReal           gap_final;         /* smallest gap at the end of the run [m] */
   PetscReal           friction_loss;     /* energy that friction has taken [J] */
+  PetscReal           obstacle_work;     /* work of obstacles whose surface moves [J] */
   PetscInt            sliding_max;       /* nodes that slide at the same time, with friction */
 } ContactStatistics;
 

@@ -70,6 +70,7 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SetReal(object, "gap_final", contact->gap_final));
   if (!friction) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SetReal(object, "friction_loss", contact->friction_loss));
+  PetscCall(SetReal(object, "obstacle_work", contact->obstacle_work));
   PetscCall(SetInteger(object, "sliding_max", contact->sliding_max));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

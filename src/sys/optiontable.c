@@ -199,6 +199,8 @@ static const KnownOption options[] = {
     {"obstacles", OPTION_OF_OBSTACLE, "normal", "x,y,z", "normal of the plane, away from what is solid"},
     {"obstacles", OPTION_OF_OBSTACLE, "axis", "x,y,z", "axis of the cylinder, default 0,0,1: a disc in 2-D"},
     {"obstacles", OPTION_OF_OBSTACLE, "radius", "r", "radius of the sphere or cylinder [m]"},
+    {"obstacles", OPTION_OF_OBSTACLE, "velocity", "v,v[,v]",
+     "velocity of its surface along itself, as of a belt or a turning roll, which bodies feel by friction [m/s]; formulas in x, y, z, t"},
 
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "newtonls|anderson|nrichardson|ngmres|qn", "outer iteration, default newtonls"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_atol", "a",

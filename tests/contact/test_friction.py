@@ -69,6 +69,15 @@ def test_block_slides(options, impakt):
     assert worst_energy_error(run.summary) <= 1e-5
 
 
+def test_coefficient_falls_with_the_speed(impakt):
+    """mu_k + (mu_s - mu_k) exp(-d v), with a decay that leaves mu_k alone at 0.1 m/s and above."""
+    run = impakt(joined(SLOPE, "-contact_friction_kinetic 0.1 -contact_friction_decay 200"))
+    time, speed = run.history["time"][()], run.history["body/block/mean_velocity"][:, 0]
+    late = time >= 0.12
+    assert speed[late].min() > 0.1
+    assert np.polyfit(time[late], speed[late], 1)[0] == pytest.approx(G * (np.sin(TILT) - 0.1 * np.cos(TILT)), rel=1e-2)
+
+
 def test_block_sticks(impakt):
     """tan 30 < 0.6: without creep once the loads have come and their waves are damped, for a second."""
     run = impakt(joined(SLOPE, "-contact_friction 0.6 -time_end 1.5"))
@@ -121,7 +130,8 @@ def test_large_coefficient_is_a_tie(pairing, impakt):
     """Without opening, friction that nothing overcomes is the tied solution with massless layers."""
     move = "-lower_initial_velocity 0,0.01*x -upper_initial_velocity 0.03*y,0 -time_end 1e-4 -lower_dm_plex_box_faces 33,20 -upper_dm_plex_box_faces 40,20"
     stick = impakt(joined(PULSE, PAIRINGS[pairing], move, "-contact_friction 1e8"))
-    options = [line for line in open("options/shear-pulse.opts").read().splitlines() if not line.startswith(("#", "-contact_law", "-contact_friction"))]
+    text = (stick.folder / "options/shear-pulse.opts").read_text()
+    options = [line for line in text.splitlines() if not line.startswith(("#", "-contact_law", "-contact_friction"))]
     (stick.folder / "tied.opts").write_text("\n".join(options))
     tie = "-contact_law tied -lower_mass_redistribute true -upper_mass_redistribute true"
     tied = impakt(joined(f"-options_file {stick.folder}/tied.opts", PAIRINGS[pairing], move, tie))
@@ -146,6 +156,32 @@ def test_turning_together(impakt):
     assert run.history[f"contact/{name}/sliding"][()].max() == 0
     assert np.abs(run.history[f"contact/{name}/friction_loss"][()]).max() <= 1e-9 * energy  # measured: 1e-12
     assert run.summary["schwarz"]["max"] <= 4
+
+
+BELT = (
+    "-bodies block -obstacles belt -belt_obstacle_type plane -belt_point 0,0 -belt_normal 0,1 -contact_law coulomb -contact_friction 0.3 "
+    "-time_end 0.2 -time_step 1e-3 -block_dm_plex_dim 2 -block_dm_plex_box_lower -0.2,0 -block_dm_plex_box_upper 0.2,0.1 -block_dm_plex_box_faces 8,2 "
+    "-block_density 1000 -block_youngs_modulus 1e8 -block_poissons_ratio 0.25 -block_damping_stiffness 1e-2 "
+    "-block_body_force 0,-9810*sin(pi*min(0.5,10*t))^2 -belt_velocity 0.2,0"
+)
+
+
+def test_belt(impakt):
+    """A block of mass m is set on a belt of speed v: it slides until it goes along; the belt brings m v^2, of which friction takes half."""
+    run = impakt(BELT)
+    mass, speed = 40, 0.2
+    contact = run.summary["contact"]
+    assert run.history["body/block/mean_velocity"][-30:, 0].mean() == pytest.approx(speed, rel=1e-3)  # it rings a little in shear
+    assert contact["obstacle_work"] == pytest.approx(mass * speed**2, rel=5e-3)  # the momentum of the ringing block times the speed
+    assert contact["friction_loss"] == pytest.approx(0.5 * mass * speed**2, rel=5e-3)
+    assert worst_energy_error(run.summary) <= 1e-5
+    assert contact["friction_least"] >= -1e-12
+
+
+def test_belt_needs_friction_and_stays_in_its_plane(impakt):
+    words = BELT.replace("-contact_law coulomb -contact_friction 0.3", "")
+    assert "-belt_velocity: bodies feel the velocity" in impakt(words, expect_failure=True).stderr
+    assert "has a part across its surface" in impakt(BELT + " -belt_velocity 0.2,0.1", expect_failure=True).stderr
 
 
 @pytest.mark.parametrize(

@@ -308,16 +308,18 @@ typedef struct {
 /* Friction, see src/contact/laws/README.md. Arrays have a number for each row: what concerns a node is at its first one. */
 typedef struct {
   ContactFrictionLaw law;
-  char              *name;      /* NULL: none */
-  PetscBool          steps;     /* controller steps are made with it */
-  PetscReal         *slip;      /* of rows across the normal: in the present step [m] */
-  PetscReal         *step_loss; /* the same: energy that the present step loses by friction [J] */
-  PetscReal         *loss;      /* of nodes: the same in all accepted steps */
-  PetscReal         *distance;  /* of nodes: way that they have slid [m] */
-  PetscReal         *speed;     /* of nodes: at which they have slid in the last accepted step [m/s] */
-  PetscReal         *pair_step; /* per pair, of all ranks: energy that the present step loses by friction [J] */
-  PetscReal         *pair_loss; /* the same in all accepted steps */
-  PetscBool         *slides;    /* of nodes, at the end of the present step */
+  char              *name;            /* NULL: none */
+  PetscBool          steps;           /* controller steps are made with it */
+  PetscReal         *slip;            /* of rows across the normal: in the present step [m] */
+  PetscReal         *drive;           /* the same: the part of it that the surface of an obstacle goes along itself [m] */
+  PetscReal         *step_loss;       /* the same: energy that the present step loses by friction [J] */
+  PetscReal         *loss;            /* of nodes: the same in all accepted steps */
+  PetscReal         *distance;        /* of nodes: way that they have slid [m] */
+  PetscReal         *speed;           /* of nodes: at which they have slid in the last accepted step [m/s] */
+  PetscReal         *pair_step;       /* per pair, of all ranks: energy that the present step loses by friction [J] */
+  PetscReal         *pair_loss;       /* the same in all accepted steps */
+  PetscReal *pair_work, *pair_driven; /* per pair, of all ranks: work of an obstacle whose surface moves, in the step, and in all [J] */
+  PetscBool *slides;                  /* of nodes, at the end of the present step */
 } ContactFriction;
 
 /* How the controller step is being made */

@@ -107,6 +107,30 @@ PetscErrorCode BodySetTimeStep(Body body, PetscReal step)
 }
 
 /*@
+  BodyGetStartTime - the time at which the step under way begins
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. time - of the last state that `BodySave()` has kept [s]
+
+  Level: developer
+
+.seealso: `Body`, `BodySave()`
+@*/
+PetscErrorCode BodyGetStartTime(Body body, PetscReal *time)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(time, 2);
+  *time = body->saved.time;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetTimeStep - the substep that has been asked for
 
   Not Collective

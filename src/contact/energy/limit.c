@@ -260,18 +260,20 @@ static PetscErrorCode BeginAttempts(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether friction brings energy on a row by the forces at both ends of the step */
+/* Whether friction brings energy on a row by the forces at both ends of the step. What a node that sticks slips is what the step has left
+   of its residual, and no other start makes it less. */
 static PetscBool Rubs(Contact contact, PetscInt i)
 {
   const PetscReal start = contact->energy.changed ? contact->energy.start_force[i] : contact->energy.last_force[i];
+  const PetscInt  first = i - (i - contact->pairs[contact->rows.pair[i]].begin) % contact->pairs[contact->rows.pair[i]].components;
 
-  if (!ContactRowRubs(contact, i)) return PETSC_FALSE;
+  if (!ContactRowRubs(contact, i) || (contact->end.active[first] && !contact->friction.slides[first])) return PETSC_FALSE;
   return (PetscBool)(0.5 * (start + contact->end.force[i]) * contact->friction.slip[i] > FRICTION_BRINGS * contact->energy.scale);
 }
 
-/* Nodes on which friction has brought energy, since the force at the start of the step pushes the way that they slide, start with the
-   force across their normal that they have ended with: then friction takes energy, whatever that force is. As that answers to the start,
-   the step may be made a few times. Collective. */
+/* Nodes on which friction has brought energy, since the force at the start of the step pushes the way that they slide, start nearer to
+   the force across their normal that they end with: with that one friction takes energy, whatever it is. As it answers to the start it is
+   approached by halves. Collective. */
 static PetscErrorCode LimitFriction(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
@@ -285,7 +287,7 @@ static PetscErrorCode LimitFriction(Contact contact)
     if (!any) break;
     if (!energy->changed) PetscCall(BeginAttempts(contact));
     for (PetscInt i = 0; i < contact->rows.n; i++)
-      if (Rubs(contact, i)) energy->start_force[i] = contact->end.force[i];
+      if (Rubs(contact, i)) energy->start_force[i] += 0.5 * (contact->end.force[i] - energy->start_force[i]);
     PetscCall(MakeStep(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ComputeGroupWork(contact));

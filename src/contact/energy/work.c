@@ -92,7 +92,8 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, springs, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
-  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_step; p++) springs[2 * p] += contact->friction.pair_step[p];
+  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_step; p++)
+    springs[2 * p] += contact->friction.pair_step[p] - contact->friction.pair_work[p];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -181,6 +181,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactBond(contact));
   PetscCall(ContactUpdateRows(contact));
+  PetscCall(ContactDriveFriction(contact));
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(StageEnd(logged));

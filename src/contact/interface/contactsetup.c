@@ -140,6 +140,15 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpFriction(contact));
   PetscCall(ContactSetUpStabilization(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
+  for (PetscInt o = 0; o < contact->n_obstacles && contact->options.law != CONTACT_LAW_FRICTION; o++) {
+    const char *name;
+    PetscBool   moves;
+
+    PetscCall(ObstacleGetVelocity(contact->obstacles[o], NULL, 0, NULL, &moves));
+    PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+    PetscCheck(!moves, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-%s_velocity: bodies feel the velocity of an obstacle by friction alone; set -contact_law coulomb", name);
+  }
   PetscCheck(contact->options.law != CONTACT_LAW_FRICTION || contact->friction.steps || !contact->rows.n_all,
              PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law %s: -contact_type %s has no friction; choose schwarz or lagrange, which have the same", contact->friction.name,

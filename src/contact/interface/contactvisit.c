@@ -128,7 +128,10 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "group work", contact->n_bodies, energy->group_work));
   PetscCall(CheckpointVisitReals(checkpoint, "start energy", contact->n_bodies, energy->start_energy));
   PetscCall(CheckpointVisitReals(checkpoint, "pair sums", 2 * contact->n_pairs, energy->pair_sums));
-  if (contact->friction.slip) PetscCall(CheckpointVisitReals(checkpoint, "friction", contact->n_pairs, contact->friction.pair_loss));
+  if (contact->friction.slip) {
+    PetscCall(CheckpointVisitReals(checkpoint, "friction", contact->n_pairs, contact->friction.pair_loss));
+    PetscCall(CheckpointVisitReals(checkpoint, "obstacle work", contact->n_pairs, contact->friction.pair_driven));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -277,6 +277,7 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
     state->beyond_impulse = sums[SUM_BEYOND];
     state->sliding        = (PetscInt)sums[SUM_SLIDING];
     state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
+    state->obstacle_work  = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,6 +8,9 @@
 */
 #include "friction.h"
 
+/* Round-off of normals that a velocity may have a part along */
+#define ACROSS 1e-6
+
 /*@
   ContactGetFrictionLoss - the energy that friction has taken so far
 
@@ -37,6 +40,31 @@ PetscErrorCode ContactGetFrictionLoss(Contact contact, PetscReal *loss)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ContactGetObstacleWork - the work that obstacles whose surface moves have done so far
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. work - of all obstacles, in all accepted steps [J]; 0 without friction
+
+  Level: intermediate
+
+.seealso: `Contact`, `ObstacleSetVelocity()`, `ContactGetFrictionLoss()`
+@*/
+PetscErrorCode ContactGetObstacleWork(Contact contact, PetscReal *work)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(work, 2);
+  *work = 0;
+  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_driven; p++) *work += contact->friction.pair_driven[p];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A method that has no friction ends the run with words; `why`: what is in its way, and what to choose */
 PetscErrorCode ContactRefuseFriction(Contact contact, const char why[])
 {
@@ -54,9 +82,10 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
 
   PetscFunctionBegin;
   if (contact->options.law != CONTACT_LAW_FRICTION || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc6(PetscMax(n, 1), &friction->slip, n, &friction->step_loss, n, &friction->loss, n, &friction->distance, n,
-                         &friction->speed, n, &friction->slides));
-  PetscCall(PetscCalloc2(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss));
+  PetscCall(PetscCalloc7(PetscMax(n, 1), &friction->slip, n, &friction->drive, n, &friction->step_loss, n, &friction->loss, n,
+                         &friction->distance, n, &friction->speed, n, &friction->slides));
+  PetscCall(PetscCalloc4(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss, contact->n_pairs,
+                         &friction->pair_work, contact->n_pairs, &friction->pair_driven));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,8 +95,9 @@ PetscErrorCode ContactDestroyFriction(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ContactDestroyFrictionLaw(contact));
-  PetscCall(PetscFree6(friction->slip, friction->step_loss, friction->loss, friction->distance, friction->speed, friction->slides));
-  PetscCall(PetscFree2(friction->pair_step, friction->pair_loss));
+  PetscCall(PetscFree7(friction->slip, friction->drive, friction->step_loss, friction->loss, friction->distance, friction->speed,
+                       friction->slides));
+  PetscCall(PetscFree4(friction->pair_step, friction->pair_loss, friction->pair_work, friction->pair_driven));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,6 +153,53 @@ void ContactCarryFriction(Contact contact)
   }
 }
 
+/* At the start of a step: how far the surfaces of obstacles go along themselves in it, at the nodes. Where a node is moves by less in a
+   step than a velocity changes over. */
+PetscErrorCode ContactDriveFriction(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.slip; p++) {
+    const ContactPair *pair  = &contact->pairs[p];
+    PetscBool          moves = PETSC_FALSE;
+    const PetscScalar *reference, *displacement;
+    PetscReal          time;
+    Vec                positions, u;
+
+    if (pair->obstacle) PetscCall(ObstacleGetVelocity(pair->obstacle, NULL, 0, NULL, &moves));
+    if (!moves) continue;
+    PetscCall(BodyGetStartTime(contact->bodies[pair->body[0]], &time));
+    PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
+    PetscCall(BodyGetSolution(contact->bodies[pair->body[0]], &u, NULL, NULL));
+    PetscCall(VecGetArrayRead(positions, &reference));
+    PetscCall(VecGetArrayRead(u, &displacement));
+    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+      PetscReal x[3] = {0, 0, 0}, velocity[3], across = 0, size = 0;
+
+      if (!contact->rows.opposite[first]) continue;
+      for (PetscInt d = 0; d < contact->dim; d++)
+        x[d] = PetscRealPart(reference[contact->rows.dof[first] + d] + displacement[contact->rows.dof[first] + d]);
+      PetscCall(ObstacleGetVelocity(pair->obstacle, x, time + 0.5 * contact->step, velocity, NULL));
+      for (PetscInt i = first; i < first + pair->components; i++) {
+        contact->friction.drive[i] = 0;
+        for (PetscInt d = 0; d < 3; d++) contact->friction.drive[i] += contact->step * velocity[d] * contact->rows.normal[3 * i + d];
+      }
+      for (PetscInt d = 0; d < 3; d++) {
+        across += velocity[d] * contact->rows.normal[3 * first + d];
+        size += PetscSqr(velocity[d]);
+      }
+      PetscCheck(!contact->start.active[first] || PetscAbsReal(across) <= ACROSS * PetscSqrtReal(size), PETSC_COMM_SELF,
+                 PETSC_ERR_USER_INPUT,
+                 "The velocity (%g, %g, %g) m/s of the obstacle of %s at (%g, %g, %g) m has a part across its surface; an obstacle moves "
+                 "along its surface alone",
+                 (double)velocity[0], (double)velocity[1], (double)velocity[2], pair->name, (double)x[0], (double)x[1], (double)x[2]);
+      contact->friction.drive[first] = 0;
+    }
+    PetscCall(VecRestoreArrayRead(u, &displacement));
+    PetscCall(VecRestoreArrayRead(positions, &reference));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Slips over the controller step, from the bodies' traces */
 PetscErrorCode ContactComputeSlips(Contact contact)
 {
@@ -142,7 +219,8 @@ PetscErrorCode ContactComputeSlips(Contact contact)
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscInt first = i - pair->shift[0], second = i - pair->shift[1];
 
-      contact->friction.slip[i] = PetscRealPart((end[1][second] - start[1][second]) - (end[0][first] - start[0][first]));
+      contact->friction.slip[i] = PetscRealPart((end[1][second] - start[1][second]) - (end[0][first] - start[0][first])) +
+                                  contact->friction.drive[i];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -185,15 +263,26 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(friction->step_loss, contact->rows.n));
   PetscCall(PetscArrayzero(friction->pair_step, contact->n_pairs));
+  PetscCall(PetscArrayzero(friction->pair_work, contact->n_pairs));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddLossOn(contact, b, start_force));
-  for (PetscInt i = 0; i < contact->rows.n; i++) friction->pair_step[contact->rows.pair[i]] += friction->step_loss[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    /* what friction takes is the work of the surfaces on each other; the obstacle brings its part */
+    const PetscReal work = -0.5 * (start_force[i] + contact->end.force[i]) * friction->drive[i];
+
+    friction->step_loss[i] += work;
+    friction->pair_work[contact->rows.pair[i]] += work;
+    friction->pair_step[contact->rows.pair[i]] += friction->step_loss[i];
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, friction->pair_work, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_SUM,
+                               PetscObjectComm((PetscObject)contact)));
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, friction->pair_step, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Books what friction has taken in the accepted step, and how far nodes have slid */
+/* Books what friction has taken in the accepted step, and how far nodes have slid; the slips are those that the step has left */
 PetscErrorCode ContactAcceptFriction(Contact contact)
 {
   ContactFriction *friction = &contact->friction;
@@ -201,11 +290,11 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
 
   PetscFunctionBegin;
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactComputeSlips(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     friction->pair_loss[p] += friction->pair_step[p];
+    friction->pair_driven[p] += friction->pair_work[p];
     for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
       PetscReal way = 0;
 

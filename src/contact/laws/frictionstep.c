@@ -278,7 +278,10 @@ static PetscErrorCode Step(Contact contact)
   PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
   PetscCall(ForcesBeginStep(contact, &step->forces, &in_contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!in_contact) {
+    PetscCall(ContactComputeSlips(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (contact->start.active[i]) step->marks[i] = INTERFACE_SOLVED;
     contact->end.force[i] = contact->start.force[i];
