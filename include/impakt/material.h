@@ -68,7 +68,7 @@ typedef struct {
      negative dt: nothing flows. */
   void (*advance)(const void *data, PetscReal dt, const PetscReal H[9][8], const PetscReal start[][8], PetscReal end[][8],
                   PetscReal P[9][8]);
-  /* stress and stored energy for a history as it is */
+  /* stored energy, and stress unless P is NULL, for a history as it is */
   void (*hold)(const void *data, const PetscReal H[9][8], const PetscReal now[][8], PetscReal W[8], PetscReal P[9][8]);
   /* derivative of advance()'s stress at one point */
   void (*advancetangent)(const void *data, PetscReal dt, const PetscReal H[9], const PetscReal start[], PetscReal tangent[81]);

@@ -332,12 +332,12 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
 /* Adds the energies of a batch, one by one, and returns its first member without one; -1: none. With `stress`, the mean Cauchy stress of
    each too */
 SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                  PetscReal *energy, PetscReal stress[])
+                                  PetscReal *energy, PetscReal *plastic, PetscReal stress[])
 {
   const PetscInt n  = PetscMin(SIMD_WIDTH, count - first);
   Gradients      at = {0};
   SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
-  SimdReal       P[9], W, sum[6] = {{0}}, stored = {0}, volume = {0};
+  SimdReal       P[9], W, work, sum[6] = {{0}}, stored = {0}, flowed = {0}, volume = {0};
   Volumes        volumes[SIMD_PARTS];
   Means          means;
   Dilated        dilated;
@@ -350,8 +350,9 @@ SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt c
     GetGradients(X, U, points[g], &at);
     DilateAny(solid->linear, &means, at.H, &dilated);
     if (energy) {
-      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W);
+      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W, work);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) stored[p] += at.determinant[p] * W[p];
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += at.determinant[p] * work[p];
       continue;
     }
     SolidStress(solid, first, g, (const SimdReal *)at.H, P);
@@ -364,6 +365,7 @@ SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt c
     }
   }
   for (PetscInt p = 0; p < n && energy; p++) *energy += stored[p];
+  for (PetscInt p = 0; p < n && energy; p++) *plastic += flowed[p];
   for (PetscInt p = 0; p < n && stress; p++)
     for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];
   bad = FindNaN(stored);
@@ -371,12 +373,12 @@ SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt c
 }
 
 SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                      PetscReal *energy)
+                                      PetscReal *energy, PetscReal *plastic)
 {
   PetscInt inverted = -1;
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt bad = ObserveBatch(solid, first, count, connectivity, u, energy, NULL);
+    const PetscInt bad = ObserveBatch(solid, first, count, connectivity, u, energy, plastic, NULL);
 
     if (inverted < 0) inverted = bad;
   }
@@ -386,7 +388,7 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
 SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
                                   PetscReal stress[])
 {
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) (void)ObserveBatch(solid, first, count, connectivity, u, NULL, stress);
+  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) (void)ObserveBatch(solid, first, count, connectivity, u, NULL, NULL, stress);
 }
 
 #include <impakt/private/solidplastic.h>

@@ -105,6 +105,7 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
     const char *name;
     NodeStates  nodes;
     PetscInt    dim;
+    PetscBool   plastic;
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[b], &name));
     PetscCall(ShareNodes(comm, &file, name, &nodes));
@@ -112,6 +113,12 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
     PetscCheck(!nodes.n || nodes.dim == dim, comm, PETSC_ERR_USER_INPUT,
                "-restart_state %s: body '%s' has %" PetscInt_FMT " dimensions there, and %" PetscInt_FMT " here", path, name, nodes.dim,
                dim);
+    PetscCall(BodyHasHistory(bodies[b], &plastic));
+    PetscCheck(
+        !nodes.n || !plastic, comm, PETSC_ERR_SUP,
+        "-restart_state %s: the material of body '%s' has a history, which displacements and velocities do not tell; continue the run "
+        "with -restart",
+        path, name);
     if (nodes.n) PetscCall(BodySetInitialState(bodies[b], FindState, &nodes));
     else
       PetscCall(

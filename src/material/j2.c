@@ -352,7 +352,7 @@ SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal 
   }
 }
 
-/* Stress and stored energy while nothing flows */
+/* Stress, unless it is not wanted, and stored energy while nothing flows */
 SIMD_CLONES static void Hold(const void *data, const PetscReal H[9][8], const PetscReal now[][8], PetscReal W[8], PetscReal P[9][8])
 {
   const Plastic *plastic = (const Plastic *)data;
@@ -363,10 +363,18 @@ SIMD_CLONES static void Hold(const void *data, const PetscReal H[9][8], const Pe
     const Symmetric  e     = SymmetricGet(trial.E, part);
     const SimdVector trace = e.xx + e.yy + e.zz;
 
-    StoreStress(part, &trial, now, Hencky(&plastic->elastic, e), P);
+    if (P) StoreStress(part, &trial, now, Hencky(&plastic->elastic, e), P);
     SimdGetParts(W)[part] = 0.5 * plastic->elastic.lambda * trace * trace + plastic->elastic.mu * SymmetricSquares(e);
   }
-  for (int p = 0; p < SIMD_WIDTH; p++) W[p] += 0 * P[0][p]; /* what is not a number of an inverted point */
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const PetscReal xx = 1 + trial.Fe[0][p], yy = 1 + trial.Fe[4][p], zz = 1 + trial.Fe[8][p];
+
+    W[p] *= xx * (yy * zz - trial.Fe[5][p] * trial.Fe[7][p]) + trial.Fe[1][p] * (trial.Fe[5][p] * trial.Fe[6][p] - trial.Fe[3][p] * zz) +
+                        trial.Fe[2][p] * (trial.Fe[3][p] * trial.Fe[7][p] - yy * trial.Fe[6][p]) >
+                    0
+                ? 1
+                : NAN;
+  }
 }
 
 /* The virgin material, as long as nothing flows */
@@ -379,9 +387,7 @@ static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
 
 static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
 {
-  SimdReal P[9];
-
-  Hold(data, H, virgin, W, P);
+  Hold(data, H, virgin, W, NULL);
 }
 
 /* dM / dE of the step: q and the slope are those of PlasticFindFlow() */

@@ -88,7 +88,7 @@ SIMD_CLONES static void Hold(const void *data, const PetscReal H[9][8], const Pe
     const Symmetric  e     = ElasticStrain(H, now, part);
     const SimdVector trace = e.xx + e.yy + e.zz;
 
-    StoreStress(Hooke(elastic, e), part, P);
+    if (P) StoreStress(Hooke(elastic, e), part, P);
     SimdGetParts(W)[part] = 0.5 * elastic->lambda * trace * trace + elastic->mu * SymmetricSquares(e);
   }
 }
@@ -102,9 +102,7 @@ static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
 
 static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
 {
-  SimdReal P[9];
-
-  Hold(data, H, virgin, W, P);
+  Hold(data, H, virgin, W, NULL);
 }
 
 /* dP = lambda tr(dE) 1 + 2 mu (1 - 3 mu d / q) dev dE + 2 mu dev dE + (what the growth d of the strain adds) s (s : dE) */

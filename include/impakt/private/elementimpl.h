@@ -67,7 +67,8 @@ struct _p_Element {
   PetscBool       setup;
   /* state */
   ElementHistory history;
-  PetscInt       inverted; /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
+  PetscReal      plastic_work; /* of all elements of this rank: energy() finds it too, of a material with history [J] */
+  PetscInt       inverted;     /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
 };
 
 PETSC_INTERN PetscFunctionList ElementList, ElementFormulationList;

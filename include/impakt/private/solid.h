@@ -50,17 +50,20 @@ SIMD_INLINE void SolidStress(const Solid *solid, PetscInt first, PetscInt g, con
   } else (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
 }
 
-/* And for the stored energy */
-SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, const SimdReal H[9], SimdReal W)
+/* And for the stored energy, with the plastic work of materials with history */
+SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, const SimdReal H[9], SimdReal W, SimdReal work)
 {
   const ElementHistory *history = solid->history;
 
   if (history->start) {
-    SimdReal P[9];
+    const PetscReal *now = history->start + SolidHistoryOffset(history, first, g);
 
-    (*solid->kernels.hold)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H,
-                           (const PetscReal(*)[SIMD_WIDTH])(history->start + SolidHistoryOffset(history, first, g)), W, P);
-  } else (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, W);
+    (*solid->kernels.hold)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, (const PetscReal(*)[SIMD_WIDTH])now, W, NULL);
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) work[p] = now[solid->kernels.plastic_work * SIMD_WIDTH + p];
+  } else {
+    (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, W);
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) work[p] = 0;
+  }
 }
 
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);

@@ -105,7 +105,7 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
 }
 
 SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                      PetscReal *energy)
+                                      PetscReal *energy, PetscReal *plastic)
 {
   PetscInt  inverted = -1;
   Gradients at       = {0};
@@ -113,19 +113,21 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
-    SimdReal       W, sum = {0};
+    SimdReal       W, work, sum = {0}, flowed = {0};
     PetscInt       bad;
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
-      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W);
+      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W, work);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += at.determinant[p] * work[p];
     }
     bad = FindNaN(sum);
     if (inverted < 0 && bad >= 0) inverted = first + PetscMin(bad, n - 1);
     for (PetscInt p = 0; p < n; p++) *energy += sum[p];
+    for (PetscInt p = 0; p < n; p++) *plastic += flowed[p];
   }
   return inverted;
 }

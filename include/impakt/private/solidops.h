@@ -17,9 +17,11 @@ static PetscErrorCode ViscousForce(Element element, const PetscScalar u[], const
 static PetscErrorCode Energy(Element element, const PetscScalar u[], PetscReal *energy)
 {
   PetscFunctionBegin;
-  *energy           = 0;
-  element->inverted = AddEnergy((const Solid *)element->data, element->count, element->connectivity, u, energy);
+  *energy               = 0;
+  element->plastic_work = 0;
+  element->inverted     = AddEnergy((const Solid *)element->data, element->count, element->connectivity, u, energy, &element->plastic_work);
   *energy *= WEIGHT * element->cross_section;
+  element->plastic_work *= WEIGHT * element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
