@@ -3,6 +3,9 @@
 
 /* A given step that is larger than this many times the one that resolves contact is worth a warning */
 #define MUCH_LARGER 10
+/* In a step that is larger by more than this the mass of an implicit body is lost in the round-off of its stiffness: their ratio is the
+   square of the number, 1e14, and momentum would be wrong by one per cent */
+#define TOO_LARGE 1e7
 
 /* The longest substep that the user has given to a body, of which the controller step must be a multiple [s]; 0: none. An explicit body
    whose substep would be the controller step gets one that is stable. */
@@ -72,11 +75,17 @@ PetscErrorCode ControllerWarnOfStep(Controller controller)
 
   PetscFunctionBegin;
   if (ratio <= MUCH_LARGER) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(
+      ratio <= TOO_LARGE, comm, PETSC_ERR_USER_INPUT,
+      "-time_step %g s is %.3g times the %.3g s that resolve contact (%s): so large a step loses the masses of bodies in the round-off "
+      "of their stiffness. Check units, or take a smaller one; -time_step auto takes %.3g s",
+      (double)controller->time_step, (double)ratio, (double)controller->resolved_step, controller->step_reason,
+      (double)controller->resolved_step);
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "impakt: warning: -time_step %g s is %.0f times the %.3g s that resolve contact (%s): contact that begins or ends within a "
+      "impakt: warning: -time_step %g s is %.15g times the %.3g s that resolve contact (%s): contact that begins or ends within a "
       "step takes or brings energy%s, and its forces are means over steps; -time_step auto takes %.3g s\n",
-      (double)controller->time_step, (double)ratio, (double)controller->resolved_step, controller->step_reason,
+      (double)controller->time_step, (double)PetscFloorReal(ratio + 0.5), (double)controller->resolved_step, controller->step_reason,
       controller->most_cuts ? ", so that steps may have to be cut in halves" : "", (double)controller->resolved_step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
