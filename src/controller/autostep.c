@@ -63,6 +63,12 @@ PetscErrorCode ControllerChooseStep(Controller controller)
     PetscCall(RoundStep(controller, resolved));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCheck(
+      !(resolved > 0) || controller->time_step <= TOO_LARGE * resolved, comm, PETSC_ERR_USER_INPUT,
+      "-time_step %g s is %.3g times the %.3g s that resolve contact (%s): so large a step loses the masses of bodies in the round-off "
+      "of their stiffness. Check units, or take a smaller one; -time_step auto takes %.3g s",
+      (double)controller->time_step, (double)(controller->time_step / resolved), (double)resolved, controller->step_reason,
+      (double)resolved);
   controller->resolved_step = resolved;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -75,12 +81,6 @@ PetscErrorCode ControllerWarnOfStep(Controller controller)
 
   PetscFunctionBegin;
   if (ratio <= MUCH_LARGER) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(
-      ratio <= TOO_LARGE, comm, PETSC_ERR_USER_INPUT,
-      "-time_step %g s is %.3g times the %.3g s that resolve contact (%s): so large a step loses the masses of bodies in the round-off "
-      "of their stiffness. Check units, or take a smaller one; -time_step auto takes %.3g s",
-      (double)controller->time_step, (double)ratio, (double)controller->resolved_step, controller->step_reason,
-      (double)controller->resolved_step);
   PetscCall(PetscFPrintf(
       comm, stderr,
       "impakt: warning: -time_step %g s is %.15g times the %.3g s that resolve contact (%s): contact that begins or ends within a "

@@ -42,6 +42,11 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
     message = text;
     comm    = PETSC_COMM_WORLD;
   }
+  if (!explained && message && code == PETSC_ERR_MAT_LU_ZRPVT && strncmp(message, "Zero pivot", strlen("Zero pivot")) == 0) {
+    snprintf(text, sizeof(text),
+             "The matrix of a body is singular to round-off (%.200s): check units, -time_step and the constants of materials", message);
+    message = text;
+  }
   MPI_Initialized(&initialized);
   if (initialized && comm != MPI_COMM_NULL && comm != MPI_COMM_SELF) MPI_Comm_rank(comm, &rank);
   if (initialized && comm == MPI_COMM_SELF) MPI_Comm_size(MPI_COMM_WORLD, &size);

@@ -200,6 +200,7 @@ SENSELESS = {
     "tiny": ([BLOCKS, "-left_scale", "1e-80"], ["'left'", "-left_scale"]),
     "huge": ([BLOCKS, "-left_scale", "1e90"], ["'left'", "-left_scale"]),
     "large step": ([BLOCKS, "-time_step", "1e20"], ["-time_step 1e+20 s", "resolve contact", "masses"]),
+    "large step of bars": (["options/impact-high-speed.opts", "-time_step", "1e20"], ["-time_step 1e+20 s", "resolve contact", "masses"]),
     "small step": ([BLOCKS, "-time_step", "1e-300", "-time_end", "1e-299"], ["-time_step 1e-300 s", "1e-60"]),
     "late end": ([BLOCKS, "-time_end", "1e300"], ["-time_end 1e+300 s", "1e+60"]),
     "heavy": ([BLOCKS, "-left_density", "1e300"], ["-left_density is 1e+300 kg/m^3", "1e+60"]),
@@ -225,7 +226,7 @@ def test_input_without_sense(case, words):
 
 def test_input_without_sense_on_three_ranks(words):
     """Once, and on the first rank, where PETSc's setters complain too."""
-    for case in ("large step", "heavy", "radius of PETSc's"):
+    for case in ("large step of bars", "heavy", "radius of PETSc's"):
         given, named = SENSELESS[case]
         run = words(*given, ranks=3)
         refused(run, named)
