@@ -99,7 +99,7 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
           (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, (double)controller->guard.part);
 }
 
-/* Ends the run where the energy of a body is no number: squares of its velocity or displacement are beyond all numbers */
+/* Ends the run where the energy of a body is no number after a step: squares of its velocity or displacement are beyond all numbers */
 static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *frame)
 {
   PetscFunctionBegin;
@@ -123,7 +123,7 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
   PetscReal now = frame->penalty_energy, start = 0, size = 0, work = 0, scale;
 
   PetscFunctionBegin;
-  PetscCall(CheckFinite(controller, frame));
+  if (frame->step > 0) PetscCall(CheckFinite(controller, frame)); /* the first step finds a bad start, and names its time */
   if (controller->guard.part == 0 || !frame->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < frame->n_bodies; b++) {
     PetscBool without_inertia;
