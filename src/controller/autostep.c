@@ -3,6 +3,9 @@
 
 /* A given step that is larger than this many times the one that resolves contact is worth a warning */
 #define MUCH_LARGER 10
+/* In a step that is larger by more than this the mass of an implicit body is lost in the round-off of its stiffness: their ratio is the
+   square of the number, 1e14, and momentum would be wrong by one per cent */
+#define TOO_LARGE 1e7
 
 /* The longest substep that the user has given to a body, of which the controller step must be a multiple [s]; 0: none. An explicit body
    whose substep would be the controller step gets one that is stable. */
@@ -60,6 +63,12 @@ PetscErrorCode ControllerChooseStep(Controller controller)
     PetscCall(RoundStep(controller, resolved));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCheck(
+      !(resolved > 0) || controller->time_step <= TOO_LARGE * resolved, comm, PETSC_ERR_USER_INPUT,
+      "-time_step %g s is %.3g times the %.3g s that resolve contact (%s): so large a step loses the masses of bodies in the round-off "
+      "of their stiffness. Check units, or take a smaller one; -time_step auto takes %.3g s",
+      (double)controller->time_step, (double)(controller->time_step / resolved), (double)resolved, controller->step_reason,
+      (double)resolved);
   controller->resolved_step = resolved;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -74,9 +83,9 @@ PetscErrorCode ControllerWarnOfStep(Controller controller)
   if (ratio <= MUCH_LARGER) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "impakt: warning: -time_step %g s is %.0f times the %.3g s that resolve contact (%s): contact that begins or ends within a "
+      "impakt: warning: -time_step %g s is %.15g times the %.3g s that resolve contact (%s): contact that begins or ends within a "
       "step takes or brings energy%s, and its forces are means over steps; -time_step auto takes %.3g s\n",
-      (double)controller->time_step, (double)ratio, (double)controller->resolved_step, controller->step_reason,
+      (double)controller->time_step, (double)PetscFloorReal(ratio + 0.5), (double)controller->resolved_step, controller->step_reason,
       controller->most_cuts ? ", so that steps may have to be cut in halves" : "", (double)controller->resolved_step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,6 +9,9 @@
 #define CONTROLLER_STEP_CUTS 4
 /* Most controller steps in a run: they are counted in PetscInt, which has 32 bits */
 #define MOST_STEPS 2e9
+/* Times whose squares, times the largest modulus or density, are numbers [s] */
+#define LONGEST_TIME  1e60
+#define SHORTEST_STEP 1e-60
 /* If the duration exceeds a whole number of controller steps by no more than this, relative and in steps, no step is added: round-off */
 #define STEPS_ROUND_OFF 1e-12
 #define STEPS_FLOOR     1e-9

@@ -120,6 +120,12 @@ static PetscErrorCode CheckTimes(MPI_Comm comm, PetscErrorCode code, PetscReal s
   PetscFunctionBegin;
   PetscCheck(step > 0 || step == (PetscReal)PETSC_DETERMINE, comm, code, "-time_step %g s must be positive", (double)step);
   PetscCheck(end > start, comm, code, "-time_end %g s must be later than -time_start %g s", (double)end, (double)start);
+  PetscCheck(PetscAbsReal(start) <= LONGEST_TIME && end <= LONGEST_TIME, comm, code,
+             "-time_start %g s and -time_end %g s must lie between -%g and %g s: beyond them, squares of times are not numbers",
+             (double)start, (double)end, LONGEST_TIME, LONGEST_TIME);
+  PetscCheck(step < 0 || (step >= SHORTEST_STEP && step <= LONGEST_TIME), comm, code,
+             "-time_step %g s must lie between %g and %g s: beyond them, its square divides by zero or by infinity", (double)step,
+             SHORTEST_STEP, LONGEST_TIME);
   PetscCheck(step < 0 || (end - start) / step < MOST_STEPS, comm, code, "-time_step %g s is too small for %g s of simulated time",
              (double)step, (double)(end - start));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -25,6 +25,9 @@ static PetscErrorCode ElementSetFromOptions_Bar2(Element element)
   PetscOptionsEnd();
   PetscCheck(area > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive",
              ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area);
+  PetscCheck(area >= SECTION_SMALLEST && area <= SECTION_LARGEST, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
+             "-%scross_section is %g m^2; it must lie between %g and %g m^2",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area, SECTION_SMALLEST, SECTION_LARGEST);
   if (set) PetscCall(ElementSetCrossSection(element, area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -125,6 +125,9 @@ static PetscErrorCode ElementSetFromOptions_Solid(Element element)
   PetscOptionsEnd();
   PetscCheck(thickness > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%sthickness is %g m; it must be positive",
              ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)thickness);
+  PetscCheck(thickness >= SECTION_SMALLEST && thickness <= SECTION_LARGEST, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
+             "-%sthickness is %g m; it must lie between %g and %g m", ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "",
+             (double)thickness, SECTION_SMALLEST, SECTION_LARGEST);
   if (set) PetscCall(ElementSetThickness(element, thickness));
   PetscCall(ElementSetPlaneStress(element, plane_stress));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -147,6 +147,38 @@ static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Restart(Output output)
+{
+  Checkpoints   *c;
+  MPI_Comm       comm;
+  PetscBool      exists = PETSC_FALSE, same;
+  CheckpointFile file;
+  PetscMPIInt    size;
+  char           path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  c    = &output->checkpoints;
+  comm = PetscObjectComm((PetscObject)output);
+  if (c->restart[0]) PetscCall(CheckpointFileFind(comm, c->restart, sizeof(path), path, &exists));
+  if (!exists && c->state[0]) PetscCall(OutputTakeState(output, c->state));
+  if (!c->restart[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!exists) {
+    PetscCall(PetscFPrintf(comm, stderr, "impakt: there is no checkpoint %s yet: the run begins at its start\n", c->restart));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CheckpointFileOpen(comm, path, &file));
+  PetscCall(OutputCompareOptions(comm, file.info.options, c->allow_changes, path));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(Load(output, &file, (PetscBool)(file.info.ranks == size)));
+  PetscCall(PetscFPrintf(comm, stderr, "impakt: continued from %s, after controller step %" PetscInt_FMT " at time %g s\n", path,
+                         file.info.step, (double)file.info.time));
+  PetscCall(PetscStrcmp(path, c->path, &same));
+  if (same) c->last_step = file.info.step;
+  c->next_look = file.info.step + 1;
+  PetscCall(CheckpointFileClose(&file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   OutputRestart - goes on from the checkpoint of `OutputSetRestart()`, if there is one
 
@@ -168,37 +200,17 @@ static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool 
 @*/
 PetscErrorCode OutputRestart(Output output)
 {
-  Checkpoints   *c;
-  MPI_Comm       comm;
-  PetscBool      exists = PETSC_FALSE, same;
-  CheckpointFile file;
-  PetscMPIInt    size;
-  char           path[PETSC_MAX_PATH_LEN];
+  PetscErrorCode error = PETSC_SUCCESS;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
-  c    = &output->checkpoints;
-  comm = PetscObjectComm((PetscObject)output);
-  if (c->restart[0]) {
-    PetscCall(OutputLock(output));
-    PetscCall(CheckpointFileFind(comm, c->restart, sizeof(path), path, &exists));
+  if (output->checkpoints.restart[0]) error = OutputLock(output);
+  if (!error) error = Restart(output);
+  if (error) { /* a program that ends here does not destroy the output, and would leave the files of its locks */
+    (void)OutputLocksRelease(&output->locks);
+    output->locked = PETSC_FALSE;
   }
-  if (!exists && c->state[0]) PetscCall(OutputTakeState(output, c->state));
-  if (!c->restart[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!exists) {
-    PetscCall(PetscFPrintf(comm, stderr, "impakt: there is no checkpoint %s yet: the run begins at its start\n", c->restart));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(CheckpointFileOpen(comm, path, &file));
-  PetscCall(OutputCompareOptions(comm, file.info.options, c->allow_changes, path));
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(Load(output, &file, (PetscBool)(file.info.ranks == size)));
-  PetscCall(PetscFPrintf(comm, stderr, "impakt: continued from %s, after controller step %" PetscInt_FMT " at time %g s\n", path,
-                         file.info.step, (double)file.info.time));
-  PetscCall(PetscStrcmp(path, c->path, &same));
-  if (same) c->last_step = file.info.step;
-  c->next_look = file.info.step + 1;
-  PetscCall(CheckpointFileClose(&file));
+  PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

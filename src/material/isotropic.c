@@ -64,6 +64,8 @@ static PetscErrorCode MaterialSetFromOptions_Isotropic(Material material)
   PetscOptionsEnd();
   PetscCheck(set || E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus in Pa", prefix);
   PetscCheck(E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is %g Pa; it must be positive", prefix, (double)E);
+  PetscCheck(E >= MATERIAL_SMALLEST && E <= MATERIAL_LARGEST, comm, PETSC_ERR_USER_INPUT,
+             "-%syoungs_modulus is %g Pa; it must lie between %g and %g Pa", prefix, (double)E, MATERIAL_SMALLEST, MATERIAL_LARGEST);
   PetscCheck(nu > -1 && nu < 0.5, comm, PETSC_ERR_USER_INPUT, "-%spoissons_ratio is %g; it must lie between -1 and 0.5", prefix,
              (double)nu);
   constants->youngs_modulus = E;

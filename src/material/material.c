@@ -156,6 +156,9 @@ PetscErrorCode MaterialSetFromOptions(Material material)
              "-%sdensity is missing; give the mass density in kg/m^3", prefix);
   PetscCheck(density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
              "-%sdensity is %g kg/m^3; a density must be positive", prefix, (double)density);
+  PetscCheck(density >= MATERIAL_SMALLEST && density <= MATERIAL_LARGEST, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
+             "-%sdensity is %g kg/m^3; a density must lie between %g and %g kg/m^3", prefix, (double)density, MATERIAL_SMALLEST,
+             MATERIAL_LARGEST);
   PetscCall(MaterialSetDensity(material, density));
   PetscTryTypeMethod(material, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);

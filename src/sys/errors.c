@@ -15,6 +15,7 @@ static PetscBool IsUsersBusiness(const char *function, PetscErrorCode code)
   case PETSC_ERR_USER_INPUT:
   case PETSC_ERR_ARG_UNKNOWN_TYPE:
   case PETSC_ERR_NOT_CONVERGED:
+  case PETSC_ERR_MAT_LU_ZRPVT:
   case PETSC_ERR_FILE_OPEN:
   case PETSC_ERR_FILE_WRITE:
   case PETSC_ERR_FILE_UNEXPECTED:
@@ -36,10 +37,15 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
   (void)ctx;
   if (type != PETSC_ERROR_INITIAL) return code;
   StatusLineEnd();
-  if (function && message && OptionsExplain(function, message, text, sizeof(text), &explained)) explained = PETSC_FALSE;
+  if (function && message && OptionsExplain(function, code, message, text, sizeof(text), &explained)) explained = PETSC_FALSE;
   if (explained) { /* all ranks read the same options */
     message = text;
     comm    = PETSC_COMM_WORLD;
+  }
+  if (!explained && message && code == PETSC_ERR_MAT_LU_ZRPVT && strncmp(message, "Zero pivot", strlen("Zero pivot")) == 0) {
+    snprintf(text, sizeof(text),
+             "The matrix of a body is singular to round-off (%.200s): check units, -time_step and the constants of materials", message);
+    message = text;
   }
   MPI_Initialized(&initialized);
   if (initialized && comm != MPI_COMM_NULL && comm != MPI_COMM_SELF) MPI_Comm_rank(comm, &rank);

@@ -198,8 +198,21 @@ static PetscBool HasInfinite(const char value[])
   return PETSC_FALSE;
 }
 
-/* The options with such a value (NULL: with a number that is not finite) that somebody has read, each with its origin and what it takes */
-static PetscErrorCode Describe(const char value[], char text[], size_t size)
+/* Whether a value is a number, or a list with a number in it, that may have been printed with six digits as another */
+static PetscBool HasNumber(const char value[], PetscReal printed)
+{
+  for (const char *at = value; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+    char        *end;
+    const double number = strtod(at, &end);
+
+    if (end > at && (!*end || *end == ',') && fabs(number - printed) <= 1e-5 * fabs(printed)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The options with such a value (NULL: with the number `printed`, or with one that is not finite) that somebody has read, each with its
+   origin and what it takes */
+static PetscErrorCode Describe(const char value[], const PetscReal *printed, char text[], size_t size)
 {
   char       *all, name[2 * PETSC_MAX_PATH_LEN], one[3 * PETSC_MAX_PATH_LEN];
   const char *word;
@@ -220,11 +233,11 @@ static PetscErrorCode Describe(const char value[], char text[], size_t size)
     if (!key) continue;
     PetscCall(PetscOptionsUsed(NULL, word + 1, &used));
     if (used) PetscCall(PetscOptionsFindPair(NULL, NULL, word, &given, &set));
-    if (!set || !given || !(value ? Contains(given, value) : HasInfinite(given))) continue;
+    if (!set || !given || !(value ? Contains(given, value) : printed ? HasNumber(given, *printed) : HasInfinite(given))) continue;
     PetscCall(FindKnown(word + 1, &known));
     PetscCall(NameWithOrigin(word + 1, name, sizeof(name)));
     PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s%s", name, known ? ", which takes " : "", known ? known->value : ""));
-    if (!value) PetscCall(PetscSNPrintf(one, sizeof(one), "%s: '%s'", name, given));
+    if (!value) PetscCall(PetscSNPrintf(one, sizeof(one), printed ? "%s %s" : "%s: '%s'", name, given));
     PetscCall(NamesAppend(text, size, " or ", one));
   }
   PetscCall(PetscTokenDestroy(&words));
@@ -244,8 +257,34 @@ static const char *Advise(const char value[])
   return "";
 }
 
+/* Setters of PETSc complain of a number that is out of range without the name of the option: "Relative tolerance 7. must be ..." */
+static PetscErrorCode ExplainRange(const char message[], char text[], size_t size, PetscBool *explained)
+{
+  char        names[2048] = "";
+  const char *at          = message;
+
+  PetscFunctionBegin;
+  while (*at && !names[0]) { /* the first number of the message is the one that was given */
+    char     *end;
+    PetscReal number = 0;
+
+    at += strcspn(at, " ");
+    at += strspn(at, " ");
+    if (*at == '-' || isdigit((unsigned char)*at)) {
+      number = strtod(at, &end);
+      if (end == at) continue;
+      PetscCall(Describe(NULL, &number, names, sizeof(names)));
+      break;
+    }
+  }
+  if (names[0]) PetscCall(PetscSNPrintf(text, size, "%s: %s", names, message));
+  *explained = (PetscBool)(names[0] != 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Says of a complaint by PETSc which option it is about, where that stands and what is wanted; not Collective */
-PetscErrorCode OptionsExplain(const char function[], const char message[], char text[], size_t size, PetscBool *explained)
+PetscErrorCode OptionsExplain(const char function[], PetscErrorCode code, const char message[], char text[], size_t size,
+                              PetscBool *explained)
 {
   char             value[512], names[2048];
   const Complaint *complaint = NULL;
@@ -255,7 +294,7 @@ PetscErrorCode OptionsExplain(const char function[], const char message[], char 
   *explained = PETSC_FALSE;
   if (message) PetscCall(PetscStrncmp(message, "Newly set value ", 16, &bounded));
   if (bounded) { /* PETSC_MAX_REAL and its negative are the bounds of all numbers that have no others */
-    PetscCall(Describe(NULL, names, sizeof(names)));
+    PetscCall(Describe(NULL, NULL, names, sizeof(names)));
     if (names[0]) PetscCall(PetscSNPrintf(text, size, "%s is no finite number", names));
     *explained = (PetscBool)(names[0] != 0);
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -263,8 +302,11 @@ PetscErrorCode OptionsExplain(const char function[], const char message[], char 
   PetscCall(PetscStrncmp(function, "PetscOptionsStringTo", 20, &converts));
   PetscCall(PetscStrncmp(function, "PetscOptionsCreateViewer", 24, &views));
   if ((converts || views) && message) complaint = FindComplaint(message, value, sizeof(value));
-  if (!complaint) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Describe(value, names, sizeof(names)));
+  if (!complaint) {
+    if (message && !converts && !views && code == PETSC_ERR_ARG_OUTOFRANGE) PetscCall(ExplainRange(message, text, size, explained));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(Describe(value, NULL, names, sizeof(names)));
   if (!names[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(text, size, "%s: '%s' is not %s%s", names, value, complaint->wanted, Advise(value)));
   *explained = PETSC_TRUE;

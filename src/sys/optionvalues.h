@@ -4,4 +4,4 @@
 
 PETSC_INTERN PetscErrorCode OptionsCheckValues(void);
 PETSC_INTERN PetscErrorCode OptionsDescribeMissing(const char[], char[], size_t);
-PETSC_INTERN PetscErrorCode OptionsExplain(const char[], const char[], char[], size_t, PetscBool *);
+PETSC_INTERN PetscErrorCode OptionsExplain(const char[], PetscErrorCode, const char[], char[], size_t, PetscBool *);

@@ -166,6 +166,7 @@ def test_other_options(run_in, folder):
     refused = run_in(IMPACT, where, 1, "-restart", "c.prev.h5", "-left_poissons_ratio", "0.1", "-contact_tolerance", "1e-9", code=None, fields=False)
     assert "-left_poissons_ratio 0.1 (it had none)" in refused.stderr and "-contact_tolerance 1e-9 (it had none)" in refused.stderr
     assert "-restart_allow_changes" in refused.stderr
+    assert not list(where.glob("*.lock")) and not list(where.glob("*.part"))  # a run that is refused leaves nothing behind
     allowed = run_in(IMPACT, where, 1, "-restart", "c.prev.h5", "-contact_tolerance", "1e-9", "-restart_allow_changes", fields=False)
     assert "warning: the run that is continued had other options: -contact_tolerance 1e-9 (it had none)" in allowed.stderr
 

@@ -199,6 +199,19 @@ SENSELESS = {
     "far away": ([BLOCKS, "-left_translate", "1e12,0"], ["'left'", "-left_translate", "digits"]),
     "tiny": ([BLOCKS, "-left_scale", "1e-80"], ["'left'", "-left_scale"]),
     "huge": ([BLOCKS, "-left_scale", "1e90"], ["'left'", "-left_scale"]),
+    "large step": ([BLOCKS, "-time_step", "1e20"], ["-time_step 1e+20 s", "resolve contact", "masses"]),
+    "large step of bars": (["options/impact-high-speed.opts", "-time_step", "1e20"], ["-time_step 1e+20 s", "resolve contact", "masses"]),
+    "small step": ([BLOCKS, "-time_step", "1e-300", "-time_end", "1e-299"], ["-time_step 1e-300 s", "1e-60"]),
+    "late end": ([BLOCKS, "-time_end", "1e300"], ["-time_end 1e+300 s", "1e+60"]),
+    "heavy": ([BLOCKS, "-left_density", "1e300"], ["-left_density is 1e+300 kg/m^3", "1e+60"]),
+    "light": ([BLOCKS, "-left_density", "1e-300"], ["-left_density is 1e-300 kg/m^3", "1e-60"]),
+    "stiff": ([BLOCKS, "-left_youngs_modulus", "1e300"], ["-left_youngs_modulus is 1e+300 Pa", "1e+60"]),
+    "soft": ([BLOCKS, "-left_youngs_modulus", "1e-300"], ["-left_youngs_modulus is 1e-300 Pa", "1e-60"]),
+    "thick": ([BLOCKS, "-left_thickness", "1e300"], ["-left_thickness is 1e+300 m", "1e+60"]),
+    "bar with a large section": (["options/impact-high-speed.opts", "-left_cross_section", "1e300"], ["-left_cross_section is 1e+300 m^2", "1e+60"]),
+    "beyond all speeds": ([BLOCKS, "-left_initial_velocity", "1e300,0"], ["'left'", "not a number"]),
+    "radius of PETSc's": ([BLOCKS, "-left_ts_alpha_radius", "7"], ["-left_ts_alpha_radius (the command line) 7: Radius 7", "[0,1]"]),
+    "tolerance of PETSc's": ([BLOCKS, "-schwarz_snes_rtol", "7"], ["-schwarz_snes_rtol (the command line) 7: Relative tolerance 7"]),
     "angle": ([BLOCKS, "-left_rotate", "1e9"], ["-left_rotate", "1e+09", "360"]),
     "exact in two dimensions": ([BLOCKS, "-exact", "impact", "-left_poissons_ratio", "0.3"], ["-exact", "'left'", "-left_poissons_ratio 0"]),
     "exact with loads": (["options/impact-high-speed.opts", "-right_body_force", "1e3"], ["-exact", "'right'", "body forces"]),
@@ -209,6 +222,15 @@ SENSELESS = {
 def test_input_without_sense(case, words):
     given, named = SENSELESS[case]
     refused(words(*given), named)
+
+
+def test_input_without_sense_on_three_ranks(words):
+    """Once, and on the first rank, where PETSc's setters complain too."""
+    for case in ("large step of bars", "heavy", "radius of PETSc's"):
+        given, named = SENSELESS[case]
+        run = words(*given, ranks=3)
+        refused(run, named)
+        assert run.stderr.count("impakt: error") == 1, run.stderr
 
 
 @pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])

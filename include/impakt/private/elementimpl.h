@@ -5,6 +5,10 @@
 
 #define ELEMENT_MAX_DOFS 24
 
+/* Cross-sections of bars [m^2] and thicknesses of plane bodies [m] */
+#define SECTION_SMALLEST 1e-60
+#define SECTION_LARGEST  1e60
+
 struct _ElementOps {
   PetscErrorCode (*setfromoptions)(Element);
   PetscErrorCode (*copy)(Element, Element);                                     /* what options have set, from the first to the second */

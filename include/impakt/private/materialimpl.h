@@ -3,6 +3,10 @@
 #include <impakt/material.h>
 #include <petsc/private/petscimpl.h>
 
+/* Densities and moduli, in any units: products with squares of times and sizes are numbers */
+#define MATERIAL_SMALLEST 1e-60
+#define MATERIAL_LARGEST  1e60
+
 struct _MaterialOps {
   PetscErrorCode (*setfromoptions)(Material);
   PetscErrorCode (*setup)(Material); /* an error where a constant is missing */

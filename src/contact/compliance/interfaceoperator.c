@@ -192,7 +192,8 @@ static PetscErrorCode Factor(InterfaceOperator op, const PetscBool in[], const P
       op->factor.values[j * op->n_in + i] = S[op->places[j] * op->n + op->places[i]] + (i == j ? listed[op->places[i]] : 0);
   PetscCall(DenseFactorCompute(&op->factor, &singular));
   PetscCheck(!singular, PetscObjectComm((PetscObject)op->contact), PETSC_ERR_MAT_LU_ZRPVT,
-             "The matrix of the contact forces is singular: contact rows are not independent, and constrain each other");
+             "The matrix of the contact forces is singular: contact rows are not independent, and constrain each other, or the "
+             "bodies differ in stiffness by more than numbers have digits (check units, thickness and modulus)");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
