@@ -2,11 +2,11 @@
    The loops over all elements of one shape with one point of integration. A template: a shape's header, and then this.
 
    The stress is that of the mean displacement gradient H of the element (D. P. Flanagan, T. Belytschko, International Journal for Numerical
-   Methods in Engineering 17, 1981). What H does not see are the amplitudes q_a of products h_a of the reference coordinates, with what linear
-   functions have of them taken off. They are held by the stiffness that linear elasticity gives them in a box of the element's edges, with
-   modes that bend as in enhanced.c (M. A. Puso, the same 49, 2000). With the vectors x_k along which the reference coordinates run in the
-   middle of the deformed element, and the lengths a_k that these have in the undeformed one, c_ka = x_k . q_a does not change with
-   rotations, and the energy is that of the strains
+   Methods in Engineering 17, 1981). What H does not see are the amplitudes q_a of products h_a of the reference coordinates, with what
+   linear functions have of them taken off. They are held by the stiffness that linear elasticity gives them in a box of the element's
+   edges, with modes that bend as in enhanced.c (M. A. Puso, the same 49, 2000). With the vectors x_k along which the reference coordinates
+   run in the middle of the deformed element, and the lengths a_k that these have in the undeformed one, c_ka = x_k . q_a does not change
+   with rotations, and the energy is that of the strains
 
      c_kl / a_k^2, bending, of stress that is plane,  (c_kk + c_ll) / (a_k a_l), twisting,  and c_k4 / (a_k a_l) of xi eta zeta,
 

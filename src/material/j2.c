@@ -9,8 +9,8 @@
    which is C^-1 M where M has the axes of C, as without kinematic hardening. Plastic flow by the increment D turns Fp^-1 into Fp^-1
    exp(-D).
 
-   E comes from C - 1 = A, which has the digits of small strains, by the series of the logarithm, a polynomial in A that becomes one of degree
-   2 by Cayley and Hamilton's A^3 = I A^2 - II A + III. Where strains are too large for the series it comes from eigenvalues.
+   E comes from C - 1 = A, which has the digits of small strains, by the series of the logarithm, a polynomial in A that becomes one of
+   degree 2 by Cayley and Hamilton's A^3 = I A^2 - II A + III. Where strains are too large for the series it comes from eigenvalues.
 */
 #include "logarithm.h"
 #include "symmetric.h"

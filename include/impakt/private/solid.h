@@ -69,6 +69,8 @@ SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, con
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid_MeanDilatation(Element);
 PETSC_EXTERN PetscReal      SolidGetShape(Element, PetscInt, const PetscReal xi[], PetscReal N[], PetscReal gradient[]);
+PETSC_INTERN PetscErrorCode ElementPoints_Solid(Element, PetscInt, PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode ElementNearest_Solid(Element, PetscInt, const PetscReal[], PetscReal[], PetscReal *);
 PETSC_EXTERN void           SolidStretchThickness(const Solid *, PetscReal H[9][SIMD_WIDTH]);
 PETSC_EXTERN void           SolidTangent(const Solid *, PetscInt, PetscInt, const PetscReal H[9], PetscReal tangent[81]);
 PETSC_EXTERN void           SolidPointStress(const Solid *, PetscInt, PetscInt, const PetscReal H[9], PetscReal P[9]);

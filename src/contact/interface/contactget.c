@@ -1,0 +1,207 @@
+/* What contact tells of itself. */
+#include <contact/parts.h>
+
+/*@
+  ContactGetNumPairs - number of contact pairs
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. n - their number
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPair()`
+@*/
+PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(n, 2);
+  *n = contact->neighbours.come_and_go ? contact->neighbours.told.n : contact->n_pairs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ContactGetPair - name and bodies of a pair
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameters:
++ name      - as it was given, or `NULL`
+. dirichlet - body that is named first, or `NULL`
+- neumann   - body that is named second, `NULL` for an obstacle; or `NULL`
+
+  Level: intermediate
+
+  Note:
+  Of many pairs that the program has chosen those alone have rows whose bodies are near. Then a pair is what all other bodies together do to
+a body, `body:others`, of which that body is both the first and the second, or a body and an obstacle: first all of the former, in the order
+of the bodies.
+
+  The first body takes displacements and has the contact rows, the second one takes tractions, unless `ContactSetRowSide()` has turned that
+  round: see `ContactGetPairRowSide()`.
+
+.seealso: `Contact`, `ContactGetNumPairs()`, `ContactGetPairRowSide()`
+@*/
+PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[], Body *dirichlet, Body *neumann)
+{
+  PetscInt first;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  ContactCheckPair(contact, pair);
+  if (contact->neighbours.come_and_go) {
+    PetscInt body, obstacle;
+
+    ContactGetTold(contact, pair, &body, &obstacle);
+    if (name) *name = contact->neighbours.told.names[pair];
+    if (dirichlet) *dirichlet = contact->bodies[body];
+    if (neumann) *neumann = obstacle < 0 ? contact->bodies[body] : NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  first = contact->pairs[pair].turned ? 1 : 0;
+  if (name) *name = contact->pairs[pair].name;
+  if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[first]];
+  if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1 - first]];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairNormal - mean outward normal of the first body of a pair
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. normal - 3 numbers, zeros beyond the space dimension
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal normal[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(normal, 3);
+  ContactCheckPair(contact, pair);
+  if (contact->neighbours.come_and_go) { /* there is none */
+    for (PetscInt d = 0; d < 3; d++) normal[d] = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt d = 0; d < 3; d++) normal[d] = ContactPairSign(&contact->pairs[pair]) * contact->pairs[pair].normal[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPenaltyEnergy - energy stored in the penalty springs, 0 with other methods
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. energy - [J]
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetPenaltyEnergy(Contact contact, PetscReal *energy)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(energy, 2);
+  *energy = contact->resultants.penalty_energy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetCounts - sweeps and changes of the active set
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. counts - see `ContactCounts`
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(counts, 2);
+  *counts = contact->counts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetBodyTrace - mean position and velocity of the contact nodes of a body, in the first pair it takes part in
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- body    - number of the body
+
+  Output Parameters:
++ position - 3 numbers [m]
+- velocity - 3 numbers [m/s]
+
+  Level: intermediate
+
+.seealso: `Contact`
+@*/
+PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal position[], PetscReal velocity[])
+{
+  const PetscScalar *x, *u, *v;
+  Vec                positions, displacements, velocities;
+  PetscReal          sums[6] = {0};
+  PetscInt           dim;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(position, 3);
+  PetscAssertPointer(velocity, 4);
+  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
+  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+  PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
+  PetscCall(VecGetArrayRead(positions, &x));
+  PetscCall(VecGetArrayRead(displacements, &u));
+  PetscCall(VecGetArrayRead(velocities, &v));
+  for (PetscInt i = 0; i < contact->nodes.n[body]; i++) {
+    const PetscInt dof = contact->nodes.dofs[body][i];
+
+    for (PetscInt d = 0; d < dim; d++) {
+      sums[d] += x[dof + d] + u[dof + d];
+      sums[3 + d] += v[dof + d];
+    }
+  }
+  PetscCall(VecRestoreArrayRead(velocities, &v));
+  PetscCall(VecRestoreArrayRead(displacements, &u));
+  PetscCall(VecRestoreArrayRead(positions, &x));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt d = 0; d < 3; d++) {
+    position[d] = contact->nodes.n_all[body] ? sums[d] / contact->nodes.n_all[body] : 0;
+    velocity[d] = contact->nodes.n_all[body] ? sums[3 + d] / contact->nodes.n_all[body] : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
