@@ -8,7 +8,7 @@
 /* Forces under which the node sticks; whether they push, within the bound */
 static PetscBool Sticks(PetscInt dim, const PetscReal S[], const PetscReal open[], const PetscReal limit[], PetscReal force[])
 {
-  PetscReal a[9], square = 0;
+  PetscReal a[9] = {0}, square = 0;
 
   for (PetscInt k = 0; k < dim * dim; k++) a[k] = S[k];
   for (PetscInt k = 0; k < dim; k++) force[k] = -open[k];
@@ -55,7 +55,7 @@ static PetscBool Slides(PetscInt dim, const PetscReal S[], const PetscReal open[
 /* In space: the direction of the force with no slip square to it and some against it */
 static PetscBool FindDirection(const PetscReal S[], const PetscReal open[], const PetscReal limit[], PetscReal force[])
 {
-  PetscReal slip[2], last = 0, last_angle = 0;
+  PetscReal slip[2] = {0}, last = 0, last_angle = 0;
   PetscBool known = PETSC_FALSE;
 
   for (PetscInt d = 0; d <= DIRECTIONS; d++) {
