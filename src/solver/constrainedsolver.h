@@ -9,6 +9,7 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverCreate(Mat, Mat, PetscInt, cons
 PETSC_INTERN PetscErrorCode     ConstrainedSolverDestroy(ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverRefactor(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetMatrices(ConstrainedSolver, Mat *, Mat *);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverChoose(KSP, Mat, PetscInt);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetDenseLimit(ConstrainedSolver, PetscInt);

@@ -40,7 +40,6 @@ struct _n_ConstrainedSolver {
 /* Interfaces of so few rows in all make the column of each row that is asked for: a correction adds them up in place of a solution */
 #define FEW_ROWS 16
 
-PETSC_INTERN PetscErrorCode ConstrainedSolverChoose(KSP, Mat, PetscInt);
 PETSC_INTERN PetscErrorCode ConstrainedSolverChooseBlock(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver, KSP, Vec);

@@ -1,7 +1,7 @@
 /*
    A preconditioner of conjugate gradients for S, where the bodies are linear and have too many rows for a dense matrix: what the Dirichlet
-   sides answer with when their rows are moved. Of a body with the effective matrix A, c being the dofs that its rows have entries on, and
-   j those around them,
+   sides answer with when their rows are moved. Of a body with the effective matrix A, c being the dofs of the surface that its rows are
+   on, and j those around them,
 
      P = R (A_cc - A_cj A_jj^{-1} A_jc) R^T,
 
@@ -13,23 +13,26 @@
    body in the former takes a small part of one here.
 */
 #include "interfaceimpl.h"
+#include <solver/constrainedsolver.h>
 #include <sys/petsccompat.h>
 
 /* Layers of elements beside the surface. Two cubes of 20 and 18 hexahedra along an edge, at steps in which waves cross 5 of them, took 27
    iterations without P, 23 with no layer, 16, 13, 12 with one, two, four, and 11 with all. */
 #define LAYERS 3
 
-/* Of one body: its dofs on the surface, and those in the layers beside it */
+/* Of one body: its dofs on the surfaces of which it is the Dirichlet side, and those in the layers beside them */
 typedef struct {
   PetscInt         body;
-  PetscObjectId    ids[2]; /* A and B, and their states */
-  PetscObjectState states[2];
+  PetscObjectId    id; /* of A, and its state, when it was factored */
+  PetscObjectState state;
+  Mat              B; /* the rows as they are; borrowed */
   IS               surface, layers;
-  Mat              R, A_cc, A_cj, A_jc;
-  PC               factors; /* of A_jj; NULL where no dofs are beside the surface */
-  Vec              moved, force, diagonal, depth[2], rows;
+  Mat              A_cc, A_cj, A_jc;
+  KSP              factors; /* of A_jj; NULL where no dofs are beside the surface */
+  VecScatter       gather;  /* from all dofs to those on the surface */
+  Vec              rows, dofs, moved, force, diagonal, depth[2];
   PetscBool       *moves;   /* per row of this rank that the body has: whether it has a part in R */
-  PetscBool       *claimed; /* work space, per dof on the surface */
+  PetscBool       *claimed; /* work space, per dof of this rank */
   PetscReal        mean;    /* of the diagonal of P, which other rows of the Dirichlet side are multiplied with */
 } Slab;
 
@@ -43,17 +46,18 @@ static PetscErrorCode SlabReset(Slab *slab)
   PetscFunctionBegin;
   PetscCall(ISDestroy(&slab->surface));
   PetscCall(ISDestroy(&slab->layers));
-  PetscCall(MatDestroy(&slab->R));
   PetscCall(MatDestroy(&slab->A_cc));
   PetscCall(MatDestroy(&slab->A_cj));
   PetscCall(MatDestroy(&slab->A_jc));
-  PetscCall(PCDestroy(&slab->factors));
+  PetscCall(KSPDestroy(&slab->factors));
+  PetscCall(VecScatterDestroy(&slab->gather));
+  PetscCall(VecDestroy(&slab->rows));
+  PetscCall(VecDestroy(&slab->dofs));
   PetscCall(VecDestroy(&slab->moved));
   PetscCall(VecDestroy(&slab->force));
   PetscCall(VecDestroy(&slab->diagonal));
   PetscCall(VecDestroy(&slab->depth[0]));
   PetscCall(VecDestroy(&slab->depth[1]));
-  PetscCall(VecDestroy(&slab->rows));
   PetscCall(PetscFree(slab->moves));
   PetscCall(PetscFree(slab->claimed));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -71,13 +75,14 @@ PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator op, InterfacePrec
   PetscCall(PetscCalloc1(contact->n_bodies, &p->slabs));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool dirichlet = PETSC_FALSE, exact;
-    Mat       A;
+    Mat       A, layer;
 
     for (PetscInt k = 0; k < contact->n_pairs; k++)
       dirichlet = (PetscBool)(dirichlet || contact->pairs[k].body[contact->pairs[k].dirichlet] == b);
     PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
     PetscCall(BodyGetComplianceMatrices(contact->bodies[b], &A, NULL));
-    if (dirichlet && exact && A && op->feels[b]) p->slabs[p->n++].body = b;
+    PetscCall(BodyGetLayerMatrices(contact->bodies[b], &layer, NULL)); /* has numbers of its own, and sparse factors of S */
+    if (dirichlet && exact && A && !layer && op->feels[b]) p->slabs[p->n++].body = b;
   }
   if (p->n) *preconditioner = p;
   else PetscCall(InterfacePreconditionerDestroy(&p));
@@ -147,36 +152,35 @@ static PetscErrorCode ListLayer(Vec mark, PetscReal layer, IS *is)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The dofs on which rows of the Dirichlet side have entries, of any rank */
-static PetscErrorCode ListSurface(const Contact contact, const Slab *slab, Mat B, IS *is)
+/* The dofs of the surfaces of which the body is the Dirichlet side, of any rank and perhaps more than once */
+static PetscErrorCode ListSurface(const Contact contact, const Slab *slab, IS *is)
 {
-  const ContactBodyRows *of = &contact->body_rows[slab->body];
-  PetscInt               n = 0, room = 0, *dofs = NULL;
+  PetscInt n = 0, room = 0, *dofs;
 
   PetscFunctionBegin;
-  for (PetscInt pass = 0; pass < 2; pass++) {
-    for (PetscInt k = 0; k < of->n; k++) {
-      const PetscInt    *columns;
-      const PetscScalar *values;
-      PetscInt           count;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const SurfaceData *data;
 
-      if (!IsDirichlet(contact, slab->body, k)) continue;
-      PetscCall(MatGetRow(B, of->begin + k, &count, &columns, &values));
-      for (PetscInt j = 0; j < count; j++) {
-        if (values[j] == 0) continue;
-        if (pass) dofs[n++] = columns[j];
-        else room++;
-      }
-      PetscCall(MatRestoreRow(B, of->begin + k, &count, &columns, &values));
-    }
-    if (!pass) PetscCall(PetscMalloc1(room, &dofs));
+    if (pair->body[pair->dirichlet] != slab->body) continue;
+    PetscCall(SurfaceGetData(pair->surfaces[pair->dirichlet], &data));
+    room += data->n_nodes * data->dim;
   }
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)B), n, dofs, PETSC_OWN_POINTER, is));
+  PetscCall(PetscMalloc1(room, &dofs));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const SurfaceData *data;
+
+    if (pair->body[pair->dirichlet] != slab->body) continue;
+    PetscCall(SurfaceGetData(pair->surfaces[pair->dirichlet], &data));
+    for (PetscInt i = 0; i < data->n_nodes * data->dim; i++) dofs[n++] = data->dofs[i / data->dim] + i % data->dim;
+  }
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)contact->bodies[slab->body]), n, dofs, PETSC_OWN_POINTER, is));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Which dofs are on the surface and in the layers beside it */
-static PetscErrorCode FindDofs(const Contact contact, Slab *slab, Mat A, Mat B)
+static PetscErrorCode FindDofs(const Contact contact, Slab *slab, Mat A)
 {
   IS  reach;
   Vec mark, work;
@@ -184,7 +188,7 @@ static PetscErrorCode FindDofs(const Contact contact, Slab *slab, Mat A, Mat B)
   PetscFunctionBegin;
   PetscCall(MatCreateVecs(A, &mark, &work));
   PetscCall(VecSet(mark, -1));
-  PetscCall(ListSurface(contact, slab, B, &reach));
+  PetscCall(ListSurface(contact, slab, &reach));
   PetscCall(Mark(reach, 0, mark, work));
   PetscCall(ISDestroy(&reach));
   PetscCall(ListLayer(mark, 0, &slab->surface));
@@ -199,7 +203,7 @@ static PetscErrorCode FindDofs(const Contact contact, Slab *slab, Mat A, Mat B)
 }
 
 /* Factors of A_jj, and the matrices beside it */
-static PetscErrorCode SlabFactor(Slab *slab, Mat A)
+static PetscErrorCode SlabFactor(Slab *slab, PetscInt dim, Mat A)
 {
   PetscInt n;
   Mat      A_jj;
@@ -207,10 +211,6 @@ static PetscErrorCode SlabFactor(Slab *slab, Mat A)
   PetscFunctionBegin;
   PetscCall(MatCreateSubMatrix(A, slab->surface, slab->surface, MAT_INITIAL_MATRIX, &slab->A_cc));
   PetscCall(MatCreateVecs(slab->A_cc, &slab->moved, &slab->force));
-  PetscCall(VecDuplicate(slab->moved, &slab->diagonal));
-  PetscCall(MatGetDiagonal(slab->A_cc, slab->diagonal));
-  PetscCall(ISGetLocalSize(slab->surface, &n));
-  PetscCall(PetscMalloc1(n, &slab->claimed));
   PetscCall(ISGetSize(slab->layers, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatCreateSubMatrix(A, slab->surface, slab->layers, MAT_INITIAL_MATRIX, &slab->A_cj));
@@ -218,11 +218,10 @@ static PetscErrorCode SlabFactor(Slab *slab, Mat A)
   PetscCall(MatCreateSubMatrix(A, slab->layers, slab->layers, MAT_INITIAL_MATRIX, &A_jj));
   PetscCall(MatSetOption(A_jj, MAT_SPD, PETSC_TRUE));
   PetscCall(MatCreateVecs(A_jj, &slab->depth[0], &slab->depth[1]));
-  PetscCall(PCCreate(PetscObjectComm((PetscObject)A), &slab->factors));
-  PetscCall(PCSetOperators(slab->factors, A_jj, A_jj));
-  PetscCall(PCSetType(slab->factors, PCCHOLESKY));
-  PetscCall(PCFactorSetMatSolverType(slab->factors, MATSOLVERMUMPS));
-  PetscCall(PCSetUp(slab->factors));
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)A), &slab->factors));
+  PetscCall(KSPSetOperators(slab->factors, A_jj, A_jj));
+  PetscCall(ConstrainedSolverChoose(slab->factors, A_jj, dim));
+  PetscCall(KSPSetUp(slab->factors));
   PetscCall(MatDestroy(&A_jj));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -237,9 +236,9 @@ static PetscErrorCode ChooseRows(InterfaceOperator op, Slab *slab)
   const PetscScalar *diagonal;
 
   PetscFunctionBegin;
-  PetscCall(MatGetLocalSize(slab->R, &n, &dofs));
-  PetscCall(MatGetOwnershipRange(slab->R, &row, NULL));
-  PetscCall(MatGetOwnershipRangeColumn(slab->R, &dof, NULL));
+  PetscCall(MatGetLocalSize(slab->B, &n, &dofs));
+  PetscCall(MatGetOwnershipRange(slab->B, &row, NULL));
+  PetscCall(MatGetOwnershipRangeColumn(slab->B, &dof, NULL));
   PetscCall(PetscArrayzero(slab->claimed, dofs));
   PetscCall(VecGetArrayRead(slab->diagonal, &diagonal));
   for (PetscInt k = 0; k < n; k++) {
@@ -249,7 +248,7 @@ static PetscErrorCode ChooseRows(InterfaceOperator op, Slab *slab)
 
     slab->moves[k] = PETSC_FALSE;
     if (!InterfaceIsIn(op, contact->body_rows[slab->body].rows[k]) || !IsDirichlet(contact, slab->body, k)) continue;
-    PetscCall(MatGetRow(slab->R, row + k, &entries, &columns, &values));
+    PetscCall(MatGetRow(slab->B, row + k, &entries, &columns, &values));
     for (PetscInt j = 0; j < entries; j++)
       if (PetscAbsScalar(values[j]) > PetscAbsScalar(values[largest])) largest = j;
     at = entries ? columns[largest] - dof : -1;
@@ -258,61 +257,38 @@ static PetscErrorCode ChooseRows(InterfaceOperator op, Slab *slab)
       sum += PetscRealPart(diagonal[at]) * PetscSqr(PetscRealPart(values[largest]));
       count++;
     }
-    PetscCall(MatRestoreRow(slab->R, row + k, &entries, &columns, &values));
+    PetscCall(MatRestoreRow(slab->B, row + k, &entries, &columns, &values));
   }
   slab->mean = count ? sum / count : 1;
   PetscCall(VecRestoreArrayRead(slab->diagonal, &diagonal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes the body's matrices as they are: all anew where other dofs are on the surface, or A has changed */
+/* Takes the body's matrices as they are: the rows change often, A hardly ever */
 static PetscErrorCode SlabUpdate(const Contact contact, Slab *slab)
 {
-  Mat       matrices[2];
-  PetscBool changed[2], same = PETSC_FALSE;
-  IS        surface = slab->surface, all;
-  PetscInt  rows, begin;
+  Mat              A;
+  PetscObjectId    id;
+  PetscObjectState state;
+  PetscInt         rows, dofs;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetComplianceMatrices(contact->bodies[slab->body], &matrices[0], &matrices[1]));
-  for (PetscInt m = 0; m < 2; m++) {
-    PetscObjectId    id;
-    PetscObjectState state;
-
-    PetscCall(PetscObjectGetId((PetscObject)matrices[m], &id));
-    PetscCall(PetscObjectStateGet((PetscObject)matrices[m], &state));
-    changed[m]      = (PetscBool)(id != slab->ids[m] || state != slab->states[m]);
-    slab->ids[m]    = id;
-    slab->states[m] = state;
-  }
-  if (!changed[0] && !changed[1]) PetscFunctionReturn(PETSC_SUCCESS);
-  if (surface) {
-    PetscCall(PetscObjectReference((PetscObject)surface));
-    PetscCall(ISDestroy(&slab->surface));
-    PetscCall(ISDestroy(&slab->layers));
-  }
-  PetscCall(FindDofs(contact, slab, matrices[0], matrices[1]));
-  if (surface) PetscCall(ISEqual(surface, slab->surface, &same));
-  PetscCall(ISDestroy(&surface));
-  if (changed[0] || !same) {
-    IS now = slab->surface, layers = slab->layers;
-
-    slab->surface = slab->layers = NULL;
-    PetscCall(SlabReset(slab));
-    slab->surface = now;
-    slab->layers  = layers;
-    PetscCall(SlabFactor(slab, matrices[0]));
-  }
-  PetscCall(MatDestroy(&slab->R));
-  PetscCall(VecDestroy(&slab->rows));
-  PetscCall(MatGetLocalSize(matrices[1], &rows, NULL));
-  PetscCall(MatGetOwnershipRange(matrices[1], &begin, NULL));
-  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)matrices[1]), rows, begin, 1, &all));
-  PetscCall(MatCreateSubMatrix(matrices[1], all, slab->surface, MAT_INITIAL_MATRIX, &slab->R));
-  PetscCall(ISDestroy(&all));
-  PetscCall(MatCreateVecs(slab->R, NULL, &slab->rows));
-  PetscCall(PetscFree(slab->moves));
+  PetscCall(BodyGetComplianceMatrices(contact->bodies[slab->body], &A, &slab->B));
+  PetscCall(PetscObjectGetId((PetscObject)A, &id));
+  PetscCall(PetscObjectStateGet((PetscObject)A, &state));
+  if (id == slab->id && state == slab->state) PetscFunctionReturn(PETSC_SUCCESS);
+  slab->id    = id;
+  slab->state = state;
+  PetscCall(SlabReset(slab));
+  PetscCall(FindDofs(contact, slab, A));
+  PetscCall(SlabFactor(slab, contact->dim, A));
+  PetscCall(MatCreateVecs(slab->B, &slab->dofs, &slab->rows));
+  PetscCall(VecDuplicate(slab->dofs, &slab->diagonal));
+  PetscCall(MatGetDiagonal(A, slab->diagonal));
+  PetscCall(VecScatterCreate(slab->dofs, slab->surface, slab->moved, NULL, &slab->gather));
+  PetscCall(MatGetLocalSize(slab->B, &rows, &dofs));
   PetscCall(PetscMalloc1(rows, &slab->moves));
+  PetscCall(PetscMalloc1(dofs, &slab->claimed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -323,7 +299,7 @@ static PetscErrorCode SlabApply(Slab *slab)
   PetscCall(MatMult(slab->A_cc, slab->moved, slab->force));
   if (!slab->factors) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatMult(slab->A_jc, slab->moved, slab->depth[0]));
-  PetscCall(PCApply(slab->factors, slab->depth[0], slab->depth[1]));
+  PetscCall(KSPSolve(slab->factors, slab->depth[0], slab->depth[1]));
   PetscCall(VecScale(slab->depth[1], -1));
   PetscCall(MatMultAdd(slab->A_cj, slab->depth[1], slab->force, slab->force));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -341,9 +317,14 @@ static PetscErrorCode AddSlab(InterfaceOperator op, Slab *slab, const PetscScala
   PetscCall(VecGetArrayWrite(slab->rows, &in));
   for (PetscInt k = 0; k < of->n; k++) in[k] = slab->moves[k] ? x[of->rows[k]] : 0;
   PetscCall(VecRestoreArrayWrite(slab->rows, &in));
-  PetscCall(MatMultTranspose(slab->R, slab->rows, slab->moved));
+  PetscCall(MatMultTranspose(slab->B, slab->rows, slab->dofs));
+  PetscCall(VecScatterBegin(slab->gather, slab->dofs, slab->moved, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(slab->gather, slab->dofs, slab->moved, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(SlabApply(slab));
-  PetscCall(MatMult(slab->R, slab->force, slab->rows));
+  PetscCall(VecZeroEntries(slab->dofs));
+  PetscCall(VecScatterBegin(slab->gather, slab->force, slab->dofs, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(slab->gather, slab->force, slab->dofs, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(MatMult(slab->B, slab->dofs, slab->rows));
   PetscCall(VecGetArrayRead(slab->rows, &out));
   for (PetscInt k = 0; k < of->n; k++) {
     const PetscInt i = of->rows[k];

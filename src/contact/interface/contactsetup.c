@@ -169,8 +169,10 @@ PetscErrorCode ContactSetUp(Contact contact)
 /* The present states are the start; `of_state`: they come from another run */
 static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
 {
-  ContactPairState *states;
-  PetscBool         renewed;
+  ContactPairState  *states;
+  const ContactPair *overlaps = NULL;
+  PetscReal          depth    = 0;
+  PetscBool          renewed;
 
   PetscFunctionBegin;
   PetscCall(ContactRenewNeighbours(contact, 0, PETSC_TRUE, &renewed)); /* initial displacements count */
@@ -181,17 +183,18 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
   PetscCall(ContactLetTouch(contact, of_state));
   PetscCall(PetscMalloc1(contact->n_pairs, &states));
   PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair     *pair  = &contact->pairs[p];
-    const ContactPairState state = states[p];
-
-    if (pair->obstacle && state.gap < -contact->options.tolerance) PetscCall(ContactRefuseInside(contact, pair, -state.gap));
-    PetscCheck(pair->obstacle || state.gap >= -contact->options.tolerance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
-               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[1]])->name, (double)-state.gap,
-               ((PetscObject)contact->bodies[pair->body[0]])->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  for (PetscInt p = 0; p < contact->n_pairs && !overlaps; p++) {
+    if (!(states[p].gap < -contact->options.tolerance)) continue;
+    overlaps = &contact->pairs[p];
+    depth    = -states[p].gap;
   }
   PetscCall(PetscFree(states));
+  if (overlaps && overlaps->obstacle) PetscCall(ContactRefuseInside(contact, overlaps, depth));
+  PetscCheck(!overlaps, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
+             ((PetscObject)contact->bodies[overlaps->body[0]])->name, ((PetscObject)contact->bodies[overlaps->body[1]])->name,
+             (double)depth, ((PetscObject)contact->bodies[overlaps->body[0]])->name,
+             ((PetscObject)contact->bodies[overlaps->body[0]])->name);
   PetscCall(ContactSetMeanForces(contact));
   PetscCall(ContactBalanceStart(contact));
   PetscCall(ContactStartTies(contact));
