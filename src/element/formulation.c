@@ -209,26 +209,30 @@ PetscErrorCode ElementWarnOfLocking(Element element)
 {
   PetscErrorCode (*create)(Element);
   PetscReal ratio;
-  PetscBool full;
-  char      key[128];
+  PetscBool full, flows;
+  char      key[128], material[64];
 
   PetscFunctionBegin;
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_FULL, &full));
   PetscCall(GetPoissonsRatio(element, &ratio));
-  if (!full || element->dim == 1 || element->plane_stress || ratio <= LOCKING_RATIO) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(HasHistory(element, &flows));
+  if (!full || element->dim == 1 || element->plane_stress || (ratio <= LOCKING_RATIO && !flows)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetKey(element->cell_type, ELEMENT_MEAN_DILATATION, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
-  if (create && ratio <= STRONG_RATIO) PetscFunctionReturn(PETSC_SUCCESS);
+  if (create && ratio <= STRONG_RATIO && !flows) PetscFunctionReturn(PETSC_SUCCESS);
+  if (flows) PetscCall(PetscStrncpy(material, "a material that flows", sizeof(material)));
+  else PetscCall(PetscSNPrintf(material, sizeof(material), "a Poisson's ratio of %g", (double)ratio));
   if (create)
-    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,
-                           "impakt: warning: -%selement_formulation full with a Poisson's ratio of %g: fully integrated elements lock, and "
-                           "are several times too stiff; use mean_dilatation\n",
-                           Prefix(element), (double)ratio));
-  else
     PetscCall(
         PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,
-                     "impakt: warning: -%spoissons_ratio %g: elements of shape '%s' lock where Poisson's ratio is larger than %g, and "
-                     "are too stiff; use a mesh of quadrilaterals or hexahedra\n",
-                     Prefix(element), (double)ratio, DMPolytopeTypes[element->cell_type], LOCKING_RATIO));
+                     "impakt: warning: -%selement_formulation full with %s: fully integrated elements lock, and are several times too "
+                     "stiff; use mean_dilatation\n",
+                     Prefix(element), material));
+  else
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,
+                           "impakt: warning: body '%s' with %s: elements of shape '%s' lock where materials flow or Poisson's ratio "
+                           "is larger than %g, and are too stiff; use a mesh of quadrilaterals or hexahedra\n",
+                           ((PetscObject)element)->name ? ((PetscObject)element)->name : "", material, DMPolytopeTypes[element->cell_type],
+                           LOCKING_RATIO));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
