@@ -52,8 +52,8 @@ VARIANTS = {
     "mass not diagonal": BLOCKS + "-left_mass_type consistent -right_mass_type averaged",
     "substeps": BLOCKS + EXPLICIT,
     "plastic": NONLINEAR.replace("neo_hookean", "j2 -left_yield_stress 2e6 -left_hardening_modulus 1e7"),
-    "plastic, explicit": TAYLOR,
-    "plastic, explicit, with mass": TAYLOR + "-rod_mass_redistribute false",
+    "plastic, explicit": TAYLOR + "-rod_mass_redistribute true",
+    "plastic, explicit, with mass": TAYLOR,
     "damped": BLOCKS + "-left_ts_alpha_radius 0.8",
 }
 LONG = [
