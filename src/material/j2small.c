@@ -154,15 +154,8 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
 PetscErrorCode PlasticKernels_Small(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
-  PetscCheck(!plane_stress, PetscObjectComm((PetscObject)material), PETSC_ERR_SUP,
-             "The material of type %s is there for solids and plane strain, not for plane stress: leave -%splane_stress out",
-             ((PetscObject)material)->type_name, ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "");
-  *kernels                = (MaterialKernels){.data = material->data, .stress = Stress, .energy = Energy, .tangent = Tangent};
-  kernels->n_history      = PlasticGetSize((const Plastic *)material->data);
-  kernels->plastic_strain = PLASTIC_STRAIN;
-  kernels->plastic_work   = PLASTIC_WORK;
-  kernels->advance        = Advance;
-  kernels->hold           = Hold;
-  kernels->advancetangent = AdvanceTangent;
+  *kernels = (MaterialKernels){
+      .stress = Stress, .energy = Energy, .tangent = Tangent, .advance = Advance, .hold = Hold, .advancetangent = AdvanceTangent};
+  PetscCall(PlasticCompleteKernels(material, plane_stress, kernels));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,5 +45,6 @@ typedef struct {
 
 PETSC_EXTERN PetscInt       PlasticGetSize(const Plastic *);
 PETSC_EXTERN void           PlasticFindFlow(const Plastic *, PetscReal, const PetscReal[8], const PetscReal[][8], PlasticFlow *);
+PETSC_EXTERN PetscErrorCode PlasticCompleteKernels(Material, PetscBool, MaterialKernels *);
 PETSC_EXTERN PetscErrorCode PlasticKernels_Finite(Material, PetscBool, MaterialKernels *);
 PETSC_EXTERN PetscErrorCode PlasticKernels_Small(Material, PetscBool, MaterialKernels *);
