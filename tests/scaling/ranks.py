@@ -59,17 +59,23 @@ def boxes(n, contact=True, integrator="centraldifference", corner=False):
 
 
 def run(arguments, options, ranks, steps, more=(), launcher=()):
-    """Summary of a run, and for each rank the counts and seconds of PETSc's log of controller steps."""
+    """Summary of a run."""
     with tempfile.TemporaryDirectory() as directory:
-        summary, log = Path(directory) / "summary.json", Path(directory) / "log.csv"
+        summary = Path(directory) / "summary.json"
         words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
-        words += ["-time_end", repr(steps * options["time_step"]), "-output_summary", str(summary)]
-        words += ["-log_view", f":{log}:ascii_csv", *more]
+        words += ["-time_end", repr(steps * options["time_step"]), "-output_summary", str(summary), *more]
         execute([*arguments.mpiexec, *launcher, "-n", str(ranks), arguments.build / "impakt", *words], arguments.time_limit)
+        return read_summary(summary, f"{ranks} ranks")
+
+
+def run_logged(arguments, options, ranks, steps):
+    """Summary of a run, and for each rank the counts of PETSc's log of controller steps, which 64 ranks on 2 cores take a minute to write."""
+    with tempfile.TemporaryDirectory() as directory:
+        log = Path(directory) / "log.csv"
+        summary = run(arguments, options, ranks, steps, ("-log_view", f":{log}:ascii_csv"))
         with log.open(encoding="utf-8") as file:
             events = [row for row in csv.DictReader(file) if row["Event Name"] == "ContactStep" and row["Stage Name"] == "Main Stage"]
-        counts = [{name: float(row[column]) for name, column in COUNTED.items()} | {"seconds": float(row["Time"])} for row in events]
-        return read_summary(summary, f"{ranks} ranks"), counts
+        return summary, [{name: float(row[column]) for name, column in COUNTED.items()} for row in events]
 
 
 def exponent(ranks, values):
@@ -83,8 +89,8 @@ def exponent(ranks, values):
 
 def counts_of(arguments, options, ranks, steps):
     """What each of these steps counts on the rank with most of it, and what lies on the largest rank."""
-    short, before = run(arguments, options, ranks, steps[0])
-    long, after = run(arguments, options, ranks, steps[1])
+    short, before = run_logged(arguments, options, ranks, steps[0])
+    long, after = run_logged(arguments, options, ranks, steps[1])
     made = steps[1] - steps[0]
     sweeps = long["timing"]["per_phase"]["sweeps"]["count"] - short["timing"]["per_phase"]["sweeps"]["count"]
     found = {"ranks": ranks, "sweeps": sweeps / made}
@@ -134,10 +140,10 @@ def pick(summary, path):
 def results(arguments, found, lines):
     """The same figures on 1 to 16 ranks."""
     size, rows = max(6, arguments.size // 3), []
-    reference, _ = run(arguments, boxes(size), 1, 60)
+    reference = run(arguments, boxes(size), 1, 60)
     scale = pick(reference, ("bodies", "a", "kinetic"))
     for ranks in [r for r in (2, 3, 5, 8, 16) if r <= arguments.ranks]:
-        summary, _ = run(arguments, boxes(size), ranks, 60)
+        summary = run(arguments, boxes(size), ranks, 60)
         differences = {}
         for path in FIGURES:
             value, wanted = pick(summary, path), pick(reference, path)
@@ -159,7 +165,7 @@ def corner(arguments, found, lines):
         "graph": ("-a_mesh_division", "graph", "-b_mesh_division", "graph"),
     }
     for name, more in ways.items():
-        summary, _ = run(arguments, boxes(size, corner=True), 4, 6, more)
+        summary = run(arguments, boxes(size, corner=True), 4, 6, more)
         ranks = summary["timing"]["ranks"]
         rows.append({"division": name} | {key: ranks[key]["largest"] / ranks[key]["mean"] if ranks[key]["mean"] else None for key in ("elements", "facets", "rows", "work")})
     found["corner"] = {"size": size, "rows": rows}
@@ -173,7 +179,7 @@ def memory(arguments, found, lines):
     ranks = [r for r in (1, 2, 4, 8) if r <= arguments.ranks]
     size, rows = 2 * arguments.size, []
     for r in ranks:
-        small, much = (run(arguments, boxes(n), r, 2)[0]["timing"]["ranks"] for n in (4, size))
+        small, much = (run(arguments, boxes(n), r, 2)["timing"]["ranks"] for n in (4, size))
         by_itself, halo = small["peak_memory"]["mean"], much["halo"]["mean"] / much["nodes"]["mean"]
         rows.append({"ranks": r, "mean": much["peak_memory"]["mean"], "by_itself": by_itself, "halo": halo, "own": (much["peak_memory"]["mean"] - by_itself) * (1 - halo)})
     points = [(math.log(row["ranks"]), math.log(row["own"])) for row in rows]
@@ -208,7 +214,7 @@ def speed(arguments, found, lines):
         for ranks in (1, 2):
             times["memory"][ranks].append(bandwidth(arguments, ranks))
             for name, options in names.items():
-                loops = [run(arguments, options, ranks, n, launcher=("--bind-to", "core"))[0]["timing"]["wall"] for n in steps]
+                loops = [run(arguments, options, ranks, n, launcher=("--bind-to", "core"))["timing"]["wall"] for n in steps]
                 times[name][ranks].append((loops[1] - loops[0]) / (steps[1] - steps[0]))
     ratios = {name: [a / b for a, b in zip(times[name][1], times[name][2])] for name in names}
     ratios["memory"] = [b / a for a, b in zip(times["memory"][1], times["memory"][2])]
@@ -232,7 +238,7 @@ def model(arguments, found, lines):
             for contact in (False, True):
                 for ranks in (1, 2):
                     runs = [run(arguments, boxes(size, contact=contact), ranks, n, launcher=("--bind-to", "none")) for n in steps]
-                    measured.setdefault((size, contact, ranks), []).append([summary["timing"]["cpu"] for summary, _ in runs])
+                    measured.setdefault((size, contact, ranks), []).append([summary["timing"]["cpu"] for summary in runs])
     # other programs only make runs longer: the shortest of the long ones, less the shortest of the short ones
     times = {key: (min(v[1] for v in values) - min(v[0] for v in values)) / (steps[1] - steps[0]) for key, values in measured.items()}
     shapes = {}
