@@ -99,7 +99,7 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
           (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, (double)controller->guard.part);
 }
 
-/* Ends the run where the energy of a body is no number after a step: squares of its velocity or displacement are beyond all numbers */
+/* Ends the run where the energy of a body is no number: squares of its velocity or displacement are beyond all numbers */
 static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *frame)
 {
   PetscFunctionBegin;
@@ -109,7 +109,7 @@ static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *
     if (!PetscIsInfOrNanReal(frame->bodies[b].kinetic + frame->bodies[b].potential)) continue;
     PetscCall(PetscObjectGetName((PetscObject)controller->bodies[b], &name));
     SETERRQ(PetscObjectComm((PetscObject)controller), PETSC_ERR_FP,
-            "The energy of body '%s' is not a number at time %.9g s (controller step %" PetscInt_FMT
+            "The energy of body '%s' is not finite at time %.9g s (controller step %" PetscInt_FMT
             "): its velocity or displacement is out of all proportion. Check units and formulas of -%s_initial_velocity, "
             "-%s_initial_displacement, and of its loads",
             name, (double)frame->time, frame->step, name, name);
@@ -124,7 +124,7 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
   PetscReal work = PetscAbsReal(frame->obstacle_work);
 
   PetscFunctionBegin;
-  if (frame->step > 0) PetscCall(CheckFinite(controller, frame)); /* the first step finds a bad start, and names its time */
+  PetscCall(CheckFinite(controller, frame));
   if (controller->guard.part == 0 || !frame->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < frame->n_bodies; b++) {
     PetscBool without_inertia;

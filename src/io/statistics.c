@@ -143,6 +143,7 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->energy_error_min   = Relative(s->system_change[0], scale);
   r->energy_error_max   = Relative(s->system_change[1], scale);
   /* with loads momenta change, and there is nothing to compare them with */
+  r->momentum_scale             = s->momentum_scale;
   r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(momentum), s->momentum_scale));
   r->angular_momentum_error_max = s->loaded ? NAN
                                             : PetscMax(r->angular_momentum_error_max,

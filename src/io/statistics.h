@@ -63,6 +63,7 @@ typedef struct {
   PetscReal          energy_error_min, energy_error_max, energy_error_final; /* of the system, relative to its start */
   PetscReal
       momentum_error_max; /* relative to the sum of the bodies' initial momenta; absolute if that is 0 [kg m/s]; not-a-number with loads */
+  PetscReal momentum_scale;             /* that sum [kg m/s] */
   PetscReal angular_momentum_error_max; /* about the origin, likewise [kg m^2/s] */
   PetscReal penalty_energy_max;         /* [J] */
 } StatisticsResults;

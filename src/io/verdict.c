@@ -7,7 +7,7 @@
 
 /* An energy error from which on a run says so */
 #define ENERGY_ERROR 0.05
-/* The same of the momentum, where it is known to be lost */
+/* The same of the momentum, which contact keeps to round-off unless it is known to lose some */
 #define MOMENTUM_ERROR 1e-3
 
 /* Nodes that lie beyond the end of the partner guard its corner and bear up to 17 % of the impulse of blocks that rock on each other
@@ -45,6 +45,11 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   if (reason && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or -schwarz_transmission dirichlet_neumann",
                   (double)(100 * results->momentum_error_max), reason));
+  else if (results->momentum_scale > 0 && results->momentum_error_max > MOMENTUM_ERROR)
+    PetscCall(Add(verdict,
+                  "the momentum error is %.3g %%, as where round-off of a body's stiffness hides its mass: check units and constants of "
+                  "materials, or take a smaller -time_step",
+                  (double)(100 * results->momentum_error_max)));
   if (counts.unlimited_steps)
     PetscCall(Add(verdict, "%" PetscInt_FMT " step%s gained more energy at contact than -contact_energy_excess allows%s%s",
                   counts.unlimited_steps, counts.unlimited_steps == 1 ? "" : "s", reason ? ", since " : "", reason ? reason : ""));

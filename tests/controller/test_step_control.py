@@ -45,6 +45,14 @@ def test_auto(shared_run):
     assert abs(run.summary["system"]["energy_error_final"]) < 5e-3  # measured: 2.4e-3
 
 
+def test_mass_lost_in_round_off(shared_run):
+    """Where the stiffness of a body leaves none of its mass within round-off, its momentum is lost, the energy balance holds, and a warning says so."""
+    run = shared_run("-options_file options/impact-high-speed.opts -exact none -left_youngs_modulus 1e50 -time_end 0")
+    assert abs(run.summary["system"]["energy_error_final"]) < 1e-3
+    assert run.summary["system"]["momentum_error_max"] > 0.5
+    assert warnings(run)[-1].startswith("impakt: warning: the momentum error is 100 %, as where round-off of a body's stiffness hides its mass")
+
+
 def test_verdict(shared_run):
     """A run whose energy error exceeds 5 % says so, on standard error and in the summary; a good one says nothing."""
     bad = shared_run(f"{BEAM} -time_step 2e-4 -controller_step_cuts 0 {UNLIMITED}")

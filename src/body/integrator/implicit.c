@@ -6,6 +6,8 @@
 #define ALPHA_F 1
 #define GAMMA   0.5
 #define BETA    0.25
+/* Of all parameters of the generalised-alpha family that a spectral radius of 0 to 1 gives: its alpha_m at 0 */
+#define LARGEST 2.
 
 /* Adds the forces of the dashpots at the stage, where held dofs and prescribed rows have the velocity that they are given */
 static PetscErrorCode AddDamping(Body body, PetscReal t, PetscReal position, Vec U, Vec V, Vec F)
@@ -70,6 +72,10 @@ static PetscErrorCode GetParameters(Body body)
 
   PetscFunctionBegin;
   PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
+  PetscCheck(PetscMax(PetscMax(implicit->beta, implicit->gamma), PetscMax(implicit->alpha_f, implicit->alpha_m)) <= LARGEST,
+             PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must not be larger than %g", prefix, (double)implicit->alpha_m,
+             (double)implicit->alpha_f, (double)implicit->gamma, (double)implicit->beta, LARGEST);
   PetscCheck(implicit->beta > 0 && implicit->alpha_f > 0 && implicit->alpha_m > 0 && implicit->gamma > 0,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose "

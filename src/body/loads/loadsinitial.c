@@ -3,6 +3,8 @@
 
 /* Composed with the body where the option of that name is given */
 static const char *const initial[] = {"initial_displacement", "initial_velocity"};
+static const char *const unit[]    = {"m", "m/s"};
+static const PetscReal   bound[]   = {1e22, 1e60};
 
 static PetscErrorCode Evaluate(Body body, const Expression list[], Vec values)
 {
@@ -39,10 +41,23 @@ static PetscErrorCode CheckSteady(Body body, const char name[], const Expression
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadVector(Body body, const char name[])
+/* Beyond these no body moves that is between 1e-15 and 1e22 m large: a wrong unit, or a formula that runs away */
+static PetscErrorCode CheckSize(Body body, int which, Vec values)
+{
+  PetscReal largest;
+
+  PetscFunctionBegin;
+  PetscCall(VecNorm(values, NORM_INFINITY, &largest));
+  PetscCheck(largest <= bound[which], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%s%s is up to %g %s; it must not be larger than %g %s", ((PetscObject)body)->prefix, initial[which], (double)largest,
+             unit[which], (double)bound[which], unit[which]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadVector(Body body, int which)
 {
   Expression     list[3] = {NULL};
-  const char    *text;
+  const char    *name = initial[which], *text;
   Vec            values;
   PetscErrorCode error;
 
@@ -53,6 +68,7 @@ static PetscErrorCode ReadVector(Body body, const char name[])
   PetscCall(BodyCreateVec(body, &values));
   error = CheckSteady(body, name, list);
   if (!error) error = Evaluate(body, list, values);
+  if (!error) error = CheckSize(body, which, values);
   if (!error) error = PetscObjectCompose((PetscObject)body, name, (PetscObject)values);
   PetscCall(VecDestroy(&values));
   for (PetscInt d = 0; d < body->mesh.dim; d++) PetscCall(ExpressionDestroy(&list[d]));
@@ -63,7 +79,7 @@ static PetscErrorCode ReadVector(Body body, const char name[])
 PetscErrorCode BodyLoadsReadInitialState(Body body)
 {
   PetscFunctionBegin;
-  for (int i = 0; i < 2; i++) PetscCall(ReadVector(body, initial[i]));
+  for (int i = 0; i < 2; i++) PetscCall(ReadVector(body, i));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
