@@ -338,6 +338,7 @@ PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactGetOverlap(Contact, PetscInt, PetscReal *, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactGetUnresolvedEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);

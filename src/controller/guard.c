@@ -121,7 +121,7 @@ static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *
 PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFrame *frame)
 {
   PetscReal now = frame->penalty_energy + frame->friction_loss - frame->obstacle_work, start = 0, size = 0, scale;
-  PetscReal work = PetscAbsReal(frame->obstacle_work);
+  PetscReal work = PetscAbsReal(frame->obstacle_work), unresolved;
 
   PetscFunctionBegin;
   PetscCall(CheckFinite(controller, frame));
@@ -139,6 +139,7 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
   }
   controller->guard.largest = PetscMax(controller->guard.largest, size);
   scale                     = (start > NOTHING_AT_START * controller->guard.largest ? start : controller->guard.largest) + work;
-  if (now - start > controller->guard.part * scale) PetscCall(EndRun(controller, frame, (now - start) / scale));
+  PetscCall(ContactGetUnresolvedEnergy(controller->contact, &unresolved));
+  if (now - start > controller->guard.part * scale + unresolved) PetscCall(EndRun(controller, frame, (now - start) / scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

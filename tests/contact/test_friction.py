@@ -67,6 +67,26 @@ def test_block_slides(options, impakt):
     force = run.history[f"contact/{name}/force_vector"][-1]
     assert force[0] / force[1] == pytest.approx(-0.3, rel=1e-4)  # measured: 5e-6, of rows that follow the bent surface
     assert worst_energy_error(run.summary) <= 1e-5
+    assert not run.stderr
+
+
+def test_block_slides_in_any_order_on_any_ranks(impakt):
+    """Sides swapped and on 3 ranks: what a run on one rank finds, to the tolerance of positions."""
+    speed, swapped, parallel = (
+        impakt(joined(SLOPE, options), ranks=ranks).history["body/block/mean_velocity"][:, 0]
+        for options, ranks in (("", 1), ("-contact_pairs base.ymax:block.ymin -contact_rows second", 1), ("", 3))
+    )
+    np.testing.assert_allclose(swapped, speed, rtol=0, atol=1e-9 * np.abs(speed).max())
+    np.testing.assert_allclose(parallel, speed, rtol=0, atol=1e-9 * np.abs(speed).max())
+
+
+@pytest.mark.parametrize("step", ["1e-3", "1e-4", "1e-5"])
+def test_loads_that_grow_from_nothing(step, impakt):
+    """In the first steps there is less energy, 1e-10 J, than forces do over the distances to which gaps are known: no gain to be limited, no loss to cut for."""
+    run = impakt(joined(SLOPE, f"-time_step {step} -time_end 3e-3"))
+    assert not run.stderr
+    assert run.summary["step_control"]["steps_cut"] == 0
+    assert worst_energy_error(run.summary) <= 1e-5  # measured: 2e-6
 
 
 def test_coefficient_falls_with_the_speed(impakt):
@@ -194,6 +214,8 @@ def test_belt_needs_friction_and_stays_in_its_plane(impakt):
         ("-contact_type augmented_lagrangian", "has no friction"),
         ("-block_mass_redistribute false", "massless contact nodes"),
         ("-contact_law sticky", "sticky"),
+        ("-schwarz_transmission robin", "without effect here: -schwarz_transmission"),
+        ("-contact_swap_sides", "without effect here: -contact_swap_sides"),
     ],
 )
 def test_refused(options, message, impakt):

@@ -22,7 +22,7 @@ POWERS = {
 UNITS = {
     "time": "s", "contact_position": "m", "contact_velocity": "m/s", "mean_velocity": "m/s", "momentum": "N s", "angular_momentum": "N m s",
     "kinetic": "J", "potential": "J", "external_work": "J", "penalty_energy": "J", "force": "N", "force_vector": "N", "moment": "J",
-    "impulse": "N s", "gap": "m", "area": "m^2", "active": "1", "iterations": "1",
+    "impulse": "N s", "friction_loss": "J", "obstacle_work": "J", "sliding": "1", "gap": "m", "area": "m^2", "active": "1", "iterations": "1",
 }  # fmt: skip
 # What is compared with the largest value of all of a group, since some of it may be nothing but round-off
 GROUPS = (("kinetic", "potential", "external_work"), ("gap", "contact_position"))
@@ -54,6 +54,8 @@ DISCS = """-bodies low,high -obstacles floor -contact_pairs auto -contact_facing
     -high_ball_divisions 3 -high_ball_keep_volume false -high_material_type neo_hookean -high_density {1200 kg/m^3} -high_youngs_modulus {1e8 Pa}
     -high_poissons_ratio 0.3 -high_thickness {0.5 m} -high_gravity 0,{-9.81 m/s^2} -high_initial_velocity {1 m/s},{-8 m/s}"""
 
+FRICTION = "-contact_law coulomb -contact_friction 0.3"
+
 PAIRINGS = {"II": "", "EE": "-left_ts_type centraldifference -right_ts_type centraldifference"}
 METHODS = {
     "schwarz": "",
@@ -71,6 +73,8 @@ ALTERNATION = f"-schwarz_snes_type nrichardson -schwarz_predictor last {LUMPED}"
 CASES |= {f"{geometry}-alternation-II": f"{bodies} {ALTERNATION}" for geometry, bodies in {"bars": BARS, "blocks": BLOCKS}.items()}
 CASES["blocks-forward-EE"] = f"{BLOCKS} -contact_type lagrange {LUMPED} {PAIRINGS['EE']}"
 CASES["discs-schwarz-II"] = DISCS
+CASES |= {f"blocks-friction-{pairing}": f"{BLOCKS} {FRICTION} {integrators}" for pairing, integrators in PAIRINGS.items()}
+CASES["discs-friction-II"] = f"{DISCS} {FRICTION}"
 CASES["bars-tied-II"] = f"{BARS} -contact_law tied -contact_tie_distance 0.1"  # over a gap of a fifteenth of an element
 
 

@@ -269,6 +269,7 @@ typedef struct {
   PetscBool      start_known;             /* the energies at its start have been told, see ContactSetStartEnergies() */
   PetscBool      changed;                 /* the step has begun with other forces than those that the last one ended with */
   PetscBool      again;                   /* the step is made again, with other contact forces at its start */
+  PetscReal      largest_force;           /* sum over all rows, of the accepted step in which it was largest [N] */
   PetscReal      work;                    /* of all accepted steps [J] */
   PetscReal      step_work;               /* of the present step [J] */
   PetscReal     *room;                    /* per body: what contact may bring it [J] */
@@ -277,11 +278,11 @@ typedef struct {
   PetscInt      *group;                   /* per body: the first body of the group that touches in this step */
   PetscReal     *group_work;              /* per group, by its first body: work of contact in the step [J] */
   PetscReal     *first_work;              /* the same in the step as made first, by the first bodies of the groups then [J] */
-  PetscReal     *pair_sums;               /* per pair, of all ranks: work in the step as made first [J]; whether any row has a force */
+  PetscReal     *pair_sums;               /* per pair, of all ranks: work in the step as made first [J]; sum of all rows' forces [N] */
   PetscReal     *start_energy;            /* per body: at the start of the step, where rows have been built again [J] */
   PetscReal     *first_energy;            /* per body: at the end of the step as made first [J] */
   PetscReal     *energies;                /* the same, of the last attempt [J] */
-  PetscReal     *first_springs, *springs; /* per pair, of all ranks: gain of the springs in the step [J]; whether any row has a force */
+  PetscReal     *first_springs, *springs; /* per pair, of all ranks: gain of the springs in the step [J]; sum of all rows' forces [N] */
   PetscReal     *last_force;              /* per row: at the end of the last step [N] */
   PetscReal     *accepted_force;          /* the same, also of rows that have been let go since, with their surfaces [N] */
   PetscReal     *last_stored;             /* per row: what springs had stored then [J] */

@@ -7,4 +7,5 @@ PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscRe
 PETSC_INTERN void           ContactFindGroups(Contact);
 PETSC_INTERN PetscErrorCode ContactLeaveOutStatic(Contact);
 PETSC_INTERN PetscReal      ContactGroupRoom(Contact, PetscInt);
+PETSC_INTERN PetscReal      ContactMoreRoom(Contact);
 PETSC_INTERN PetscErrorCode ContactCanAffordHalves(Contact, PetscBool *);

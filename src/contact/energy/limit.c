@@ -239,9 +239,10 @@ static PetscBool AnyGainsTooMuch(Contact contact)
 {
   const ContactEnergy *energy = &contact->energy;
   PetscReal           *room   = energy->of_group;
+  const PetscReal      more   = ContactMoreRoom(contact);
 
   for (PetscInt g = 0; g < contact->n_bodies; g++) room[g] = 0;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) room[energy->group[b]] += energy->room[b] - energy->change[b];
+  for (PetscInt b = 0; b < contact->n_bodies; b++) room[energy->group[b]] += energy->room[b] - energy->change[b] + more;
   for (PetscInt g = 0; g < contact->n_bodies; g++)
     if (energy->group[g] == g && energy->group_work[g] > PetscMax(room[g], 0) + ROUND_OFF * energy->scale) return PETSC_TRUE;
   return PETSC_FALSE;

@@ -52,13 +52,66 @@ PetscErrorCode ContactLeaveOutStatic(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How far gaps may be from what they are said to be [m] */
+static PetscReal Resolution(Contact contact)
+{
+  return contact->options.tolerance + CONTACT_POSITION_TOLERANCE * contact->scale.length;
+}
+
+/* Sum of the contact forces of all rows in the step [N] */
+static PetscReal SumForces(Contact contact)
+{
+  PetscReal sum = 0;
+
+  for (PetscInt p = 0; p < contact->n_pairs; p++) sum += contact->energy.pair_sums[2 * p + 1];
+  return sum;
+}
+
+/*@
+  ContactGetUnresolvedEnergy - what contact forces do over the distances to which gaps are known
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameter:
+. energy - [J]; the same on every rank
+
+  Level: developer
+
+  Note:
+  Of the step in which their sum was largest so far: gaps are known to the tolerance of penetration and that of the outer iteration. Where
+  bodies start at rest without strain, and loads grow slowly, there is less energy than that in the first steps.
+
+.seealso: `Contact`, `ContactSetTolerance()`, `ContactSetEnergyCap()`
+@*/
+PetscErrorCode ContactGetUnresolvedEnergy(Contact contact, PetscReal *energy)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(energy, 2);
+  *energy = contact->energy.known ? Resolution(contact) * PetscMax(contact->energy.largest_force, SumForces(contact)) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much a body's room is larger in this step: its share of what is unresolved, as far as that is more than in all steps before. Only
+   where all starts at rest without strain; elsewhere the excess is far larger. */
+PetscReal ContactMoreRoom(Contact contact)
+{
+  const ContactEnergy *energy = &contact->energy;
+
+  return energy->at_rest ? Resolution(contact) * PetscMax(SumForces(contact) - energy->largest_force, 0) / (PetscReal)contact->n_bodies : 0;
+}
+
 /* What the group of a body may gain in this step [J] */
 PetscReal ContactGroupRoom(Contact contact, PetscInt group)
 {
-  PetscReal room = 0;
+  const PetscReal more = ContactMoreRoom(contact);
+  PetscReal       room = 0;
 
   for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (contact->energy.group[b] == group) room += contact->energy.room[b] - contact->energy.change[b];
+    if (contact->energy.group[b] == group) room += contact->energy.room[b] - contact->energy.change[b] + more;
   return PetscMax(room, 0);
 }
 
@@ -122,6 +175,7 @@ static PetscErrorCode GrowRoom(Contact contact)
   PetscReal      now    = 0;
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += ContactMoreRoom(contact);
   if (!energy->at_rest || energy->excess == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     BodyMeasures measures;
@@ -145,6 +199,7 @@ PetscErrorCode ContactBookWork(Contact contact)
   energy->rebuilt = PETSC_FALSE;
   if (energy->limits && !energy->unlimited) PetscCall(GrowRoom(contact));
   if (!energy->known) PetscFunctionReturn(PETSC_SUCCESS);
+  energy->largest_force = PetscMax(energy->largest_force, SumForces(contact));
   PetscCall(PetscArraycpy(energy->accepted_force, contact->end.force, contact->rows.n));
   PetscCall(BookLevel(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) energy->last_stored[i] = (*contact->ops->stored)(contact, i, contact->end.gap[i]);

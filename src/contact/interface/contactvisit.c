@@ -120,6 +120,7 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
   PetscFunctionBegin;
   PetscCall(CheckpointVisitReals(checkpoint, "scale", 1, &energy->scale));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(flags); i++) PetscCall(CheckpointVisitBools(checkpoint, "flag", 1, flags[i]));
+  PetscCall(CheckpointVisitReals(checkpoint, "largest force", 1, &energy->largest_force));
   PetscCall(CheckpointVisitReals(checkpoint, "work", 1, &energy->work));
   PetscCall(CheckpointVisitReals(checkpoint, "step work", 1, &energy->step_work));
   PetscCall(CheckpointVisitReals(checkpoint, "room", contact->n_bodies, energy->room));

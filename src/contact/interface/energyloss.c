@@ -50,13 +50,15 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
 
   Also 0 where halves of the step would cost more than they save, since what central differences conserve depends on the step;
   where nodes with mass join or leave, whose impact takes energy whatever the step, where a body has no inertia, where the method
-does not tell what its springs store, and where -contact_constraint has gap rates end.
+does not tell what its springs store, and where -contact_constraint has gap rates end; and, where all starts at rest without strain,
+  below what `ContactGetUnresolvedEnergy()` tells.
 
 .seealso: `Contact`, `ContactSetEnergyTolerance()`, `ContactTryStep()`
 @*/
 PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
 {
   PetscBool any, left_out;
+  PetscReal unresolved;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
@@ -66,7 +68,8 @@ PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LookAtChanges(contact, &any, &left_out));
   if (!any || left_out) PetscFunctionReturn(PETSC_SUCCESS);
-  *loss = -contact->energy.step_work;
+  PetscCall(ContactGetUnresolvedEnergy(contact, &unresolved));
+  if (!contact->energy.at_rest || PetscAbsReal(contact->energy.step_work) > unresolved) *loss = -contact->energy.step_work;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

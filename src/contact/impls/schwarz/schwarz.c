@@ -21,6 +21,8 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
   PetscBool set = PETSC_FALSE, set_impedance = PETSC_FALSE;
 
   PetscFunctionBegin;
+  /* with friction none of them has an effect */
+  if (contact->options.law == CONTACT_LAW_FRICTION) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "ContactSchwarzSetTransmission", Transmissions,
                              (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
