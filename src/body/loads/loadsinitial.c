@@ -57,7 +57,7 @@ static PetscErrorCode CheckSize(Body body, int which, Vec values)
 static PetscErrorCode ReadVector(Body body, int which)
 {
   Expression     list[3] = {NULL};
-  const char    *name = initial[which], *text;
+  const char    *name    = initial[which], *text;
   Vec            values;
   PetscErrorCode error;
 

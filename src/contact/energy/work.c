@@ -58,8 +58,8 @@ static void AddSprings(Contact contact, PetscReal sums[])
     sums[2 * contact->rows.pair[i]] += (*contact->ops->stored)(contact, i, contact->end.gap[i]) - contact->energy.last_stored[i];
 }
 
-/* Work of contact on the bodies in the step as it has been made without changes at its start, and the forces of pairs that touch: for each pair,
-   on all ranks. Collective. */
+/* Work of contact on the bodies in the step as it has been made without changes at its start, and the forces of pairs that touch: for each
+   pair, on all ranks. Collective. */
 PetscErrorCode ContactComputeWork(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
@@ -70,7 +70,8 @@ PetscErrorCode ContactComputeWork(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddWorkOn(contact, b));
   AddSprings(contact, energy->pair_sums);
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    energy->pair_sums[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]), PetscAbsReal(energy->accepted_force[i]));
+    energy->pair_sums[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]),
+                                                                 PetscAbsReal(energy->accepted_force[i]));
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy->pair_sums, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
