@@ -31,6 +31,8 @@
 /* Energy that friction may bring on a row in a step, in parts of the same; and attempts that look for a step with less */
 #define FRICTION_BRINGS 1e-12
 #define MAX_RUBS        20
+/* How often the two kinds of attempts take turns */
+#define MAX_TURNS 4
 
 /* The step from the saved states, with the start forces as they are */
 static PetscErrorCode MakeStep(Contact contact)
@@ -323,6 +325,20 @@ static PetscErrorCode Attempt(Contact contact)
     PetscCall(ComputeGroupWork(contact));
     contact->counts.energy_attempts++;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Attempts, with which friction may bring energy again on rows whose start they have changed: in turn, until neither does. What a group
+   gains comes before that. */
+static PetscErrorCode AttemptWithFriction(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt turn = 0; turn < MAX_TURNS && AnyGainsTooMuch(contact); turn++) {
+    PetscCall(Attempt(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    if (turn < MAX_TURNS - 1) PetscCall(LimitFriction(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  }
   contact->counts.limited_steps++;
   if (AnyGainsTooMuch(contact)) contact->counts.unlimited_steps++;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -396,7 +412,7 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
     }
   }
   if (!energy->limits || !AnyGainsTooMuch(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Attempt(contact));
+  PetscCall(AttemptWithFriction(contact));
   energy->step_work = 0;
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
