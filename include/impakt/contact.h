@@ -256,11 +256,15 @@ typedef struct {
 } ContactCounts;
 
 /* What ContactFieldsCompute() gives for each node */
-#define CONTACT_FIELDS_FORCE    0 /* three components [N] */
-#define CONTACT_FIELDS_PRESSURE 3 /* [Pa] */
-#define CONTACT_FIELDS_GAP      4 /* [m] */
-#define CONTACT_FIELDS_ACTIVE   5 /* 1 in contact, else 0 */
-#define CONTACT_FIELDS_SIZE     6
+#define CONTACT_FIELDS_FORCE         0  /* three components [N] */
+#define CONTACT_FIELDS_PRESSURE      3  /* [Pa] */
+#define CONTACT_FIELDS_GAP           4  /* [m] */
+#define CONTACT_FIELDS_ACTIVE        5  /* 1 in contact, else 0 */
+#define CONTACT_FIELDS_TRACTION      6  /* of friction, along the surface: three components [Pa] */
+#define CONTACT_FIELDS_SLIDING       9  /* 1 in contact and sliding, else 0 */
+#define CONTACT_FIELDS_SLIP_DISTANCE 10 /* that it has slid in contact so far [m] */
+#define CONTACT_FIELDS_FRICTION_LOSS 11 /* energy that friction has taken so far, per area [J/m^2] */
+#define CONTACT_FIELDS_SIZE          12
 
 /*S
    ContactFields - contact forces, pressures, gaps and active nodes of bodies, node by node

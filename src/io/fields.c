@@ -97,6 +97,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscInt    steps, n_bodies, n_pairs;
   PetscMPIInt rank;
   PetscBool   plastic = PETSC_FALSE;
+  ContactLaw  law;
   Fields      f;
 
   PetscFunctionBegin;
@@ -121,7 +122,8 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscCall(FieldsMeshCreate(n_bodies, bodies, &f->mesh));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  f->set = (1u << (n_pairs ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_CONTACT)) - 1;
+  PetscCall(ContactGetLaw(contact, &law));
+  f->set = (1u << (!n_pairs ? FIELDS_FIRST_OF_CONTACT : law == CONTACT_LAW_FRICTION ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_FRICTION)) - 1;
   for (PetscInt i = 0; i < n_bodies && !plastic; i++) PetscCall(BodyHasHistory(bodies[i], &plastic));
   if (!plastic) f->set &= ~(1u << FIELDS_PLASTIC_STRAIN);
   PetscCall(CheckSpace(f));

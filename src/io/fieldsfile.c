@@ -18,6 +18,10 @@ const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
     {"contact_pressure", "Pa", 1, "Scalar", PETSC_FALSE},
     {"contact_gap", "m", 1, "Scalar", PETSC_FALSE},
     {"contact_active", "1", 1, "Scalar", PETSC_FALSE},
+    {"friction_traction", "Pa", 3, "Vector", PETSC_FALSE},
+    {"contact_sliding", "1", 1, "Scalar", PETSC_FALSE},
+    {"slip_distance", "m", 1, "Scalar", PETSC_FALSE},
+    {"friction_loss", "J/m^2", 1, "Scalar", PETSC_FALSE},
 };
 
 const char *const OutputPrecisions[] = {"single", "double", "OutputPrecision", "OUTPUT_", NULL};

@@ -5,10 +5,11 @@
 
 /* The names of frames have four digits, and all datasets of a run are made before its first frame */
 #define FIELDS_MAX_FRAMES 10000
-#define FIELDS_PER_FRAME  9
+#define FIELDS_PER_FRAME  13
 
 /* The fields of contact begin with this one, and are the last */
-#define FIELDS_FIRST_OF_CONTACT FIELDS_CONTACT_FORCE
+#define FIELDS_FIRST_OF_CONTACT  FIELDS_CONTACT_FORCE
+#define FIELDS_FIRST_OF_FRICTION FIELDS_FRICTION_TRACTION
 
 /* Which fields a frame has: bit k is set for number k of `FieldsKind` */
 typedef unsigned FieldsSet;
@@ -23,7 +24,11 @@ typedef enum {
   FIELDS_CONTACT_FORCE,
   FIELDS_CONTACT_PRESSURE,
   FIELDS_CONTACT_GAP,
-  FIELDS_CONTACT_ACTIVE
+  FIELDS_CONTACT_ACTIVE,
+  FIELDS_FRICTION_TRACTION, /* with friction, as all that follow */
+  FIELDS_CONTACT_SLIDING,
+  FIELDS_SLIP_DISTANCE,
+  FIELDS_FRICTION_LOSS
 } FieldsKind;
 
 typedef struct {

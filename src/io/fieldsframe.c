@@ -127,10 +127,14 @@ static PetscErrorCode WritePlasticStrain(Fields fields)
 
 static PetscErrorCode WriteContact(Fields fields)
 {
-  static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE]    = CONTACT_FIELDS_FORCE,
-                                                   [FIELDS_CONTACT_PRESSURE] = CONTACT_FIELDS_PRESSURE,
-                                                   [FIELDS_CONTACT_GAP]      = CONTACT_FIELDS_GAP,
-                                                   [FIELDS_CONTACT_ACTIVE]   = CONTACT_FIELDS_ACTIVE};
+  static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE]     = CONTACT_FIELDS_FORCE,
+                                                   [FIELDS_CONTACT_PRESSURE]  = CONTACT_FIELDS_PRESSURE,
+                                                   [FIELDS_CONTACT_GAP]       = CONTACT_FIELDS_GAP,
+                                                   [FIELDS_CONTACT_ACTIVE]    = CONTACT_FIELDS_ACTIVE,
+                                                   [FIELDS_FRICTION_TRACTION] = CONTACT_FIELDS_TRACTION,
+                                                   [FIELDS_CONTACT_SLIDING]   = CONTACT_FIELDS_SLIDING,
+                                                   [FIELDS_SLIP_DISTANCE]     = CONTACT_FIELDS_SLIP_DISTANCE,
+                                                   [FIELDS_FRICTION_LOSS]     = CONTACT_FIELDS_FRICTION_LOSS};
   const FieldsMesh     *mesh                    = &fields->mesh;
   size_t                first                   = 0;
 
@@ -142,6 +146,7 @@ static PetscErrorCode WriteContact(Fields fields)
   for (FieldsKind kind = FIELDS_FIRST_OF_CONTACT; kind < FIELDS_PER_FRAME; kind++) {
     const size_t n = (size_t)fields_of_a_frame[kind].components;
 
+    if (!FieldsSetHas(fields->set, kind)) break;
     for (size_t i = 0; i < first; i++)
       for (size_t c = 0; c < n; c++) Store(fields, n * i + c, fields->nodal[CONTACT_FIELDS_SIZE * i + (size_t)begin[kind] + c]);
     PetscCall(WriteField(fields, kind));

@@ -49,6 +49,32 @@ def test_shear_pulse(pairing, impakt):
     assert 0.5 < contact["friction_loss"] < 0.7  # 3e4 Pa times what the middle slides, over 2 m: 0.61 J
 
 
+def test_fields(impakt):
+    """Of nodes on both sides: traction, whether they slide, how far, and what friction takes there."""
+    import h5py
+
+    run = impakt(joined(PULSE, "-output_fields fields.h5 -output_fields_precision double"))
+    with h5py.File(run.folder / "fields.h5") as fields:
+        x, body, last = fields["mesh/positions"][()], np.zeros(len(fields["mesh/positions"]), int), f"{len(fields['time']) - 1:04d}"
+        body[fields["mesh/cells"][()]] = fields["mesh/body"][()][:, None]
+        node = {name: fields[name][last][()] for name in ("friction_traction", "contact_sliding", "slip_distance", "friction_loss", "contact_pressure")}
+        u = fields["displacement"][last][()]
+        assert [fields[f"{name}/{last}"].attrs["units"].decode() for name in ("friction_traction", "slip_distance", "friction_loss")] == ["Pa", "m", "J/m^2"]
+    face = np.abs(x[:, 1]) < 1e-9
+    middle = face & (np.abs(x[:, 0]) < 0.25)
+    slip = u[middle & (body == 1), 0].mean() - u[middle & (body == 0), 0].mean()
+    for side, sign in ((0, 1), (1, -1)):
+        here = middle & (body == side)
+        np.testing.assert_allclose(node["friction_traction"][here], np.multiply.outer(0.3 * node["contact_pressure"][here], [sign, 0, 0]), atol=1e-3)  # of 3e4 Pa
+        assert (node["contact_sliding"][here] == 1).all()
+        np.testing.assert_allclose(node["slip_distance"][here], slip, rtol=1e-4)  # measured: 6e-6
+        np.testing.assert_allclose(node["friction_loss"][here], 3e4 * slip, rtol=1e-4)  # measured: 6e-6
+        order = np.argsort(x[face & (body == side), 0])
+        along, loss = x[face & (body == side), 0][order], node["friction_loss"][face & (body == side)][order]
+        assert np.trapezoid(loss, along) == pytest.approx(run.summary["contact"]["friction_loss"], rel=1e-12)
+    assert not np.abs(node["slip_distance"][~face]).any()
+
+
 def test_shear_pulse_sticks(impakt):
     """Z v < mu p, from both sides: nothing slips in the middle."""
     run, time, slip, ratio = pulse(impakt, '-lower_initial_velocity -0.03*(1-exp(-(10*y)^2)),0 -upper_initial_velocity 0.03*(1-exp(-(10*y)^2)),0')

@@ -1,4 +1,4 @@
-/* What contact does at each node: force, pressure, gap, whether it touches. */
+/* What contact does at each node: force, pressure, gap, whether it touches; traction, slip and loss of friction. */
 #include <contact/parts.h>
 #include <math.h>
 
@@ -14,6 +14,9 @@ typedef enum {
   CARRY_ACTIVE_AREA,
   CARRY_GAP_AREA, /* area of rows that have a partner opposite, and so a gap */
   CARRY_GAP,
+  CARRY_SLIDING_AREA,
+  CARRY_SLIP_DISTANCE,
+  CARRY_FRICTION_LOSS,
   N_CARRIED
 } Carried;
 
@@ -97,6 +100,12 @@ static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried 
     return contact->end.active[i] ? along * area : 0;
   case CARRY_GAP_AREA:
     return contact->rows.opposite[i] ? along * area : 0;
+  case CARRY_SLIDING_AREA:
+    return along != 0 && contact->end.active[i] && contact->friction.slides[i] ? along * area : 0;
+  case CARRY_SLIP_DISTANCE:
+    return along != 0 ? along * area * contact->friction.distance[i] : 0;
+  case CARRY_FRICTION_LOSS:
+    return along != 0 ? along * contact->friction.loss[i] : 0;
   default:
     return contact->rows.opposite[i] && !ContactRowRubs(contact, i) ? area * contact->end.gap[i] : 0;
   }
@@ -141,6 +150,22 @@ static PetscReal Ratio(PetscInt dim, const PetscScalar a[], const PetscScalar b[
   return square > PetscSqr(smallest) ? product / square : none;
 }
 
+/* What friction does at a node: of its force the part along the surface, across what areas point along */
+static void FrictionOf(PetscInt dim, PetscInt dof, PetscReal smallest, const PetscScalar *const carried[], PetscReal values[])
+{
+  const PetscScalar *area = carried[CARRY_AREA] + dof, *force = carried[CARRY_FORCE] + dof;
+  PetscReal          size = 0;
+
+  for (PetscInt d = 0; d < dim; d++) size += PetscSqr(PetscRealPart(area[d]));
+  size = PetscSqrtReal(size);
+  if (size <= smallest) return;
+  for (PetscInt d = 0; d < dim; d++)
+    values[CONTACT_FIELDS_TRACTION + d] = (PetscRealPart(force[d]) - values[CONTACT_FIELDS_PRESSURE] * PetscRealPart(area[d])) / size;
+  values[CONTACT_FIELDS_SLIDING] = PetscAbsReal(Ratio(dim, carried[CARRY_SLIDING_AREA] + dof, area, smallest, 0)) > NOT_ACTIVE ? 1 : 0;
+  values[CONTACT_FIELDS_SLIP_DISTANCE] = Ratio(dim, carried[CARRY_SLIP_DISTANCE] + dof, area, smallest, 0);
+  values[CONTACT_FIELDS_FRICTION_LOSS] = Ratio(dim, carried[CARRY_FRICTION_LOSS] + dof, area, smallest, 0);
+}
+
 /*@
   ContactFieldsCompute - nodal fields of a body at the end of the last step
 
@@ -153,7 +178,9 @@ static PetscReal Ratio(PetscInt dim, const PetscScalar a[], const PetscScalar b[
   Output Parameter:
 . values - for each node of this rank `CONTACT_FIELDS_SIZE` numbers: `CONTACT_FIELDS_FORCE` and following, the contact force
            that acts on the body there; `CONTACT_FIELDS_PRESSURE`; `CONTACT_FIELDS_GAP`, not-a-number where there is none;
-           `CONTACT_FIELDS_ACTIVE`. Zeros where the node is on no contact surface
+           `CONTACT_FIELDS_ACTIVE`; and, zeros without friction, `CONTACT_FIELDS_TRACTION` and following, the force of friction on the body
+per area, `CONTACT_FIELDS_SLIDING`, `CONTACT_FIELDS_SLIP_DISTANCE`, `CONTACT_FIELDS_FRICTION_LOSS`. Zeros where the node is on no contact
+surface
 
   Level: intermediate
 
@@ -170,6 +197,7 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   const PetscScalar *carried[N_CARRIED];
   Vec               *nodes = fields->nodes + N_CARRIED * body;
   PetscInt           dim, n;
+  Carried            n_carried;
 
   PetscFunctionBegin;
   PetscAssertPointer(fields, 1);
@@ -178,7 +206,8 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   if (fields->layouts != contact->neighbours.layouts) PetscCall(MakeRoom(fields));
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(VecGetLocalSize(nodes[0], &n));
-  for (Carried k = 0; k < N_CARRIED; k++) {
+  n_carried = contact->friction.slip ? N_CARRIED : CARRY_SLIDING_AREA;
+  for (Carried k = 0; k < n_carried; k++) {
     PetscCall(Carry(fields, body, k));
     PetscCall(VecGetArrayRead(nodes[k], &carried[k]));
   }
@@ -190,8 +219,10 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
     values[CONTACT_FIELDS_GAP]      = Ratio(dim, carried[CARRY_GAP] + dof, carried[CARRY_GAP_AREA] + dof, fields->smallest, NAN);
     values[CONTACT_FIELDS_ACTIVE] = PetscAbsReal(Ratio(dim, carried[CARRY_ACTIVE_AREA] + dof, area, fields->smallest, 0)) > NOT_ACTIVE ? 1
                                                                                                                                        : 0;
+    for (PetscInt k = CONTACT_FIELDS_TRACTION; k < CONTACT_FIELDS_SIZE; k++) values[k] = 0;
+    if (n_carried == N_CARRIED) FrictionOf(dim, dof, fields->smallest, carried, values);
   }
-  for (Carried k = 0; k < N_CARRIED; k++) PetscCall(VecRestoreArrayRead(nodes[k], &carried[k]));
+  for (Carried k = 0; k < n_carried; k++) PetscCall(VecRestoreArrayRead(nodes[k], &carried[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
