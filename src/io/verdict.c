@@ -53,6 +53,11 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   if (counts.unlimited_steps)
     PetscCall(Add(verdict, "%" PetscInt_FMT " step%s gained more energy at contact than -contact_energy_excess allows%s%s",
                   counts.unlimited_steps, counts.unlimited_steps == 1 ? "" : "s", reason ? ", since " : "", reason ? reason : ""));
+  if (counts.ambiguous_steps)
+    PetscCall(Add(verdict,
+                  "in %" PetscInt_FMT " step%s friction may have had more than one solution, since its coefficient is large for the way in "
+                  "which forces across a surface press on it; nodes that slide may stick as well",
+                  counts.ambiguous_steps, counts.ambiguous_steps == 1 ? "" : "s"));
   if (counts.unconverged_steps)
     PetscCall(Add(verdict, "%" PetscInt_FMT " step%s accepted without having converged (-schwarz_unconverged accept)",
                   counts.unconverged_steps, counts.unconverged_steps == 1 ? " was" : "s were"));

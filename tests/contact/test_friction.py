@@ -96,6 +96,15 @@ def test_block_slides(options, impakt):
     assert not run.stderr
 
 
+def test_more_than_one_solution(impakt):
+    """A coefficient of 3 is large for the nodes at the block's edges, of 0.6 for none: a run says so."""
+    many, one = (impakt(joined(SLOPE, f"-contact_friction {mu} -time_end 0.02")) for mu in (3, 0.6))
+    assert many.summary["contact"]["ambiguous_steps"] == 20
+    assert "impakt: warning: in 20 steps friction may have had more than one solution" in many.stderr
+    assert one.summary["contact"]["ambiguous_steps"] == 0
+    assert not one.stderr
+
+
 def test_block_slides_in_any_order_on_any_ranks(impakt):
     """Sides swapped and on 3 ranks: what a run on one rank finds, to the tolerance of positions."""
     speed, swapped, parallel = (

@@ -237,6 +237,21 @@ static PetscReal GetResidual(const FrictionProblem *problem)
   return most;
 }
 
+/* Whether a node in contact could be in another state under the same loads. One that slides answers to its normal force by a gap of
+   S_NN - mu S_NT.e, e being the way of its force: with mu |S_NT| >= S_NN more force may open it less, or nothing (Klarbring 1990). */
+static PetscBool IsAmbiguous(const FrictionProblem *problem)
+{
+  for (PetscInt first = 0; first < problem->n; first += problem->dim) {
+    const PetscScalar *column   = &problem->S[first * problem->n + first];
+    PetscReal          coupling = 0;
+
+    if (problem->state[first / problem->dim] == FRICTION_OPEN) continue;
+    for (PetscInt k = 1; k < problem->dim; k++) coupling += PetscSqr(PetscRealPart(column[k]));
+    if (PetscRealPart(problem->limit[first + 1]) * PetscSqrtReal(coupling) >= PetscRealPart(column[0])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* Forces of the listed rows for which the law holds, as far as S tells */
 static PetscErrorCode Solve(Contact contact)
 {
@@ -309,6 +324,7 @@ static PetscErrorCode Step(Contact contact)
 
       /* what solves the problem is checked by the law itself */
       if (residual > RESIDUAL_MOST * PetscMax(step->atol, round_off)) PetscCall(Fail(contact, PETSC_FALSE, 0));
+      if (!contact->energy.again && IsAmbiguous(&step->problem)) contact->counts.ambiguous_steps++;
       contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, residual);
       PetscFunctionReturn(PETSC_SUCCESS);
     }
