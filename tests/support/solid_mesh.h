@@ -160,3 +160,51 @@ static inline PetscReal get_energy(const Solid *solid, const PetscReal u[])
   ok((*solid->element->ops->energy)(solid->element, u, &energy));
   return energy;
 }
+
+/* Displacements to each side of those at which a derivative is wanted [m] */
+#define DIFFERENCE 1e-5
+
+/* The force is the derivative of the energy, by central differences; u comes back as it was */
+static inline void check_force(const Solid *solid, const Mesh *mesh, PetscReal u[], PetscReal bound)
+{
+  PetscReal f[MAX_DOFS];
+
+  get_force(solid, mesh, u, f);
+  assert_int_equal(solid->element->inverted, -1);
+  for (PetscInt i = 0; i < mesh->dim * mesh->n_nodes; i++) {
+    const PetscReal start = u[i];
+    PetscReal       above, below;
+
+    u[i]  = start + DIFFERENCE;
+    above = get_energy(solid, u);
+    u[i]  = start - DIFFERENCE;
+    below = get_energy(solid, u);
+    u[i]  = start;
+    near((above - below) / (2 * DIFFERENCE), f[i], bound);
+  }
+}
+
+/* The stiffness of the first element of the mesh, the only one at its nodes, is symmetric and the derivative of the force likewise */
+static inline void check_tangent(const Solid *solid, const Mesh *mesh, PetscReal u[], PetscReal bound)
+{
+  const PetscInt n = mesh->dim * mesh->nodes;
+  PetscReal      above[MAX_DOFS], below[MAX_DOFS], K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  ok((*solid->element->ops->stiffness)(solid->element, 0, u, K));
+  for (PetscInt b = 0; b < n; b++) {
+    const PetscInt  dof   = mesh->dim * mesh->connectivity[b / mesh->dim] + b % mesh->dim;
+    const PetscReal start = u[dof];
+
+    u[dof] = start + DIFFERENCE;
+    get_force(solid, mesh, u, above);
+    u[dof] = start - DIFFERENCE;
+    get_force(solid, mesh, u, below);
+    u[dof] = start;
+    for (PetscInt a = 0; a < n; a++) {
+      const PetscInt at = mesh->dim * mesh->connectivity[a / mesh->dim] + a % mesh->dim;
+
+      near((above[at] - below[at]) / (2 * DIFFERENCE), K[a * n + b], bound);
+      near(K[a * n + b], K[b * n + a], 1e-14 * largest_of(n * n, K));
+    }
+  }
+}
