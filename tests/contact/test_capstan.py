@@ -10,18 +10,18 @@ PAIR = "contact/band.inside:drum"
 RADIUS, THICKNESS, LEG, OMEGA, PULL = 1.0, 0.002, 4, 0.1, 1e3  # [m], [m], elements, [1/s], [N/m]
 
 
-def band(path, n, thickness=THICKNESS):
+def band(path, n, thickness=THICKNESS, leg=LEG):
     """Half a ring of n quadrilaterals on a drum, and straight legs downward from both its ends, as Gmsh 2.2; groups: left, right, inside, band."""
     angles = np.linspace(np.pi, 0, n + 1)
-    down = -np.arange(1, LEG + 1) * np.pi * RADIUS / n
+    down = -np.arange(1, leg + 1) * np.pi * RADIUS / n
     points = []
     for r in (RADIUS, RADIUS + thickness):
         arc = np.column_stack([r * np.cos(angles), r * np.sin(angles)])
         arc[[0, -1], 1] = 0
         points += [(-r, y) for y in down[::-1]] + [tuple(x) for x in arc.tolist()] + [(r, y) for y in down]
-    row, wide = len(points) // 2, n + 2 * LEG
+    row, wide = len(points) // 2, n + 2 * leg
     cells = [(1, 1, (1, row + 1)), (1, 2, (row, 2 * row))]
-    cells += [(1, 3, (i + 1, i + 2)) for i in range(LEG, LEG + n)]
+    cells += [(1, 3, (i + 1, i + 2)) for i in range(leg, leg + n)]
     cells += [(3, 4, (i + 1, i + 2, row + i + 2, row + i + 1)) for i in range(wide)]
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "4", '1 1 "left"', '1 2 "right"', '1 3 "inside"', '2 4 "band"', "$EndPhysicalNames"]
     lines += ["$Nodes", str(len(points))] + [f"{k} {float(x):.16e} {float(y):.16e} 0" for k, (x, y) in enumerate(points, 1)] + ["$EndNodes"]
@@ -138,3 +138,29 @@ def test_slides_on_above_the_ratio(impakt):
 def test_velocity_across_the_drum_is_refused(impakt):
     """What a velocity must not have is a part across the surface where a node is now, not where the row was built."""
     assert "has a part across its surface" in impakt(f"{CAPSTAN} -drum_velocity 0.1,0", expect_failure=True).stderr
+
+
+@pytest.mark.parametrize("options", ["", "-band_ts_type alpha2 -band_damping_mass 2e3 -time_step 2e-3"])
+def test_held_node_on_the_drum(options, impakt, tmp_path):
+    """Without legs the held node touches the drum, which drags at it: what holds it bears that too. Such nodes had no force, which the law does not admit."""
+    run = impakt(joined(CAPSTAN, band(tmp_path / "band.msh", 80, leg=0), options))
+    assert ratio(run) == pytest.approx(euler(0.3), rel=5e-4)  # measured: 9e-5
+    assert run.history[f"{PAIR}/sliding"][-1] == 81
+    assert worst_energy_error(run.summary) <= 1e-9
+    assert run.summary["contact"]["friction_residual"] <= 1e-10
+
+
+def test_held_side_on_a_belt_in_space(impakt):
+    """A block that is held across its load at one side, on a belt that goes askew: all nodes bear 0.3 times their normal force along the belt."""
+    run = impakt(
+        "-bodies block -obstacles belt -belt_obstacle_type plane -belt_point 0,0,0 -belt_normal 0,0,1 -belt_velocity 0.4,0.3,0 -contact_law coulomb "
+        "-contact_friction 0.3 -time_step 1e-2 -time_end 0.1 -block_dm_plex_dim 3 -block_dm_plex_box_upper 0.2,0.1,0.1 -block_dm_plex_box_faces 4,2,2 "
+        "-block_density 1000 -block_youngs_modulus 1e8 -block_poissons_ratio 0.25 -block_damping_mass 500 -block_boundary_displacement xmin "
+        "-block_boundary_displacement_xmin 0,0,free -block_boundary_traction zmax -block_boundary_traction_zmax 0,0,-1e4*sin(pi*min(0.5,10*t))^2"
+    )
+    (name,) = run.history["contact"]
+    force, reaction = run.history[f"contact/{name}/force_vector"][-1], run.history["body/block/reaction/xmin/force"][-1]
+    assert run.history[f"contact/{name}/sliding"][-1] == 15
+    assert np.abs(force[:2]) == pytest.approx(0.3 * np.abs(force[2]) * np.array([0.8, 0.6]), rel=1e-4)  # measured: 7e-6
+    assert np.abs(reaction[:2]) == pytest.approx(0.3 * 200 * np.array([0.8, 0.6]), rel=1e-2)  # of 1e4 Pa on 0.02 m^2, measured: 1e-3 of ringing
+    assert worst_energy_error(run.summary) <= 1e-9

@@ -84,6 +84,15 @@ static PetscReal Stiffness(const FrictionProblem *problem, PetscInt first, Petsc
   return most > 0 ? 1 / most : 0;
 }
 
+/* Whether nothing moves the node across its normal, and it is dragged past its partner all the same: what holds it bears the friction */
+static PetscBool Dragged(const FrictionProblem *problem, const PetscScalar open[], PetscInt first)
+{
+  PetscReal square = 0;
+
+  for (PetscInt k = 1; k < problem->dim; k++) square += PetscSqr(PetscRealPart(open[first + k]));
+  return (PetscBool)(Stiffness(problem, first, 1, problem->dim) == 0 && square > PetscSqr(problem->still));
+}
+
 /* States from forces and what rows open by, with trial forces across the normal; whether any has changed, or the way that a node slides has
    turned round */
 static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
@@ -97,17 +106,19 @@ static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
     const PetscReal q      = Stiffness(problem, first, 1, dim);
     const PetscReal bound  = PetscMax(PetscRealPart(problem->limit[first] + problem->limit[first + 1] * normal), 0);
     PetscReal       square = 0, along = 0; /* along the direction of before */
-    FrictionState   state = FRICTION_OPEN;
+    FrictionState   state   = FRICTION_OPEN;
+    const PetscBool dragged = Dragged(problem, solver->open, first);
 
     for (PetscInt k = 1; k < dim; k++) {
-      const PetscScalar trial = problem->force[first + k] - q * solver->open[first + k];
+      const PetscScalar trial = dragged ? -solver->open[first + k] : problem->force[first + k] - q * solver->open[first + k];
 
       along += PetscRealPart(trial * solver->trial[first + k]);
       solver->trial[first + k] = trial;
       square += PetscSqr(PetscRealPart(solver->trial[first + k]));
     }
     /* a row that nothing moves is no condition */
-    if (p > 0 && normal - p * PetscRealPart(solver->open[first]) > 0) state = square > PetscSqr(bound) ? FRICTION_SLIDES : FRICTION_STICKS;
+    if (p > 0 && normal - p * PetscRealPart(solver->open[first]) > 0)
+      state = dragged || square > PetscSqr(bound) ? FRICTION_SLIDES : FRICTION_STICKS;
     if (state != problem->state[node] || (state == FRICTION_SLIDES && along < 0)) changed = PETSC_TRUE;
     problem->state[node] = state;
   }
@@ -115,7 +126,8 @@ static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
 }
 
 /* Row `first + k` of the matrix of a node that slides, and its right-hand side: f - r(l) e = 0, e = t/|t| of the trial force t = f - q s,
-   times 1/q so that it has the unit of the other rows. Nothing is the force of a node that nothing moves across its normal. */
+   times 1/q so that it has the unit of the other rows. A node that nothing moves across its normal has no t but the way that it is dragged,
+   and no force where it is not. */
 static void SetSliding(FrictionSolver solver, const FrictionProblem *problem, PetscInt first, PetscInt k, PetscInt row, PetscInt n_in)
 {
   const PetscInt  dim = problem->dim, n = problem->n;
@@ -125,14 +137,18 @@ static void SetSliding(FrictionSolver solver, const FrictionProblem *problem, Pe
   PetscScalar    *matrix = solver->factor.values;
   PetscReal       size = 0, e[3] = {0};
 
-  if (q == 0) {
-    for (PetscInt j = 0; j < n_in; j++) matrix[j * n_in + row] = solver->in[j] == first + k ? problem->S[first * (n + 1)] : 0;
-    solver->rhs[row] = -problem->S[first * (n + 1)] * problem->force[first + k];
-    return;
-  }
   for (PetscInt l = 1; l < dim; l++) size += PetscSqr(PetscRealPart(solver->trial[first + l]));
   size = PetscSqrtReal(size);
-  for (PetscInt l = 1; l < dim; l++) e[l] = PetscRealPart(solver->trial[first + l]) / size;
+  for (PetscInt l = 1; l < dim && size > 0; l++) e[l] = PetscRealPart(solver->trial[first + l]) / size;
+  if (q == 0) {
+    const PetscReal c = PetscRealPart(problem->S[first * (n + 1)]);
+
+    if (problem->state[first / dim] != FRICTION_SLIDES) e[k] = 0;
+    for (PetscInt j = 0; j < n_in; j++)
+      matrix[j * n_in + row] = solver->in[j] == first + k ? c : solver->in[j] == first ? -c * coefficient * e[k] : 0;
+    solver->rhs[row] = c * (bound * e[k] - problem->force[first + k]);
+    return;
+  }
   for (PetscInt j = 0; j < n_in; j++) {
     const PetscInt column = solver->in[j];
     PetscScalar    value  = 0;
@@ -213,6 +229,12 @@ static PetscErrorCode SolveByNodes(FrictionSolver solver, const FrictionProblem 
         }
       }
       PetscCall(FrictionSolveNode(dim, S, open, limit, force));
+      if (Dragged(problem, solver->open, first) && force[0] > 0) {
+        PetscReal way = 0;
+
+        for (PetscInt k = 1; k < dim; k++) way += PetscSqr(open[k]);
+        for (PetscInt k = 1; k < dim; k++) force[k] = -PetscMax(limit[0] + limit[1] * force[0], 0) * open[k] / PetscSqrtReal(way);
+      }
       for (PetscInt k = 0; k < dim; k++) {
         const PetscReal step = force[k] - PetscRealPart(problem->force[first + k]);
 

@@ -40,7 +40,7 @@ static void Fill(Problem *p, PetscInt dim, PetscReal coefficient, unsigned seed)
     p->force[i]  = p->base[i];
     p->limit[i]  = i % dim == 1 ? coefficient : 0;
   }
-  p->problem = (FrictionProblem){dim, n, p->S, p->opened, p->base, p->limit, p->force, p->state};
+  p->problem = (FrictionProblem){dim, n, p->S, p->opened, p->base, p->limit, p->force, p->state, 0};
   for (PetscInt node = 0; node < NODES; node++) p->state[node] = FRICTION_OPEN;
 }
 
