@@ -101,6 +101,16 @@ def test_methods_and_inertia(options, impakt):
     assert worst_energy_error(run.summary) <= 1e-9
 
 
+def test_band_that_stretches(impakt):
+    """By 0.5 to 1.3 percent, of a linear band that 81 nodes string together: their states, changed all at once, go round in circles."""
+    run = impakt(f"{CAPSTAN} -band_youngs_modulus 1e8 -time_end 0.35")
+    assert run.summary["schwarz"]["set_cycles"] > 0
+    assert run.history[f"{PAIR}/sliding"][-1] == 81
+    assert ratio(run) == pytest.approx(np.exp(0.3 * np.pi), rel=1e-2)
+    assert run.summary["contact"]["friction_residual"] <= 1e-9
+    assert worst_energy_error(run.summary) <= 1e-9
+
+
 FREE = (
     "-bodies band -obstacles drum -drum_obstacle_type cylinder -drum_point 0,0 -drum_radius 1 -contact_pairs band.inside:drum -contact_law coulomb "
     "-contact_friction 0.3 -time_step 1e-3 -time_end 0.2 -band_dm_plex_filename tests/meshes/capstan/band-80.msh -band_density 7800 "
