@@ -153,6 +153,32 @@ void ContactCarryFriction(Contact contact)
   }
 }
 
+/* How fast the surface of an obstacle passes a node of `pair` that is at x, square to the normal of the node's row. The velocity has to lie
+   in the surface where the node is. The row may be older than that: it keeps its normal until the surface has turned by
+   -contact_angle_bound. So the velocity turns with the normals, and keeps its size. */
+static PetscErrorCode GetDrive(Contact contact, const ContactPair *pair, PetscInt row, const PetscReal x[], PetscReal t,
+                               PetscReal velocity[])
+{
+  const PetscReal *normal = contact->rows.normal + 3 * row;
+  PetscReal        distance, surface[3], across = 0, size = 0, cosine = 0;
+
+  PetscFunctionBegin;
+  PetscCall(ObstacleGetVelocity(pair->obstacle, x, t, velocity, NULL));
+  PetscCall(ObstacleGetGap(pair->obstacle, x, &distance, surface));
+  for (PetscInt d = 0; d < 3; d++) {
+    across += velocity[d] * surface[d];
+    size += PetscSqr(velocity[d]);
+    cosine += normal[d] * surface[d];
+  }
+  PetscCheck(!contact->start.active[row] || PetscAbsReal(across) <= ACROSS * PetscSqrtReal(size), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "The velocity (%g, %g, %g) m/s of the obstacle of %s at (%g, %g, %g) m has a part across its surface; an obstacle moves "
+             "along its surface alone",
+             (double)velocity[0], (double)velocity[1], (double)velocity[2], pair->name, (double)x[0], (double)x[1], (double)x[2]);
+  for (PetscInt d = 0; d < 3 && cosine < 0; d++) surface[d] = -surface[d]; /* rows have the normal of the body */
+  TurnAlong(surface, normal, velocity);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* At the start of a step: how far the surfaces of obstacles go along themselves in it, at the nodes. Where a node is moves by less in a
    step than a velocity changes over. */
 PetscErrorCode ContactDriveFriction(Contact contact)
@@ -173,25 +199,16 @@ PetscErrorCode ContactDriveFriction(Contact contact)
     PetscCall(VecGetArrayRead(positions, &reference));
     PetscCall(VecGetArrayRead(u, &displacement));
     for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
-      PetscReal x[3] = {0, 0, 0}, velocity[3], across = 0, size = 0;
+      PetscReal x[3] = {0, 0, 0}, velocity[3];
 
       if (!contact->rows.opposite[first]) continue;
       for (PetscInt d = 0; d < contact->dim; d++)
         x[d] = PetscRealPart(reference[contact->rows.dof[first] + d] + displacement[contact->rows.dof[first] + d]);
-      PetscCall(ObstacleGetVelocity(pair->obstacle, x, time + 0.5 * contact->step, velocity, NULL));
+      PetscCall(GetDrive(contact, pair, first, x, time + 0.5 * contact->step, velocity));
       for (PetscInt i = first; i < first + pair->components; i++) {
         contact->friction.drive[i] = 0;
         for (PetscInt d = 0; d < 3; d++) contact->friction.drive[i] += contact->step * velocity[d] * contact->rows.normal[3 * i + d];
       }
-      for (PetscInt d = 0; d < 3; d++) {
-        across += velocity[d] * contact->rows.normal[3 * first + d];
-        size += PetscSqr(velocity[d]);
-      }
-      PetscCheck(!contact->start.active[first] || PetscAbsReal(across) <= ACROSS * PetscSqrtReal(size), PETSC_COMM_SELF,
-                 PETSC_ERR_USER_INPUT,
-                 "The velocity (%g, %g, %g) m/s of the obstacle of %s at (%g, %g, %g) m has a part across its surface; an obstacle moves "
-                 "along its surface alone",
-                 (double)velocity[0], (double)velocity[1], (double)velocity[2], pair->name, (double)x[0], (double)x[1], (double)x[2]);
       contact->friction.drive[first] = 0;
     }
     PetscCall(VecRestoreArrayRead(u, &displacement));

@@ -16,6 +16,7 @@ typedef struct {
                            latter times the normal force */
   PetscScalar   *force; /* at the end of the step: a guess comes in, the solution goes out [N] */
   FrictionState *state; /* per node: the same */
+  PetscReal      still; /* slips of nodes that nothing moves are none up to this [m] */
 } FrictionProblem;
 
 typedef struct _n_FrictionSolver *FrictionSolver;

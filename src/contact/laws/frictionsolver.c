@@ -7,7 +7,10 @@
    Newton's method, semismooth in the state of the nodes (Alart, Curnier 1991): a node is open where l - p g <= 0, with p = 1 / S of its
    normal row, slides where the trial force f - q s is beyond the bound, and sticks else. In two dimensions the problem is linear as long as
    the states stay, so that they decide. Where that does not come to an end, nodes are solved one after another, each exactly, until forces
-   stay (block Gauss-Seidel), and Newton's method goes on from there.
+   stay (block Gauss-Seidel), and Newton's method goes on from there. Rounds of a hundred nodes that a band strings together do not come to
+   an end, and states that all change at once go round in circles. So in two dimensions the last resort is that only the first node that
+   would change its state does so (the least-index rule of Murty 1974, which comes to an end where there is no friction, and mostly with
+   it).
 */
 #include "friction.h"
 #include <solver/densefactor.h>
@@ -15,6 +18,8 @@
 /* Newton's steps before nodes are solved one after another, and in all */
 #define NEWTON_FIRST 12
 #define NEWTON_MOST  60
+/* Steps in which one node changes its state */
+#define ONE_BY_ONE_MOST 100
 /* Rounds of nodes that are solved one after another, and the change of forces at which these end, relative to the largest */
 #define ROUNDS_MOST 4000
 #define ROUNDS_RTOL 1e-13
@@ -84,9 +89,18 @@ static PetscReal Stiffness(const FrictionProblem *problem, PetscInt first, Petsc
   return most > 0 ? 1 / most : 0;
 }
 
+/* Whether nothing moves the node across its normal, and it is dragged past its partner all the same: what holds it bears the friction */
+static PetscBool Dragged(const FrictionProblem *problem, const PetscScalar open[], PetscInt first)
+{
+  PetscReal square = 0;
+
+  for (PetscInt k = 1; k < problem->dim; k++) square += PetscSqr(PetscRealPart(open[first + k]));
+  return (PetscBool)(Stiffness(problem, first, 1, problem->dim) == 0 && square > PetscSqr(problem->still));
+}
+
 /* States from forces and what rows open by, with trial forces across the normal; whether any has changed, or the way that a node slides has
-   turned round */
-static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
+   turned round. `single`: the first such node alone gets its new state. */
+static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem, PetscBool single)
 {
   const PetscInt dim     = problem->dim;
   PetscBool      changed = PETSC_FALSE;
@@ -97,25 +111,33 @@ static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem)
     const PetscReal q      = Stiffness(problem, first, 1, dim);
     const PetscReal bound  = PetscMax(PetscRealPart(problem->limit[first] + problem->limit[first + 1] * normal), 0);
     PetscReal       square = 0, along = 0; /* along the direction of before */
-    FrictionState   state = FRICTION_OPEN;
+    PetscScalar     way[3] = {0};
+    PetscBool       other;
+    FrictionState   state   = FRICTION_OPEN;
+    const PetscBool dragged = Dragged(problem, solver->open, first);
 
     for (PetscInt k = 1; k < dim; k++) {
-      const PetscScalar trial = problem->force[first + k] - q * solver->open[first + k];
+      const PetscScalar trial = dragged ? -solver->open[first + k] : problem->force[first + k] - q * solver->open[first + k];
 
       along += PetscRealPart(trial * solver->trial[first + k]);
-      solver->trial[first + k] = trial;
-      square += PetscSqr(PetscRealPart(solver->trial[first + k]));
+      square += PetscSqr(PetscRealPart(trial));
+      way[k] = trial;
     }
     /* a row that nothing moves is no condition */
-    if (p > 0 && normal - p * PetscRealPart(solver->open[first]) > 0) state = square > PetscSqr(bound) ? FRICTION_SLIDES : FRICTION_STICKS;
-    if (state != problem->state[node] || (state == FRICTION_SLIDES && along < 0)) changed = PETSC_TRUE;
+    if (p > 0 && normal - p * PetscRealPart(solver->open[first]) > 0)
+      state = dragged || square > PetscSqr(bound) ? FRICTION_SLIDES : FRICTION_STICKS;
+    other = (PetscBool)(state != problem->state[node] || (state == FRICTION_SLIDES && along < 0));
+    if (single && (changed || !other)) continue;
+    if (other) changed = PETSC_TRUE;
     problem->state[node] = state;
+    for (PetscInt k = 1; k < dim; k++) solver->trial[first + k] = way[k];
   }
   return changed;
 }
 
 /* Row `first + k` of the matrix of a node that slides, and its right-hand side: f - r(l) e = 0, e = t/|t| of the trial force t = f - q s,
-   times 1/q so that it has the unit of the other rows. Nothing is the force of a node that nothing moves across its normal. */
+   times 1/q so that it has the unit of the other rows. A node that nothing moves across its normal has no t but the way that it is dragged,
+   and no force where it is not. */
 static void SetSliding(FrictionSolver solver, const FrictionProblem *problem, PetscInt first, PetscInt k, PetscInt row, PetscInt n_in)
 {
   const PetscInt  dim = problem->dim, n = problem->n;
@@ -125,14 +147,18 @@ static void SetSliding(FrictionSolver solver, const FrictionProblem *problem, Pe
   PetscScalar    *matrix = solver->factor.values;
   PetscReal       size = 0, e[3] = {0};
 
-  if (q == 0) {
-    for (PetscInt j = 0; j < n_in; j++) matrix[j * n_in + row] = solver->in[j] == first + k ? problem->S[first * (n + 1)] : 0;
-    solver->rhs[row] = -problem->S[first * (n + 1)] * problem->force[first + k];
-    return;
-  }
   for (PetscInt l = 1; l < dim; l++) size += PetscSqr(PetscRealPart(solver->trial[first + l]));
   size = PetscSqrtReal(size);
-  for (PetscInt l = 1; l < dim; l++) e[l] = PetscRealPart(solver->trial[first + l]) / size;
+  for (PetscInt l = 1; l < dim && size > 0; l++) e[l] = PetscRealPart(solver->trial[first + l]) / size;
+  if (q == 0) {
+    const PetscReal c = PetscRealPart(problem->S[first * (n + 1)]);
+
+    if (problem->state[first / dim] != FRICTION_SLIDES) e[k] = 0;
+    for (PetscInt j = 0; j < n_in; j++)
+      matrix[j * n_in + row] = solver->in[j] == first + k ? c : solver->in[j] == first ? -c * coefficient * e[k] : 0;
+    solver->rhs[row] = c * (bound * e[k] - problem->force[first + k]);
+    return;
+  }
   for (PetscInt j = 0; j < n_in; j++) {
     const PetscInt column = solver->in[j];
     PetscScalar    value  = 0;
@@ -213,6 +239,12 @@ static PetscErrorCode SolveByNodes(FrictionSolver solver, const FrictionProblem 
         }
       }
       PetscCall(FrictionSolveNode(dim, S, open, limit, force));
+      if (Dragged(problem, solver->open, first) && force[0] > 0) {
+        PetscReal way = 0;
+
+        for (PetscInt k = 1; k < dim; k++) way += PetscSqr(open[k]);
+        for (PetscInt k = 1; k < dim; k++) force[k] = -PetscMax(limit[0] + limit[1] * force[0], 0) * open[k] / PetscSqrtReal(way);
+      }
       for (PetscInt k = 0; k < dim; k++) {
         const PetscReal step = force[k] - PetscRealPart(problem->force[first + k]);
 
@@ -238,18 +270,23 @@ PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem 
   PetscCall(MakeRoom(solver, problem->n));
   PetscCall(Open(problem, solver->rhs, solver->open));
   PetscCall(PetscArrayzero(solver->trial, problem->n));
-  (void)Judge(solver, problem);
+  (void)Judge(solver, problem, PETSC_FALSE);
   for (PetscInt step = 1; step <= NEWTON_MOST && !*solved; step++) {
     PetscCall(Step(solver, problem, &singular, &change));
-    changed = Judge(solver, problem);
+    changed = Judge(solver, problem, PETSC_FALSE);
     *solved = (PetscBool)(!singular && !changed && (problem->dim == 2 || change <= NEWTON_RTOL));
     if (singular || step == NEWTON_FIRST) {
       if (*by_nodes && singular) break;
       if (*solved) break;
       *by_nodes = PETSC_TRUE;
       PetscCall(SolveByNodes(solver, problem));
-      (void)Judge(solver, problem);
+      (void)Judge(solver, problem, PETSC_FALSE);
     }
+  }
+  for (PetscInt step = 0; step < ONE_BY_ONE_MOST && !*solved && problem->dim == 2; step++) {
+    PetscCall(Step(solver, problem, &singular, &change));
+    if (singular) break;
+    *solved = (PetscBool)!Judge(solver, problem, PETSC_TRUE);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -412,6 +412,7 @@ PetscErrorCode ContactStepByFriction(Contact contact)
   contact->ops->visit     = Visit;
   step->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
   step->problem.dim       = contact->dim;
+  step->problem.still     = step->atol;
   PetscCall(ForcesCreate(contact, &step->forces));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
   PetscCall(FrictionSolverCreate(&step->solver));

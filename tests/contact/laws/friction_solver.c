@@ -40,7 +40,7 @@ static void Fill(Problem *p, PetscInt dim, PetscReal coefficient, unsigned seed)
     p->force[i]  = p->base[i];
     p->limit[i]  = i % dim == 1 ? coefficient : 0;
   }
-  p->problem = (FrictionProblem){dim, n, p->S, p->opened, p->base, p->limit, p->force, p->state};
+  p->problem = (FrictionProblem){dim, n, p->S, p->opened, p->base, p->limit, p->force, p->state, 0};
   for (PetscInt node = 0; node < NODES; node++) p->state[node] = FRICTION_OPEN;
 }
 
@@ -103,6 +103,40 @@ static void law_holds(void **state)
   ok(FrictionSolverDestroy(&solver));
 }
 
+/* Every third node is held across its normal, and dragged past its partner by what nothing changes */
+static void law_holds_where_nodes_are_held(void **state)
+{
+  FrictionSolver solver;
+  Problem        p;
+  PetscInt       seen[3] = {0, 0, 0};
+  PetscBool      solved, by_nodes;
+
+  (void)state;
+  ok(FrictionSolverCreate(&solver));
+  for (PetscInt dim = 2; dim <= 3; dim++)
+    for (unsigned seed = 1; seed <= 40; seed++) {
+      const PetscInt n = dim * NODES;
+
+      Fill(&p, dim, 0.3, seed);
+      for (PetscInt node = 0; node < NODES; node += 3)
+        for (PetscInt i = node * dim + 1; i < (node + 1) * dim; i++)
+          for (PetscInt j = 0; j < n; j++) p.S[i * n + j] = p.S[j * n + i] = 0;
+      ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
+      assert_true(solved);
+      Open(&p);
+      for (PetscInt node = 0; node < NODES; node += 3) seen[CheckNode(&p, node)]++;
+    }
+  assert_true(seen[FRICTION_SLIDES] > 100 && seen[FRICTION_STICKS] == 0);
+  /* without a slip there is no force */
+  Fill(&p, 2, 0.3, 1);
+  for (PetscInt j = 0; j < 2 * NODES; j++) p.S[2 * NODES + j] = p.S[j * 2 * NODES + 1] = 0;
+  p.opened[0] = -1;
+  p.opened[1] = p.problem.still = 1e-12;
+  ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
+  assert_true(solved && p.force[0] > 0 && p.force[1] == 0 && p.state[0] == FRICTION_STICKS);
+  ok(FrictionSolverDestroy(&solver));
+}
+
 /* One node at a time: the same law */
 static void law_holds_at_a_node(void **state)
 {
@@ -132,7 +166,8 @@ static void law_holds_at_a_node(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(law_holds), cmocka_unit_test(law_holds_at_a_node)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(law_holds), cmocka_unit_test(law_holds_where_nodes_are_held),
+                                     cmocka_unit_test(law_holds_at_a_node)};
 
   return impakt_main(argc, argv, tests);
 }
