@@ -35,6 +35,7 @@ static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pa
   return contact->n_bodies + o;
 }
 
+PETSC_INTERN PetscErrorCode    ContactWarnOfStages(Contact, PetscBool);
 PETSC_INTERN PetscFunctionList ContactList, ContactLawList;
 
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);

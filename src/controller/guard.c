@@ -81,7 +81,7 @@ PetscErrorCode ControllerReadEnergyGuard(Controller controller)
 static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame, PetscReal gain)
 {
   PetscInt    body = 0, pair = 0;
-  const char *pair_name = "none", *body_name;
+  const char *pair_name = "none", *body_name, *always;
 
   PetscFunctionBegin;
   for (PetscInt b = 1; b < frame->n_bodies; b++)
@@ -92,6 +92,14 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
     if (PetscAbsReal(frame->pairs[p].force) > PetscAbsReal(frame->pairs[pair].force)) pair = p;
   if (frame->n_pairs) PetscCall(ContactGetPair(controller->contact, pair, &pair_name, NULL, NULL));
   PetscCall(PetscObjectGetName((PetscObject)controller->bodies[body], &body_name));
+  PetscCall(ContactGetUnlimitedReason(controller->contact, &always, NULL));
+  PetscCheck(
+      !always, PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
+      "The energy has grown by %.3g %% at time %.9g s (controller step %" PetscInt_FMT
+      "), most of it in body '%s'; the pair with the largest force is %s. Contact cannot be kept from it here, since %s: let contact "
+      "nodes be massless (-<body>_mass_redistribute true), or choose a smaller -time_step; -energy_guard %g ends runs that gain more "
+      "than this part of their energy, 0 none",
+      (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, always, (double)controller->guard.part);
   SETERRQ(PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
           "The energy has grown by %.3g %% at time %.9g s (controller step %" PetscInt_FMT
           "), most of it in body '%s'; the pair with the largest force is %s. Choose a smaller -time_step, or let "

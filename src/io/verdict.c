@@ -31,7 +31,7 @@ static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
 static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const StatisticsResults *results, Verdict *verdict)
 {
   const PetscReal worst  = -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
-  const char     *reason = NULL;
+  const char     *reason = NULL, *always = NULL;
   ContactCounts   counts;
   ControllerCuts  cuts;
 
@@ -41,10 +41,16 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   if (!(PetscAbsReal(worst) <= ENERGY_ERROR))
     PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst; a smaller -time_step, or -time_step auto, makes it less",
                   (double)(100 * worst)));
-  PetscCall(ContactGetUnlimitedReason(contact, NULL, &reason));
+  PetscCall(ContactGetUnlimitedReason(contact, &always, &reason));
   if (reason && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or -schwarz_transmission dirichlet_neumann",
                   (double)(100 * results->momentum_error_max), reason));
+  else if (always && results->momentum_scale > 0 && results->momentum_error_max > MOMENTUM_ERROR)
+    PetscCall(
+        Add(verdict,
+            "the momentum error is %.3g %%, and contact may lose some, since %s; massless contact nodes (-<body>_mass_redistribute, the "
+            "default) keep it",
+            (double)(100 * results->momentum_error_max), always));
   else if (results->momentum_scale > 0 && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(Add(verdict,
                   "the momentum error is %.3g %%, as where round-off of a body's stiffness hides its mass: check units and constants of "

@@ -255,3 +255,46 @@ PetscErrorCode ContactGetEnergyCap(Contact contact, PetscBool *cap, PetscReal *e
   if (excess) *excess = contact->energy.excess;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Where in a substep the inertia and the forces of a body are in balance: alpha_m and alpha_f of the generalised-alpha method, 1 and 1 for
+   others */
+static PetscErrorCode GetStage(Body body, PetscReal stage[2])
+{
+  PetscBool is_static, is_explicit;
+  TS        ts;
+
+  PetscFunctionBegin;
+  stage[0] = stage[1] = 1;
+  PetscCall(BodyIsStatic(body, &is_static));
+  PetscCall(BodyIsExplicit(body, &is_explicit));
+  if (is_static || is_explicit) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetTS(body, &ts));
+  PetscCall(TSAlpha2GetParams(ts, &stage[0], &stage[1], NULL, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says for which pairs forces act at different times of a step on both bodies, or, of ties whose displacements the method prescribes on
+   nodes with mass, at times inside a step */
+PetscErrorCode ContactWarnOfStages(Contact contact, PetscBool of_ties)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const char        *name;
+    PetscReal          stage[2][2];
+    PetscBool          differ, between;
+
+    if (pair->obstacle) continue;
+    for (PetscInt side = 0; side < 2; side++) PetscCall(GetStage(contact->bodies[pair->body[side]], stage[side]));
+    differ  = (PetscBool)(stage[0][0] != stage[1][0] || stage[0][1] != stage[1][1]);
+    between = (PetscBool)(pair->keeps_mass && !(stage[0][0] == stage[0][1] && (stage[0][0] == 1 || stage[0][0] == 0.5)));
+    if (of_ties ? differ || !between : !differ) continue;
+    PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
+                           "impakt: warning: %s: -<body>_ts_alpha_... lets forces act at %s, so that energy and momentum at contact have "
+                           "errors of first order in the step; %s\n",
+                           name, of_ties ? "times inside a step on tied nodes with mass" : "different times of a step on both bodies",
+                           of_ties ? "choose -schwarz_transmission robin, or a radius of 1" : "give both bodies the same parameters"));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

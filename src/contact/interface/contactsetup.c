@@ -133,6 +133,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
   StatusLineTell("contact method");
+  PetscCall(ContactWarnOfStages(contact, PETSC_FALSE));
   PetscCall(ContactSetUpFloating(contact));
   PetscCall(ContactSetUpObstacleTraces(contact));
   PetscCall(ContactSetUpResultants(contact));

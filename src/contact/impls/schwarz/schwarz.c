@@ -119,6 +119,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
              "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
   PetscCall(SchwarzChooseMode(contact));
+  if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscCall(ContactWarnOfStages(contact, PETSC_TRUE));
   PetscCall(SchwarzSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
   PetscCall(SchwarzSetUpTransmission(contact));
