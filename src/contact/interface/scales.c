@@ -52,10 +52,18 @@ static PetscErrorCode GetElementForce(Body body, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A tolerance of gaps that is a larger part of a body decides itself when bodies touch: it is 3e-12 of the largest, so that one would be
+   3e7 times the other */
+#define LARGEST_TOLERANCE 1e-4
+
 /* Of bodies with meshes and materials, which need not be set up. The smallest values of all bodies: what is small beside the least of them
    is small beside the others. */
 PetscErrorCode ContactSetUpScales(Contact contact)
 {
+  const PetscReal tolerance = contact->options.tolerance;
+  PetscReal       largest   = 0;
+  const char     *small = "", *large = "";
+
   PetscFunctionBegin;
   contact->scale.length = contact->scale.force = PETSC_MAX_REAL;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -63,9 +71,18 @@ PetscErrorCode ContactSetUpScales(Contact contact)
 
     PetscCall(GetExtent(contact->bodies[b], &extent));
     PetscCall(GetElementForce(contact->bodies[b], &force));
+    if (extent < contact->scale.length) small = ((PetscObject)contact->bodies[b])->name;
+    if (extent > largest) large = ((PetscObject)contact->bodies[b])->name;
+    largest               = PetscMax(largest, extent);
     contact->scale.length = PetscMin(contact->scale.length, extent);
     contact->scale.force  = PetscMin(contact->scale.force, force);
   }
+  PetscCheck(
+      !contact->n_pairs || tolerance <= LARGEST_TOLERANCE * contact->scale.length, PetscObjectComm((PetscObject)contact),
+      PETSC_ERR_USER_INPUT,
+      "Gaps count as closed to %g m (-contact_tolerance), but body '%s' is %g m large altogether, and '%s' %g m: bodies that meet must "
+      "not differ in size so much. Check their units, -%s_scale and -%s_scale",
+      (double)tolerance, small, (double)contact->scale.length, large, (double)largest, small, large);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
