@@ -117,7 +117,7 @@ static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *
     if (!PetscIsInfOrNanReal(frame->bodies[b].kinetic + frame->bodies[b].potential)) continue;
     PetscCall(PetscObjectGetName((PetscObject)controller->bodies[b], &name));
     SETERRQ(PetscObjectComm((PetscObject)controller), PETSC_ERR_FP,
-            "The energy of body '%s' is not finite at time %.9g s (controller step %" PetscInt_FMT
+            "The energy of body '%s' is not a number at time %.9g s (controller step %" PetscInt_FMT
             "): its velocity or displacement is out of all proportion. Check units and formulas of -%s_initial_velocity, "
             "-%s_initial_displacement, and of its loads",
             name, (double)frame->time, frame->step, name, name);
