@@ -82,7 +82,7 @@ def test_momentum_that_contact_loses(impakt):
     """Nodes with mass that are prescribed lose 1 % of it, whatever the step: the cause is named."""
     run = impakt(joined(BLOCKS, NO_LAYER))
     assert run.summary["system"]["momentum_error_max"] == pytest.approx(9.77e-3, rel=1e-2)
-    assert "contact may lose some, since nodes with mass take velocity and acceleration from their partner" in warnings(run)[-1]
+    assert any("contact may lose some, since nodes with mass take velocity and acceleration from their partner" in text for text in warnings(run))
 
 
 def test_guard_where_contact_is_not_limited(impakt):
