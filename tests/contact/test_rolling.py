@@ -24,7 +24,7 @@ def rate(time, values):
 
 def check_balance(run):
     """Of angular momentum about the origin, between what gravity and the plane have done in the last half; and of energy."""
-    time, x, v, spin = motion(run)
+    time, x, _, _ = motion(run)
     (name,) = run.history["contact"]
     late = slice(-len(time), None)
     moment = MASS * G * (-x[:, 0] * np.cos(TILT) - x[:, 1] * np.sin(TILT)) - run.history[f"contact/{name}/moment"][late, 2]
@@ -36,7 +36,7 @@ def check_balance(run):
 @pytest.mark.long
 def test_rolls(shared_run):
     run = shared_run("-options_file options/rolling-disc.opts")
-    time, x, v, spin = motion(run)
+    time, _, v, spin = motion(run)
     a = rate(time, v[:, 0])
     assert a == pytest.approx(2 / 3 * G * np.sin(TILT), rel=1e-2)  # measured: -5.2e-3, with 24 divisions too: the disc sinks in by 0.9 % of R
     assert -R * rate(time, spin) == pytest.approx(a, rel=1e-2)  # measured: -1.2e-3
