@@ -23,8 +23,11 @@
 /* Rounds of nodes that are solved one after another, and the change of forces at which these end, relative to the largest */
 #define ROUNDS_MOST 4000
 #define ROUNDS_RTOL 1e-13
-/* Newton's method ends where forces change by this part of the largest, with states as they were */
-#define NEWTON_RTOL 1e-14
+/* Newton's method ends where forces change by this part of the largest, with states as they were; or where the round-off of the factors,
+   below the second of these, keeps changes from falling any more: by less than the factor, while Newton's method squares them */
+#define NEWTON_RTOL      1e-14
+#define NEWTON_ROUND_OFF 1e-10
+#define NEWTON_FALLS     0.1
 
 struct _n_FrictionSolver {
   PetscInt     room;
@@ -263,7 +266,7 @@ static PetscErrorCode SolveByNodes(FrictionSolver solver, const FrictionProblem 
 PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem *problem, PetscBool *solved, PetscBool *by_nodes)
 {
   PetscBool changed, singular;
-  PetscReal change = 0;
+  PetscReal change = PETSC_MAX_REAL;
 
   PetscFunctionBegin;
   *solved = *by_nodes = PETSC_FALSE;
@@ -272,9 +275,11 @@ PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem 
   PetscCall(PetscArrayzero(solver->trial, problem->n));
   (void)Judge(solver, problem, PETSC_FALSE);
   for (PetscInt step = 1; step <= NEWTON_MOST && !*solved; step++) {
+    const PetscReal last = change;
+
     PetscCall(Step(solver, problem, &singular, &change));
     changed = Judge(solver, problem, PETSC_FALSE);
-    *solved = (PetscBool)(!singular && !changed && (problem->dim == 2 || change <= NEWTON_RTOL));
+    *solved = (PetscBool)(!singular && !changed && (problem->dim == 2 || change <= NEWTON_RTOL || (change <= NEWTON_ROUND_OFF && change > NEWTON_FALLS * last)));
     if (singular || step == NEWTON_FIRST) {
       if (*by_nodes && singular) break;
       if (*solved) break;
