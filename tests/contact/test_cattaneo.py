@@ -1,0 +1,45 @@
+"""Equal bodies pressed together and pushed across, against Cattaneo and Mindlin: what sticks, tractions, what a loop loses. plots/cattaneo.py has the formulas."""
+
+import os
+import sys
+
+import cattaneo
+import numpy as np
+import pytest
+from conftest import ROOT
+
+CYLINDERS = "-options_file options/cattaneo-cylinders.opts"
+OTHER, SWAPPED = "-lower_ball_divisions 48", "-contact_pairs lower.surface:upper.surface"
+
+
+def read(run):
+    return cattaneo.Run(run.folder / "history.h5")
+
+
+def errors(run, step):
+    """How far both ends of what sticks, half way between the last node that does and the next one, are from c, in elements; and of tractions, by mu p0, the
+    largest error and the root mean square."""
+    x, along, slides, element = run.nodes(step)
+    sticks = np.flatnonzero(~slides)
+    assert len(sticks) == sticks[-1] - sticks[0] + 1  # all between the ends
+    ends = 0.5 * (x[sticks[[0, -1]]] + x[sticks[[0, -1]] + [-1, 1]])
+    off = along - cattaneo.traction(2, x, run.q[step])
+    return np.abs(np.abs(ends) - cattaneo.stick(2, run.q[step])).max() / element, np.abs(off).max(), np.sqrt(np.mean(off**2)), element
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("options", ["", OTHER, f"{OTHER} {SWAPPED}"])
+def test_cylinders(options, shared_run):
+    """In each of the 20 steps in which the force across grows."""
+    run = read(shared_run(f"{CYLINDERS} {options}"))
+    pushed = np.flatnonzero(run.time > 0.51)
+    assert len(pushed) == 20
+    assert run.a[-1] < run.radius / 10 and run.q[-1] == pytest.approx(0.91, abs=0.02)
+    assert np.ptp(run.load[pushed]) <= 1e-3 * run.load[-1]  # what is pushed across bears what it bore
+    for step in pushed[run.q[pushed] > 0.2]:  # more than an element slides at either end
+        end, most, rms, element = errors(run, step)
+        assert 12 <= 1 / element < 17
+        assert end <= 1  # measured: 0.55, 0.84, 0.72
+        assert rms <= 0.03  # measured: 0.012, 0.024, 0.020
+        assert most <= 0.12  # at c, where theory has a corner. Measured: 0.055, 0.102, 0.046
+    assert run.loss[-1] > 0
