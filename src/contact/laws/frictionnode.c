@@ -89,17 +89,19 @@ static PetscBool FindDirection(const PetscReal S[], const PetscReal open[], cons
    columns. Where a large coefficient leaves no solution, the node sticks. */
 PetscErrorCode FrictionSolveNode(PetscInt dim, const PetscReal S[], const PetscReal open[], const PetscReal limit[], PetscReal force[])
 {
+  PetscInt  held = 0;
   PetscBool found;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < dim; k++) force[k] = 0;
   if (open[0] >= 0 || S[0] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 1; k < dim; k++)
-    if (S[k * dim + k] <= 0) { /* nothing moves it across the normal */
-      force[0] = -open[0] / S[0];
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-  found = Sticks(dim, S, open, limit, force);
+  for (PetscInt k = 1; k < dim; k++) held += S[k * dim + k] <= 0;
+  if (held == dim - 1) { /* nothing moves it across the normal */
+    force[0] = -open[0] / S[0];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /* one that is held in one direction, where it is dragged, slides */
+  found = held ? PETSC_FALSE : Sticks(dim, S, open, limit, force);
   if (!found && dim == 3) found = FindDirection(S, open, limit, force);
   for (PetscInt sign = -1; sign <= 1 && dim == 2 && !found; sign += 2) {
     const PetscReal e[3] = {0, (PetscReal)sign, 0};
@@ -107,7 +109,7 @@ PetscErrorCode FrictionSolveNode(PetscInt dim, const PetscReal S[], const PetscR
 
     found = (PetscBool)(Slides(2, S, open, limit, e, force, slip) && slip[0] <= 0);
   }
-  if (!found) (void)Sticks(dim, S, open, limit, force);
+  if (!found && !held) (void)Sticks(dim, S, open, limit, force);
   force[0] = PetscMax(force[0], 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,6 +29,9 @@
 #define NEWTON_ROUND_OFF 1e-10
 #define NEWTON_FALLS     0.1
 
+/* A row is held whose compliance is this part of that of the other row across the normal: round-off */
+#define HELD 1e-14
+
 struct _n_FrictionSolver {
   PetscInt     room;
   DenseFactor  factor;
@@ -92,13 +95,20 @@ static PetscReal Stiffness(const FrictionProblem *problem, PetscInt first, Petsc
   return most > 0 ? 1 / most : 0;
 }
 
-/* Whether nothing moves the node across its normal, and it is dragged past its partner all the same: what holds it bears the friction */
+/* Whether no force moves the node along its row `first + k`, since it is held there, as in a plane of symmetry */
+static PetscBool Immovable(const FrictionProblem *problem, PetscInt first, PetscInt k)
+{
+  return (PetscBool)(PetscRealPart(problem->S[(first + k) * (problem->n + 1)]) * Stiffness(problem, first, 1, problem->dim) <= HELD);
+}
+
+/* Whether the node is dragged past its partner where nothing moves it across its normal: what holds it bears the friction */
 static PetscBool Dragged(const FrictionProblem *problem, const PetscScalar open[], PetscInt first)
 {
   PetscReal square = 0;
 
-  for (PetscInt k = 1; k < problem->dim; k++) square += PetscSqr(PetscRealPart(open[first + k]));
-  return (PetscBool)(Stiffness(problem, first, 1, problem->dim) == 0 && square > PetscSqr(problem->still));
+  for (PetscInt k = 1; k < problem->dim; k++)
+    if (Immovable(problem, first, k)) square += PetscSqr(PetscRealPart(open[first + k]));
+  return (PetscBool)(square > PetscSqr(problem->still));
 }
 
 /* States from forces and what rows open by, with trial forces across the normal; whether any has changed, or the way that a node slides has
@@ -120,7 +130,7 @@ static PetscBool Judge(FrictionSolver solver, const FrictionProblem *problem, Pe
     const PetscBool dragged = Dragged(problem, solver->open, first);
 
     for (PetscInt k = 1; k < dim; k++) {
-      const PetscScalar trial = dragged ? -solver->open[first + k] : problem->force[first + k] - q * solver->open[first + k];
+      const PetscScalar trial = dragged && q == 0 ? -solver->open[first + k] : problem->force[first + k] - q * solver->open[first + k];
 
       along += PetscRealPart(trial * solver->trial[first + k]);
       square += PetscSqr(PetscRealPart(trial));
@@ -198,6 +208,14 @@ static PetscErrorCode Step(FrictionSolver solver, const FrictionProblem *problem
   for (PetscInt row = 0; row < n_in; row++) {
     const PetscInt i = solver->in[row], first = i - i % dim;
 
+    /* a node that is held in one direction across its normal, and not dragged there, has no friction in that direction */
+    if (i > first && Immovable(problem, first, i - first) && !Dragged(problem, solver->open, first)) {
+      const PetscScalar c = problem->S[first * (n + 1)];
+
+      for (PetscInt j = 0; j < n_in; j++) solver->factor.values[j * n_in + row] = j == row ? c : 0;
+      solver->rhs[row] = -c * problem->force[i];
+      continue;
+    }
     if (i > first && (problem->state[i / dim] == FRICTION_SLIDES || Stiffness(problem, first, 1, dim) == 0)) {
       SetSliding(solver, problem, first, i - first, row, n_in);
       continue;
@@ -217,6 +235,27 @@ static PetscErrorCode Step(FrictionSolver solver, const FrictionProblem *problem
   }
   *change = largest > 0 ? most / largest : 0;
   PetscCall(Open(problem, solver->rhs, solver->open));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces of one node. One that is held in one of two directions across its normal, and not dragged there, is one in the plane. */
+static PetscErrorCode SolveNode(const FrictionProblem *problem, PetscInt first, PetscBool dragged, const PetscReal S[], const PetscReal open[],
+                                const PetscReal limit[], PetscReal force[])
+{
+  const PetscBool held[2] = {Immovable(problem, first, 1), (PetscBool)(problem->dim > 2 && Immovable(problem, first, 2))};
+  const PetscInt  moves   = held[0] && problem->dim > 2 ? 2 : 1;
+  const PetscReal S_plane[4] = {S[0], S[moves], S[problem->dim * moves], S[problem->dim * moves + moves]}, open_plane[2] = {open[0], open[moves]};
+  PetscReal       force_plane[2];
+
+  PetscFunctionBegin;
+  if (problem->dim == 2 || dragged || held[0] == held[1]) {
+    PetscCall(FrictionSolveNode(problem->dim, S, open, limit, force));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(FrictionSolveNode(2, S_plane, open_plane, limit, force_plane));
+  force[0]         = force_plane[0];
+  force[moves]     = force_plane[1];
+  force[3 - moves] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,8 +280,8 @@ static PetscErrorCode SolveByNodes(FrictionSolver solver, const FrictionProblem 
           open[k] -= S[l * dim + k] * PetscRealPart(problem->force[first + l]);
         }
       }
-      PetscCall(FrictionSolveNode(dim, S, open, limit, force));
-      if (Dragged(problem, solver->open, first) && force[0] > 0) {
+      PetscCall(SolveNode(problem, first, Dragged(problem, solver->open, first), S, open, limit, force));
+      if (Stiffness(problem, first, 1, dim) == 0 && Dragged(problem, solver->open, first) && force[0] > 0) {
         PetscReal way = 0;
 
         for (PetscInt k = 1; k < dim; k++) way += PetscSqr(open[k]);

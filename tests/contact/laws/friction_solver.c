@@ -137,6 +137,41 @@ static void law_holds_where_nodes_are_held(void **state)
   ok(FrictionSolverDestroy(&solver));
 }
 
+/* Every third node is held in one of two directions across its normal, as in a plane of symmetry: dragged there in every second problem, and
+   without friction there in the others */
+static void law_holds_where_nodes_are_held_in_one_direction(void **state)
+{
+  const PetscInt dim = 3, n = dim * NODES;
+  FrictionSolver solver;
+  Problem        p;
+  PetscInt       seen[2][3] = {{0}};
+  PetscBool      solved, by_nodes;
+
+  (void)state;
+  ok(FrictionSolverCreate(&solver));
+  for (unsigned seed = 1; seed <= 80; seed++) {
+    const PetscInt dragged = seed % 2;
+
+    Fill(&p, dim, 0.3, seed);
+    for (PetscInt node = 0; node < NODES; node += 3) {
+      const PetscInt i = node * dim + 1 + (PetscInt)(seed / 2) % 2;
+
+      for (PetscInt j = 0; j < n; j++) p.S[i * n + j] = p.S[j * n + i] = 0;
+      if (!dragged) p.opened[i] = 0;
+    }
+    ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
+    assert_true(solved);
+    Open(&p);
+    for (PetscInt node = 0; node < NODES; node += 3) {
+      seen[dragged][CheckNode(&p, node)]++;
+      if (!dragged) assert_true(p.force[node * dim + 1 + (PetscInt)(seed / 2) % 2] == 0);
+    }
+  }
+  assert_true(seen[0][FRICTION_SLIDES] > 20 && seen[0][FRICTION_STICKS] > 20);
+  assert_true(seen[1][FRICTION_SLIDES] > 40 && seen[1][FRICTION_STICKS] == 0);
+  ok(FrictionSolverDestroy(&solver));
+}
+
 /* One node at a time: the same law */
 static void law_holds_at_a_node(void **state)
 {
@@ -167,7 +202,7 @@ static void law_holds_at_a_node(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(law_holds), cmocka_unit_test(law_holds_where_nodes_are_held),
-                                     cmocka_unit_test(law_holds_at_a_node)};
+                                     cmocka_unit_test(law_holds_where_nodes_are_held_in_one_direction), cmocka_unit_test(law_holds_at_a_node)};
 
   return impakt_main(argc, argv, tests);
 }
