@@ -250,6 +250,7 @@ typedef struct {
   PetscInt  tries;     /* of this stage */
   PetscBool done;      /* the last attempt is the step */
   PetscBool returned;  /* it has been looked for between the last two halves already */
+  PetscInt  in_vain;   /* halves in succession that have brought far too little */
   PetscReal part;      /* of the force that leaving rows start with in the last attempt, or of the way back to the half before */
   PetscReal low, high; /* parts with which the energy stays within the room, and does not */
   PetscReal gain[2];   /* energy that contact has brought with them [J] */

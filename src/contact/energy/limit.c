@@ -24,6 +24,9 @@
 /* Attempts that look for s, beside s = 0, and for x */
 #define MAX_PARTS  6
 #define MAX_HALVES 40
+/* Attempts by halves in succession each of which brings less than this part, inversely, of what is still too much: the last ones */
+#define IN_VAIN     4
+#define MAX_IN_VAIN 3
 /* s is good where what is left of the room is below this part of what has been too much */
 #define PART_LEFT 0.05
 /* Energy that is round-off of the step's energies, in parts of the energy of the run */
@@ -224,8 +227,12 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
     if (search->low < 0 && too_much) PetscCall(TakeMoreAway(contact, g));
     else LookBetween(contact, g, ContactGroupRoom(contact, g), StartWithPart);
   } else if (search->stage == 2 && too_much) {
+    const PetscReal less = search->gain[1] - gain;
+
+    /* what halves do is halved each time: this is far from enough, since the energy is not that of contact */
+    search->in_vain = gain - PetscMax(ContactGroupRoom(contact, g), 0) > IN_VAIN * PetscAbsReal(less) ? search->in_vain + 1 : 0;
     search->gain[1] = gain;
-    if (search->tries < MAX_HALVES) StartHalfWay(contact, g);
+    if (search->tries < MAX_HALVES && search->in_vain < MAX_IN_VAIN) StartHalfWay(contact, g);
     else search->done = PETSC_TRUE;
   } else if (search->stage == 2 && !search->returned) {
     *search = (ContactSearch){.stage = 3, .high = 1, .gain = {gain, search->gain[1]}, .returned = PETSC_TRUE};
@@ -332,9 +339,12 @@ static PetscErrorCode Attempt(Contact contact)
    gains comes before that. */
 static PetscErrorCode AttemptWithFriction(Contact contact)
 {
+  PetscBool in_vain = PETSC_FALSE;
+
   PetscFunctionBegin;
-  for (PetscInt turn = 0; turn < MAX_TURNS && AnyGainsTooMuch(contact); turn++) {
+  for (PetscInt turn = 0; turn < MAX_TURNS && !in_vain && AnyGainsTooMuch(contact); turn++) {
     PetscCall(Attempt(contact));
+    for (PetscInt g = 0; g < contact->n_bodies; g++) in_vain = (PetscBool)(in_vain || contact->energy.search[g].in_vain == MAX_IN_VAIN);
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     if (turn < MAX_TURNS - 1) PetscCall(LimitFriction(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
