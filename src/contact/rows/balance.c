@@ -53,7 +53,7 @@ PetscErrorCode ContactSetBalance(Contact contact, PetscBool balance)
 }
 
 /*@
-  ContactSetAutomaticBalance - whether forces have the same sum along the normals of both sides of a pair follows from the bodies, the default
+  ContactSetAutomaticBalance - lets the set-up choose whether forces have the same sum along the normals of both sides of a pair; the default
 
   Logically Collective
 
