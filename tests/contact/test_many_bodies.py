@@ -67,6 +67,19 @@ def test_ten_balls(shared_run):
 
 
 @pytest.mark.long
+def test_ten_balls_with_friction(shared_run):
+    """They come to rest by damping, which takes what friction leaves; neither brings energy."""
+    run = shared_run("-options_file options/ten-balls-friction.opts -output_fields_interval 1000")
+    contact, system = run.summary["contact"], run.summary["system"]
+    kinetic = sum(body["kinetic"][()] for body in run.history["body"].values())
+    assert kinetic[-1] <= 1e-4 * kinetic.max()  # measured: 2e-9
+    assert -0.02 <= system["energy_error_min"] and system["energy_error_max"] <= 1e-4  # measured: -0.0123, 1.8e-5
+    assert contact["friction_loss"] > 50  # [J]
+    assert contact["friction_least"] >= -1e-7 * kinetic.max()  # measured: -7e-8 J of 68 J
+    assert run.summary["schwarz"]["unlimited_steps"] == 0
+
+
+@pytest.mark.long
 def test_ten_balls_explicit(shared_run):
     """Bodies with substeps. The longer step loses much where contacts begin, but must not gain where they end: 1.4e-3 if forces fade over the whole
     step while rows open. Nor may a row that is pulled when held and penetrates when not end the rounds for all others, which left discs 6.6e-4 m deep (a_row_that_flips

@@ -239,12 +239,13 @@ static PetscErrorCode Step(FrictionSolver solver, const FrictionProblem *problem
 }
 
 /* The forces of one node. One that is held in one of two directions across its normal, and not dragged there, is one in the plane. */
-static PetscErrorCode SolveNode(const FrictionProblem *problem, PetscInt first, PetscBool dragged, const PetscReal S[], const PetscReal open[],
-                                const PetscReal limit[], PetscReal force[])
+static PetscErrorCode SolveNode(const FrictionProblem *problem, PetscInt first, PetscBool dragged, const PetscReal S[],
+                                const PetscReal open[], const PetscReal limit[], PetscReal force[])
 {
-  const PetscBool held[2] = {Immovable(problem, first, 1), (PetscBool)(problem->dim > 2 && Immovable(problem, first, 2))};
-  const PetscInt  moves   = held[0] && problem->dim > 2 ? 2 : 1;
-  const PetscReal S_plane[4] = {S[0], S[moves], S[problem->dim * moves], S[problem->dim * moves + moves]}, open_plane[2] = {open[0], open[moves]};
+  const PetscBool held[2]       = {Immovable(problem, first, 1), (PetscBool)(problem->dim > 2 && Immovable(problem, first, 2))};
+  const PetscInt  moves         = held[0] && problem->dim > 2 ? 2 : 1;
+  const PetscReal S_plane[4]    = {S[0], S[moves], S[problem->dim * moves], S[problem->dim * moves + moves]},
+                  open_plane[2] = {open[0], open[moves]};
   PetscReal       force_plane[2];
 
   PetscFunctionBegin;
@@ -318,7 +319,8 @@ PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem 
 
     PetscCall(Step(solver, problem, &singular, &change));
     changed = Judge(solver, problem, PETSC_FALSE);
-    *solved = (PetscBool)(!singular && !changed && (problem->dim == 2 || change <= NEWTON_RTOL || (change <= NEWTON_ROUND_OFF && change > NEWTON_FALLS * last)));
+    *solved = (PetscBool)(!singular && !changed &&
+                          (problem->dim == 2 || change <= NEWTON_RTOL || (change <= NEWTON_ROUND_OFF && change > NEWTON_FALLS * last)));
     if (singular || step == NEWTON_FIRST) {
       if (*by_nodes && singular) break;
       if (*solved) break;

@@ -137,8 +137,8 @@ static void law_holds_where_nodes_are_held(void **state)
   ok(FrictionSolverDestroy(&solver));
 }
 
-/* Every third node is held in one of two directions across its normal, as in a plane of symmetry: dragged there in every second problem, and
-   without friction there in the others */
+/* Every third node is held in one of two directions across its normal, as in a plane of symmetry: dragged there in every second problem,
+   and without friction there in the others */
 static void law_holds_where_nodes_are_held_in_one_direction(void **state)
 {
   const PetscInt dim = 3, n = dim * NODES;
@@ -202,7 +202,8 @@ static void law_holds_at_a_node(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(law_holds), cmocka_unit_test(law_holds_where_nodes_are_held),
-                                     cmocka_unit_test(law_holds_where_nodes_are_held_in_one_direction), cmocka_unit_test(law_holds_at_a_node)};
+                                     cmocka_unit_test(law_holds_where_nodes_are_held_in_one_direction),
+                                     cmocka_unit_test(law_holds_at_a_node)};
 
   return impakt_main(argc, argv, tests);
 }
