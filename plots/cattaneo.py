@@ -46,7 +46,7 @@ def loop_loss(friction, a, compliance, q):
 
         delta = 3 F S / (16 a) (2 (1 - (q* - q) / 2)^(2/3) - (1 - q*)^(2/3) - 1),
 
-    both ways, which is that of the issue's and of Johnson's section 7.4, whose (2 - nu) / (4 G) has the factor 18/5 for 9/10."""
+    both ways."""
     return 0.9 * friction**2 / a * compliance * (1 - (1 - q) ** (5 / 3) - 5 / 6 * q * (1 + (1 - q) ** (2 / 3)))
 
 
