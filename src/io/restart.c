@@ -68,8 +68,8 @@ PetscErrorCode OutputSetRestart(Output output, const char path[], PetscBool allo
   Level: beginner
 
   Notes:
-  The run begins at its own start, with its own loads, integrators and contact method, and on any number of ranks. Displacements and
-  velocities are those of the checkpoint, but for velocities of bodies without inertia, which begin with their own; then ties, gaps and
+  The run begins at its own start, with its own loads, integrators and contact method, and on any number of ranks. Displacements, the
+  history of plastic materials and velocities are those of the checkpoint, but for velocities of bodies without inertia, which begin with their own; then ties, gaps and
   the balance of massless nodes are found as at any start, so that a preload is there from the first step on. Bodies that the checkpoint
   does not have begin as their options say.
 
@@ -166,7 +166,7 @@ static PetscErrorCode Restart(Output output)
     PetscCall(PetscFPrintf(comm, stderr, "impakt: there is no checkpoint %s yet: the run begins at its start\n", c->restart));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(CheckpointFileOpen(comm, path, &file));
+  PetscCall(CheckpointFileOpen(comm, "-restart", path, &file));
   PetscCall(OutputCompareOptions(comm, file.info.options, c->allow_changes, path));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(Load(output, &file, (PetscBool)(file.info.ranks == size)));
