@@ -141,11 +141,12 @@ static PetscErrorCode CheckFaces(MPI_Comm comm, Exact exact, const Body sides[2]
     }
     size = PetscMax(ends[0][1] - ends[0][0], ends[1][1] - ends[1][0]);
     for (PetscInt e = 0; e < 2; e++)
-      PetscCheck(PetscAbsReal(ends[0][e] - ends[1][e]) <= SAME_FACE * size, comm, PETSC_ERR_USER_INPUT,
-                 "-exact %s needs bars that meet with the whole of their end faces, but along (%g, %g, %g) '%s' ends at %g m and '%s' at %g "
-                 "m; move or resize one of them, or leave -exact out",
-                 exact->type, (double)across[0], (double)across[1], (double)across[2], exact->bars[0].name, (double)ends[0][e],
-                 exact->bars[1].name, (double)ends[1][e]);
+      PetscCheck(
+          PetscAbsReal(ends[0][e] - ends[1][e]) <= SAME_FACE * size, comm, PETSC_ERR_USER_INPUT,
+          "-exact %s needs bars that meet with the whole of their end faces, but along (%g, %g, %g) '%s' ends at %g m and '%s' at %g "
+          "m; move or resize one of them, or leave -exact out",
+          exact->type, (double)across[0], (double)across[1], (double)across[2], exact->bars[0].name, (double)ends[0][e],
+          exact->bars[1].name, (double)ends[1][e]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,8 +182,8 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
   PetscCall(CheckFaces(comm, exact, sides));
   PetscCall(ContactGetLaw(contact, &law));
   PetscCheck(law != CONTACT_LAW_TIED && law != CONTACT_LAW_BONDED, comm, PETSC_ERR_USER_INPUT,
-             "-exact %s is known for bars that part again, and -contact_law %s does not let them; leave one of the options out", exact->type,
-             law == CONTACT_LAW_TIED ? "tied" : "bonded");
+             "-exact %s is known for bars that part again, and -contact_law %s does not let them; leave one of the options out",
+             exact->type, law == CONTACT_LAW_TIED ? "tied" : "bonded");
   PetscCall(ControllerGetTimes(controller, &exact->start, NULL, NULL));
   exact->frame_velocity  = (bars[0].mass * bars[0].velocity + bars[1].mass * bars[1].velocity) / (bars[0].mass + bars[1].mass);
   exact->impact          = exact->start + (bars[1].lower - bars[0].upper) / (bars[0].velocity - bars[1].velocity);

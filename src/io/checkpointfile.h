@@ -23,7 +23,7 @@ typedef struct {
 /* A checkpoint that is being read, on rank 0 */
 typedef struct {
   CheckpointInfo info;
-  PetscInt64     file; /* HDF5's handle; -1 on other ranks */
+  PetscInt64     file;   /* HDF5's handle; -1 on other ranks */
   const char    *option; /* that names it */
   char           path[PETSC_MAX_PATH_LEN];
 } CheckpointFile;

@@ -125,8 +125,8 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
   PetscCall(CheckpointFileGetPrevious(path, sizeof(previous), previous));
   other = (PetscBool)!access(previous, F_OK);
   PetscCall(CheckWhole(path, &why));
-  PetscCheck(!why, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s %s: the run cannot be continued from it, since %s%s%s%s", checkpoint->option, path, why,
-             other ? "; the checkpoint before it is " : "", other ? previous : "", other ? ": give that" : "");
+  PetscCheck(!why, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s %s: the run cannot be continued from it, since %s%s%s%s", checkpoint->option,
+             path, why, other ? "; the checkpoint before it is " : "", other ? previous : "", other ? ": give that" : "");
   checkpoint->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   PetscCheck(checkpoint->file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "%s %s: HDF5 cannot open it", checkpoint->option, path);
   PetscCall(ReadNumber(checkpoint, "checkpoint", H5T_NATIVE_INT, &format));

@@ -69,9 +69,9 @@ PetscErrorCode OutputSetRestart(Output output, const char path[], PetscBool allo
 
   Notes:
   The run begins at its own start, with its own loads, integrators and contact method, and on any number of ranks. Displacements, the
-  history of plastic materials and velocities are those of the checkpoint, but for velocities of bodies without inertia, which begin with their own; then ties, gaps and
-  the balance of massless nodes are found as at any start, so that a preload is there from the first step on. Bodies that the checkpoint
-  does not have begin as their options say.
+  history of plastic materials and velocities are those of the checkpoint, but for velocities of bodies without inertia, which begin with
+their own; then ties, gaps and the balance of massless nodes are found as at any start, so that a preload is there from the first step on.
+Bodies that the checkpoint does not have begin as their options say.
 
   `OutputRestart()` takes the state, unless it has a checkpoint to go on from.
 

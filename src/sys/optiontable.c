@@ -275,7 +275,7 @@ static const KnownOption options[] = {
     {"files", OPTION_OF_RUN, "restart", "file.h5",
      "checkpoint that the run is continued from; the run begins at its start if it is not there"},
     {"files", OPTION_OF_RUN, "restart_allow_changes", "true|false", "whether a run may be continued with other options, default false"},
-    {"files", OPTION_OF_RUN, "restart_state", "file.h5", "checkpoint whose displacements and velocities the bodies begin with"},
+    {"files", OPTION_OF_RUN, "restart_state", "file.h5", "checkpoint whose displacements, plastic history and velocities the bodies begin with"},
     {"files", OPTION_OF_RUN, "max_wall_time", "t|h:mm:ss",
      "minutes, or hours, minutes and seconds, after which the run ends with a checkpoint"},
     {"files", OPTION_OF_RUN, "exact", "none|impact|characteristics",

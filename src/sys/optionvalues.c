@@ -302,10 +302,12 @@ PetscErrorCode OptionsExplain(const char function[], PetscErrorCode code, const 
   PetscCall(PetscStrncmp(function, "PetscOptionsStringTo", 20, &converts));
   PetscCall(PetscStrncmp(function, "PetscOptionsCreateViewer", 24, &views));
   if ((converts || views) && message) complaint = FindComplaint(message, value, sizeof(value));
-  if (!complaint && message && code == PETSC_ERR_ARG_UNKNOWN_TYPE && sscanf(message, "Unable to find requested %63s type %255s", kind, value) == 2) {
+  if (!complaint && message && code == PETSC_ERR_ARG_UNKNOWN_TYPE &&
+      sscanf(message, "Unable to find requested %63s type %255s", kind, value) == 2) {
     PetscCall(Describe(value, NULL, names, sizeof(names)));
     *explained = (PetscBool)(names[0] != 0);
-    if (*explained) PetscCall(PetscSNPrintf(text, size, "%s: PETSc has no %s of type '%s'; `impakt -help all` lists the types", names, kind, value));
+    if (*explained)
+      PetscCall(PetscSNPrintf(text, size, "%s: PETSc has no %s of type '%s'; `impakt -help all` lists the types", names, kind, value));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!complaint) {

@@ -172,7 +172,8 @@ PetscErrorCode BodyTakeHistory(Body body, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyNotePlasticBefore - plastic work that has been done until now is none of this run; after BodyTakeHistory() and BodySetInitialState() */
+/* BodyNotePlasticBefore - plastic work that has been done until now is none of this run; after BodyTakeHistory() and BodySetInitialState()
+ */
 PetscErrorCode BodyNotePlasticBefore(Body body)
 {
   BodyMeasures measures;

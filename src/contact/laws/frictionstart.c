@@ -77,3 +77,16 @@ PetscErrorCode ContactJudgeRubbing(Contact contact, const PetscReal slip[], Pets
   *changed = (PetscBool)(any > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* ContactGetOpening - B u of a row as the bodies are now, without what their meshes are apart by [m] */
+PetscErrorCode ContactGetOpening(Contact contact, PetscInt i, PetscReal *opening)
+{
+  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+  PetscScalar       *dirichlet, *neumann;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
+  PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
+  *opening = PetscRealPart(neumann[i - pair->shift[1]] - dirichlet[i - pair->shift[0]]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

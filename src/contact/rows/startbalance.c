@@ -28,12 +28,12 @@
 
 typedef struct {
   Contact      contact;
-  PetscBool   *takes_part; /* per row: its force is looked for here */
-  PetscReal   *springs;    /* per row: compliance of the spring that holds it, 0 if it is rigid [m/N] */
-  PetscReal   *relaxed;    /* per row: g* [m] */
-  PetscBool   *sticks;     /* per row across a normal: its force is looked for as long as its node is closed */
-  PetscReal   *given;      /* per row across a normal that does not stick: its force [N] */
-  PetscReal   *put, *slip; /* per row across a normal: B u as the bodies have been put, and by how much it has changed [m] */
+  PetscBool   *takes_part;      /* per row: its force is looked for here */
+  PetscReal   *springs;         /* per row: compliance of the spring that holds it, 0 if it is rigid [m/N] */
+  PetscReal   *relaxed;         /* per row: g* [m] */
+  PetscBool   *sticks;          /* per row across a normal: its force is looked for as long as its node is closed */
+  PetscReal   *given;           /* per row across a normal that does not stick: its force [N] */
+  PetscReal   *put, *slip;      /* per row across a normal: B u as the bodies have been put, and by how much it has changed [m] */
   PetscScalar *on_body, *moved; /* work space, per row */
   PetscBool    rubs;            /* there is friction */
   PetscReal    change;          /* of the layers in this round [m] */
@@ -181,19 +181,6 @@ static PetscErrorCode SolveRows(StartBalance *start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* B u of a row as the bodies are now, without what their meshes are apart by [m] */
-static PetscErrorCode GetOpening(Contact contact, PetscInt i, PetscReal *opening)
-{
-  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-  PetscScalar       *dirichlet, *neumann;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
-  PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-  *opening = PetscRealPart(neumann[i - pair->shift[1]] - dirichlet[i - pair->shift[0]]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The gaps of layers that relax without contact, with tangents at their present displacements */
 static PetscErrorCode Relax(StartBalance *start)
 {
@@ -206,7 +193,7 @@ static PetscErrorCode Relax(StartBalance *start)
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     start->relaxed[i] = contact->start.gap[i];
     if (!ContactRowRubs(contact, i)) continue;
-    PetscCall(GetOpening(contact, i, &start->relaxed[i]));
+    PetscCall(ContactGetOpening(contact, i, &start->relaxed[i]));
     start->relaxed[i] -= start->put[i];
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -290,7 +277,7 @@ static PetscErrorCode Create(Contact contact, StartBalance *start)
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &start->rounds));
   start->rounds.known = start->takes_part;
   for (PetscInt i = 0; i < n; i++)
-    if (ContactRowRubs(contact, i)) PetscCall(GetOpening(contact, i, &start->put[i]));
+    if (ContactRowRubs(contact, i)) PetscCall(ContactGetOpening(contact, i, &start->put[i]));
   PetscCall(ContactCreateRowVec(contact, &start->rhs));
   PetscCall(VecDuplicate(start->rhs, &start->solution));
   PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, start, &start->S));
