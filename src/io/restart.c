@@ -92,7 +92,7 @@ static PetscErrorCode TellSolvers(Output output)
 {
   const Body *bodies;
   Contact     contact;
-  PetscBool   contact_repeats;
+  PetscBool   factors, sums;
   PetscInt    n;
 
   PetscFunctionBegin;
@@ -109,10 +109,14 @@ static PetscErrorCode TellSolvers(Output output)
                              name));
   }
   PetscCall(ControllerGetContact(output->controller, &contact));
-  PetscCall(ContactRepeatsBits(contact, &contact_repeats));
-  if (!contact_repeats)
+  PetscCall(ContactRepeatsBits(contact, &factors, &sums));
+  if (!factors)
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
                            "impakt: the factors of contact that ranks make together need not repeat to the last bit: the run goes on to "
+                           "round-off\n"));
+  if (!sums)
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
+                           "impakt: sums of contact over three ranks or more need not repeat to the last bit: the run goes on to "
                            "round-off\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
