@@ -7,6 +7,9 @@
 /* Bars approach each other if the difference of their mean velocities is more than this part of them: round-off of the same sums */
 #define VELOCITY_ROUND_OFF 1e-12
 
+/* End faces are the same if their edges differ by less than this part of their width: of round bars, meshes decide */
+#define SAME_FACE 1e-2
+
 /* Waves in a bar in space that is as many times as long as wide are those of the bar's theory to 1 %: measured with ten times */
 #define SLENDER 8.0
 
@@ -110,6 +113,44 @@ static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar ba
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ends with an error unless the bars meet with the whole of their end faces: along each direction across the normal they begin and end at
+   the same place. In one dimension they do. */
+static PetscErrorCode CheckFaces(MPI_Comm comm, Exact exact, const Body sides[2])
+{
+  const PetscReal *normal = exact->normal;
+  PetscInt         dim, least = 0;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDimension(sides[0], &dim));
+  for (PetscInt d = 1; d < dim; d++)
+    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[least])) least = d;
+  for (PetscInt k = 1; k < dim; k++) {
+    PetscReal across[3] = {0, 0, 0}, first[3] = {0, 0, 0}, ends[2][2], size = 0;
+
+    /* the axis that is least along the normal, without its part along it; then what is square to both */
+    for (PetscInt d = 0; d < dim; d++) first[d] = (d == least) - normal[least] * normal[d];
+    for (PetscInt d = 0; d < dim; d++)
+      across[d] = k == 1 ? first[d] : exact->normal[(d + 1) % 3] * first[(d + 2) % 3] - exact->normal[(d + 2) % 3] * first[(d + 1) % 3];
+    for (PetscInt d = 0; d < dim; d++) size += PetscSqr(across[d]);
+    for (PetscInt d = 0; d < dim; d++) across[d] /= PetscSqrtReal(size);
+    for (PetscInt i = 0; i < 2; i++) {
+      Vec reference;
+
+      PetscCall(BodyGetReferencePositions(sides[i], &reference));
+      PetscCall(GetExtent(reference, dim, across, &ends[i][0], &ends[i][1]));
+    }
+    size = PetscMax(ends[0][1] - ends[0][0], ends[1][1] - ends[1][0]);
+    for (PetscInt e = 0; e < 2; e++)
+      PetscCheck(
+          PetscAbsReal(ends[0][e] - ends[1][e]) <= SAME_FACE * size, comm, PETSC_ERR_USER_INPUT,
+          "-exact %s needs bars that meet with the whole of their end faces, but along (%g, %g, %g) '%s' ends at %g m and '%s' at %g "
+          "m; move or resize one of them, or leave -exact out",
+          exact->type, (double)across[0], (double)across[1], (double)across[2], exact->bars[0].name, (double)ends[0][e],
+          exact->bars[1].name, (double)ends[1][e]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the two bars, where and when they first touch, and the velocity of their centre of mass */
 PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
 {
@@ -118,6 +159,7 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
   const Body  *bodies;
   Body         sides[2];
   Contact      contact;
+  ContactLaw   law;
   const char  *pair;
   BodyMeasures measures[2];
   ExactBar    *bars = exact->bars;
@@ -137,6 +179,11 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
     PetscCall(GetBar(sides[i], exact->normal, &bars[i], &measures[i]));
   }
   PetscCall(CheckBars(comm, exact->type, bars, measures));
+  PetscCall(CheckFaces(comm, exact, sides));
+  PetscCall(ContactGetLaw(contact, &law));
+  PetscCheck(law != CONTACT_LAW_TIED && law != CONTACT_LAW_BONDED, comm, PETSC_ERR_USER_INPUT,
+             "-exact %s is known for bars that part again, and -contact_law %s does not let them; leave one of the options out",
+             exact->type, law == CONTACT_LAW_TIED ? "tied" : "bonded");
   PetscCall(ControllerGetTimes(controller, &exact->start, NULL, NULL));
   exact->frame_velocity  = (bars[0].mass * bars[0].velocity + bars[1].mass * bars[1].velocity) / (bars[0].mass + bars[1].mass);
   exact->impact          = exact->start + (bars[1].lower - bars[0].upper) / (bars[0].velocity - bars[1].velocity);

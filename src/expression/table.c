@@ -1,6 +1,7 @@
 /* Tables of a value over time, read from text files. */
 #include "expressionimpl.h"
 #include <errno.h>
+#include <sys/stat.h>
 
 struct _n_Table {
   PetscInt   n, room;
@@ -105,9 +106,14 @@ static PetscErrorCode ReadRows(FILE *file, Table table, char problem[], size_t s
 
 static PetscErrorCode ReadFile(const char path[], Table table, char problem[], size_t size)
 {
-  FILE *file;
+  struct stat status;
+  FILE       *file;
 
   PetscFunctionBegin;
+  if (!stat(path, &status) && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) { /* which may never end, or never begin */
+    PetscCall(PetscSNPrintf(problem, size, "it is %s and not a file with text", S_ISFIFO(status.st_mode) ? "a pipe" : "a device"));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   file = fopen(path, "r");
   if (!file) {
     PetscCall(PetscSNPrintf(problem, size, "it cannot be opened: %s", strerror(errno)));

@@ -59,7 +59,7 @@ static PetscErrorCode CheckWhole(const char path[], const char **why)
   CheckpointTrailer trailer = {.size = 0};
   struct stat       status;
   uint64_t          sum  = CHECKPOINT_SUM_BEGIN, size;
-  int               file = open(path, O_RDONLY | O_CLOEXEC);
+  int               file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   char             *bytes;
 
   PetscFunctionBegin;
@@ -86,25 +86,25 @@ static PetscErrorCode CheckWhole(const char path[], const char **why)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadNumber(hid_t file, const char name[], hid_t type, void *value, const char path[])
+static PetscErrorCode ReadNumber(const CheckpointFile *checkpoint, const char name[], hid_t type, void *value)
 {
-  const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
+  const hid_t attribute = H5Aopen(checkpoint->file, name, H5P_DEFAULT);
 
   PetscFunctionBegin;
   PetscCheck(attribute >= 0 && H5Aread(attribute, type, value) >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
-             "-restart %s: there is no '%s' in it", path, name);
+             "%s %s: there is no '%s' in it", checkpoint->option, checkpoint->path, name);
   H5Aclose(attribute);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadText(hid_t file, const char name[], char **text, const char path[])
+static PetscErrorCode ReadText(const CheckpointFile *checkpoint, hid_t object, const char name[], char **text)
 {
-  const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT), type = attribute < 0 ? -1 : H5Aget_type(attribute);
+  const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = attribute < 0 ? -1 : H5Aget_type(attribute);
   char       *read = NULL;
 
   PetscFunctionBegin;
   PetscCheck(type >= 0 && H5Tis_variable_str(type) > 0 && H5Aread(attribute, type, &read) >= 0 && read, PETSC_COMM_SELF,
-             PETSC_ERR_FILE_UNEXPECTED, "-restart %s: there is no '%s' in it", path, name);
+             PETSC_ERR_FILE_UNEXPECTED, "%s %s: there is no '%s' in it", checkpoint->option, checkpoint->path, name);
   PetscCall(PetscStrallocpy(read, text));
   H5free_memory(read);
   H5Tclose(type);
@@ -125,24 +125,24 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
   PetscCall(CheckpointFileGetPrevious(path, sizeof(previous), previous));
   other = (PetscBool)!access(previous, F_OK);
   PetscCall(CheckWhole(path, &why));
-  PetscCheck(!why, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "-restart %s: the run cannot be continued from it, since %s%s%s%s", path, why,
-             other ? "; the checkpoint before it is " : "", other ? previous : "", other ? ": give that" : "");
+  PetscCheck(!why, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s %s: the run cannot be continued from it, since %s%s%s%s", checkpoint->option,
+             path, why, other ? "; the checkpoint before it is " : "", other ? previous : "", other ? ": give that" : "");
   checkpoint->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  PetscCheck(checkpoint->file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "-restart %s: HDF5 cannot open it", path);
-  PetscCall(ReadNumber(checkpoint->file, "checkpoint", H5T_NATIVE_INT, &format, path));
-  PetscCall(ReadNumber(checkpoint->file, "bytes_of_integers", H5T_NATIVE_INT, &integer, path));
-  PetscCall(ReadText(checkpoint->file, "version", &version, path));
+  PetscCheck(checkpoint->file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "%s %s: HDF5 cannot open it", checkpoint->option, path);
+  PetscCall(ReadNumber(checkpoint, "checkpoint", H5T_NATIVE_INT, &format));
+  PetscCall(ReadNumber(checkpoint, "bytes_of_integers", H5T_NATIVE_INT, &integer));
+  PetscCall(ReadText(checkpoint, checkpoint->file, "version", &version));
   PetscCall(PetscStrcmp(version, IMPAKT_VERSION, &same));
   PetscCheck(same && format == CHECKPOINT_FORMAT && integer == (int)sizeof(PetscInt), PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
-             "-restart %s: it was written by Impakt %s with integers of %d bytes in format %d, and this is %s with %d bytes and format %d: "
+             "%s %s: it was written by Impakt %s with integers of %d bytes in format %d, and this is %s with %d bytes and format %d: "
              "continue the run with the program that began it",
-             path, version, integer, format, IMPAKT_VERSION, (int)sizeof(PetscInt), CHECKPOINT_FORMAT);
+             checkpoint->option, path, version, integer, format, IMPAKT_VERSION, (int)sizeof(PetscInt), CHECKPOINT_FORMAT);
   PetscCall(PetscFree(version));
-  PetscCall(ReadNumber(checkpoint->file, "step", H5T_NATIVE_LLONG, &step, path));
+  PetscCall(ReadNumber(checkpoint, "step", H5T_NATIVE_LLONG, &step));
   checkpoint->info.step = (PetscInt)step;
-  PetscCall(ReadNumber(checkpoint->file, "time", H5T_NATIVE_DOUBLE, &checkpoint->info.time, path));
-  PetscCall(ReadNumber(checkpoint->file, "ranks", H5T_NATIVE_INT, &checkpoint->info.ranks, path));
-  PetscCall(ReadText(checkpoint->file, "options", &checkpoint->info.options, path));
+  PetscCall(ReadNumber(checkpoint, "time", H5T_NATIVE_DOUBLE, &checkpoint->info.time));
+  PetscCall(ReadNumber(checkpoint, "ranks", H5T_NATIVE_INT, &checkpoint->info.ranks));
+  PetscCall(ReadText(checkpoint, checkpoint->file, "options", &checkpoint->info.options));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -152,13 +152,14 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
   Collective
 
   Input Parameters:
-+ comm - communicator
-- path - the file
++ comm   - communicator
+. option - the option that names it, for messages; to outlive the file
+- path   - the file
 
   Output Parameter:
 . checkpoint - close with CheckpointFileClose()
 */
-PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFile *checkpoint)
+PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char option[], const char path[], CheckpointFile *checkpoint)
 {
   PetscErrorCode error = PETSC_SUCCESS;
   PetscMPIInt    rank;
@@ -167,12 +168,13 @@ PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char path[], CheckpointFi
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(checkpoint, sizeof(*checkpoint)));
-  checkpoint->file = -1;
+  checkpoint->file   = -1;
+  checkpoint->option = option;
   PetscCall(PetscStrncpy(checkpoint->path, path, sizeof(checkpoint->path)));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   HDF5SilenceBegin(&silence);
   if (!rank) error = Open(path, checkpoint);
-  PetscCall(OutputFileShareError(comm, error, "-restart", path, "read"));
+  PetscCall(OutputFileShareError(comm, error, option, path, "read"));
   HDF5SilenceEnd(&silence);
   if (!rank) length = strlen(checkpoint->info.options) + 1;
   PetscCallMPI(MPI_Bcast(&checkpoint->info.step, 1, MPIU_INT, 0, comm));
@@ -302,7 +304,7 @@ static PetscErrorCode ReadTable(const CheckpointFile *file, PetscInt i, char nam
   PetscCall(CheckpointReadArray(file, place, size, values));
   dataset = H5Dopen2(file->file, place, H5P_DEFAULT);
   PetscCall(HDF5Check(dataset, "open a table", file->path));
-  PetscCall(ReadText(dataset, "name", &text, file->path));
+  PetscCall(ReadText(file, dataset, "name", &text));
   PetscCall(PetscStrncpy(name, text, 512));
   PetscCall(PetscFree(text));
   PetscCall(HDF5Check(H5Dclose(dataset), "read a table", file->path));

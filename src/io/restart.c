@@ -68,10 +68,10 @@ PetscErrorCode OutputSetRestart(Output output, const char path[], PetscBool allo
   Level: beginner
 
   Notes:
-  The run begins at its own start, with its own loads, integrators and contact method, and on any number of ranks. Displacements and
-  velocities are those of the checkpoint, but for velocities of bodies without inertia, which begin with their own; then ties, gaps and
-  the balance of massless nodes are found as at any start, so that a preload is there from the first step on. Bodies that the checkpoint
-  does not have begin as their options say.
+  The run begins at its own start, with its own loads, integrators and contact method, and on any number of ranks. Displacements, the
+  history of plastic materials and velocities are those of the checkpoint, but for velocities of bodies without inertia, which begin with
+their own; then ties, gaps and the balance of massless nodes are found as at any start, so that a preload is there from the first step on.
+Bodies that the checkpoint does not have begin as their options say.
 
   `OutputRestart()` takes the state, unless it has a checkpoint to go on from.
 
@@ -92,7 +92,7 @@ static PetscErrorCode TellSolvers(Output output)
 {
   const Body *bodies;
   Contact     contact;
-  PetscBool   contact_repeats;
+  PetscBool   factors, sums;
   PetscInt    n;
 
   PetscFunctionBegin;
@@ -109,10 +109,14 @@ static PetscErrorCode TellSolvers(Output output)
                              name));
   }
   PetscCall(ControllerGetContact(output->controller, &contact));
-  PetscCall(ContactRepeatsBits(contact, &contact_repeats));
-  if (!contact_repeats)
+  PetscCall(ContactRepeatsBits(contact, &factors, &sums));
+  if (!factors)
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
                            "impakt: the factors of contact that ranks make together need not repeat to the last bit: the run goes on to "
+                           "round-off\n"));
+  if (!sums)
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
+                           "impakt: sums of contact over three ranks or more need not repeat to the last bit: the run goes on to "
                            "round-off\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,7 +170,7 @@ static PetscErrorCode Restart(Output output)
     PetscCall(PetscFPrintf(comm, stderr, "impakt: there is no checkpoint %s yet: the run begins at its start\n", c->restart));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(CheckpointFileOpen(comm, path, &file));
+  PetscCall(CheckpointFileOpen(comm, "-restart", path, &file));
   PetscCall(OutputCompareOptions(comm, file.info.options, c->allow_changes, path));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(Load(output, &file, (PetscBool)(file.info.ranks == size)));

@@ -1,7 +1,8 @@
 /*
-   Runs whose bodies begin with the state of a checkpoint: displacements and velocities at a new time, under other loads, with other
-   integrators, on any number of ranks. Nodes are found by their places in the mesh.
+   Runs whose bodies begin with the state of a checkpoint: displacements, velocities and the history of materials at a new time, under other
+   loads, with other integrators, on any number of ranks. Nodes are found by their places in the mesh.
 */
+#include <body/interface/bodyvisit.h>
 #include <contact/interface/contactvisit.h>
 #include "outputimpl.h"
 #include "checkpointfileimpl.h"
@@ -96,16 +97,17 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
   CheckpointFile file;
   const Body    *bodies;
   Contact        contact;
+  Tables         tables;
   PetscInt       n, found = 0;
 
   PetscFunctionBegin;
-  PetscCall(CheckpointFileOpen(comm, path, &file));
+  PetscCall(CheckpointFileOpen(comm, "-restart_state", path, &file));
+  PetscCall(CheckpointFileReadTables(comm, &file, &tables));
   PetscCall(ControllerGetBodies(output->controller, &n, &bodies));
   for (PetscInt b = 0; b < n; b++) {
     const char *name;
     NodeStates  nodes;
     PetscInt    dim;
-    PetscBool   plastic;
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[b], &name));
     PetscCall(ShareNodes(comm, &file, name, &nodes));
@@ -113,19 +115,17 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
     PetscCheck(!nodes.n || nodes.dim == dim, comm, PETSC_ERR_USER_INPUT,
                "-restart_state %s: body '%s' has %" PetscInt_FMT " dimensions there, and %" PetscInt_FMT " here", path, name, nodes.dim,
                dim);
-    PetscCall(BodyHasHistory(bodies[b], &plastic));
-    PetscCheck(
-        !nodes.n || !plastic, comm, PETSC_ERR_SUP,
-        "-restart_state %s: the material of body '%s' has a history, which displacements and velocities do not tell; continue the run "
-        "with -restart",
-        path, name);
-    if (nodes.n) PetscCall(BodySetInitialState(bodies[b], FindState, &nodes));
-    else
+    if (nodes.n) {
+      PetscCall(BodyTakeHistory(bodies[b], tables)); /* first: stresses of the displacements follow from it */
+      PetscCall(BodySetInitialState(bodies[b], FindState, &nodes));
+      PetscCall(BodyNotePlasticBefore(bodies[b]));
+    } else
       PetscCall(
           PetscFPrintf(comm, stderr, "impakt: warning: -restart_state %s has no body '%s', which begins as its options say\n", path, name));
     found += nodes.n > 0;
     PetscCall(DestroyNodes(&nodes));
   }
+  PetscCall(TablesDestroy(&tables));
   PetscCheck(found, comm, PETSC_ERR_USER_INPUT, "-restart_state %s has none of the bodies of this run", path);
   PetscCall(ControllerGetContact(output->controller, &contact));
   PetscCall(ContactTakeState(contact));

@@ -2,6 +2,7 @@
  */
 #include <impakt.h>
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include "example.h"
@@ -31,6 +32,15 @@ static const char *FindName(int argc, char **argv, PetscBool *asked)
   return NULL;
 }
 
+/* Characters of a text up to the full stop that ends its first sentence; one in a number does not */
+static size_t SentenceLength(const char text[])
+{
+  size_t length = strcspn(text, ".");
+
+  while (text[length] && text[length + 1] && text[length + 1] != ' ') length += 1 + strcspn(text + length + 1, ".");
+  return length;
+}
+
 /* The examples, each with its first sentence */
 static PetscErrorCode PrintList(void)
 {
@@ -38,7 +48,7 @@ static PetscErrorCode PrintList(void)
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "-example NAME writes NAME.opts, an options file with remarks, to start from:\n\n"));
   for (size_t e = 0; e < PETSC_STATIC_ARRAY_LENGTH(examples); e++) {
     const char  *first  = examples[e].lines[0] + strspn(examples[e].lines[0], "# ");
-    const size_t length = strcspn(first, ".");
+    const size_t length = SentenceLength(first);
 
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-22s %.*s\n", examples[e].name, (int)length, first));
   }
@@ -141,6 +151,7 @@ PetscErrorCode ImpaktExample(int argc, char **argv, PetscBool *done)
   name = FindName(argc, argv, done);
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ImpaktInitialize(&n, &words));
+  (void)signal(SIGPIPE, SIG_DFL); /* who reads may stop, as in `| head`; PETSc has a banner for it */
   if (name) PetscCall(Answer(name));
   else PetscCall(PrintList());
   PetscCall(ImpaktFinalize());

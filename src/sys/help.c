@@ -5,6 +5,7 @@
 #include <impakt.h>
 #include <petscts.h>
 #include <hdf5.h>
+#include <signal.h>
 #include "help.h"
 #include "optiontable.h"
 #include "names.h"
@@ -306,6 +307,7 @@ PetscErrorCode ImpaktHelp(int argc, char **argv, PetscBool *done)
     n_words = 2;
   }
   PetscCall(ImpaktInitialize(&n_words, &words));
+  (void)signal(SIGPIPE, SIG_DFL); /* who reads may stop, as in `| head`; PETSc has a banner for it */
   PetscCall(Answer(request, topic, all));
   PetscCall(ImpaktFinalize());
   /* PetscFunctionReturn() would need PETSc */

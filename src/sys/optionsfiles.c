@@ -193,6 +193,10 @@ static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
       PetscCall(Blame(walk, place, "it begins with a byte-order mark, which no editor shows: save it as UTF-8 without one"));
       break;
     }
+    if (text[strcspn(text, "\r")] && strcspn(text, "\r") + 2 < (size_t)length) {
+      PetscCall(Blame(walk, place, "there is a carriage return in it: save the file with line ends of Unix or Windows"));
+      break;
+    }
     if (comment) *comment = 0;
     name = NextWord(&rest);
     if (name && name[0] != '-' && strcmp(name, "alias") != 0) {

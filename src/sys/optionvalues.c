@@ -304,7 +304,7 @@ static PetscErrorCode ExplainRange(const char message[], char text[], size_t siz
 PetscErrorCode OptionsExplain(const char function[], PetscErrorCode code, const char message[], char text[], size_t size,
                               PetscBool *explained)
 {
-  char             value[512], names[2048];
+  char             value[512], names[2048], kind[64];
   const Complaint *complaint = NULL;
   PetscBool        converts, views, bounded = PETSC_FALSE;
 
@@ -320,6 +320,14 @@ PetscErrorCode OptionsExplain(const char function[], PetscErrorCode code, const 
   PetscCall(PetscStrncmp(function, "PetscOptionsStringTo", 20, &converts));
   PetscCall(PetscStrncmp(function, "PetscOptionsCreateViewer", 24, &views));
   if ((converts || views) && message) complaint = FindComplaint(message, value, sizeof(value));
+  if (!complaint && message && code == PETSC_ERR_ARG_UNKNOWN_TYPE &&
+      sscanf(message, "Unable to find requested %63s type %255s", kind, value) == 2) {
+    PetscCall(Describe(value, NULL, names, sizeof(names)));
+    *explained = (PetscBool)(names[0] != 0);
+    if (*explained)
+      PetscCall(PetscSNPrintf(text, size, "%s: PETSc has no %s of type '%s'; `impakt -help all` lists the types", names, kind, value));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!complaint) {
     if (message && !converts && !views && code == PETSC_ERR_ARG_OUTOFRANGE) PetscCall(ExplainRange(message, text, size, explained));
     PetscFunctionReturn(PETSC_SUCCESS);

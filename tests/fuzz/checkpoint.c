@@ -10,7 +10,7 @@ static void ReadFile(const uint8_t data[], size_t size)
   Checkpoint     checkpoint = NULL;
 
   FuzzWrite(data, size, ".h5", path, sizeof(path));
-  if (!CheckpointFileOpen(PETSC_COMM_SELF, path, &file)) {
+  if (!CheckpointFileOpen(PETSC_COMM_SELF, "-restart", path, &file)) {
     FUZZ_IGNORE(CheckpointFileRead(PETSC_COMM_SELF, &file, &checkpoint));
     FUZZ_IGNORE(CheckpointFileClose(&file));
   }

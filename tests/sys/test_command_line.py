@@ -61,6 +61,8 @@ WRONG = {
     "large in a list": ([BLOCKS, "-left_dm_plex_box_faces", "2,-99999999999999999999"], ["-left_dm_plex_box_faces", "-99999999999999999999"]),
     "far away": ([BLOCKS, "-left_translate", "1e20,0"], ["'left'", "1e+20 m from the origin", "-left_translate"]),
     "point of a formula": ([BLOCKS, "-left_probe", "0,inf"], [": -left_probe: the formula 'inf'"]),
+    "type of PETSc's": ([BLOCKS, "-left_snes_type", "bogus"], ["-left_snes_type (the command line)", "no SNES of type 'bogus'"]),
+    "table of a device": ([BLOCKS, "-left_body_force", "table:/dev/zero,0"], ["-left_body_force", "'/dev/zero'", "a device"]),
     "viewer": ([BLOCKS, "-contact_view", "paper"], ["-contact_view", "'paper'", "viewer"]),
 }
 
@@ -92,6 +94,7 @@ LINES = {
     "two options": ("-time_end 1\n-left_density -right_density", ["line 2", "two options per line"]),
     "word": ("time_end 1", ["line 1", "'time_end' is no option", "dash"]),
     "byte-order mark": ("\ufeff-time_end 1", ["line 1", "byte-order mark"]),
+    "line ends of old systems": ("-time_end 1\r-time_step 1", ["line 1", "carriage return"]),
     "zero byte": ("-time_end 1\n-time_\0", ["line 2", "zero byte"]),
 }
 
@@ -99,7 +102,7 @@ LINES = {
 @pytest.mark.parametrize("case", list(LINES))
 def test_wrong_lines(case, words, tmp_path):
     text, named = LINES[case]
-    (tmp_path / "wrong.opts").write_text(text + "\n")
+    (tmp_path / "wrong.opts").write_text(text + "\n", newline="")
     refused(words("wrong.opts"), ["wrong.opts" if "line" in str(named) else "", *named])
 
 
@@ -173,6 +176,8 @@ def test_examples(words, tmp_path):
     """What is written is the file of options/, each option with what it means, and nothing that is there is overwritten."""
     names = re.findall(r"^  (\S+)", words("-example").stdout, re.MULTILINE)
     assert len(names) > 20
+    listed = dict(re.findall(r"^  (\S+) +(.*)", words("-example").stdout, re.MULTILINE))
+    assert listed["sliding-flat-3d"] == "The block of sliding-flat.opts in three dimensions, on hexahedra"  # a full stop amid it
     for name in names:
         assert words("-example", name).returncode == 0
         text, original = ((folder / f"{name}.opts").read_text() for folder in (tmp_path, ROOT / "options"))
@@ -218,6 +223,8 @@ SENSELESS = {
     "tolerance of PETSc's": ([BLOCKS, "-schwarz_snes_rtol", "7"], ["-schwarz_snes_rtol (the command line) 7: Relative tolerance 7"]),
     "angle": ([BLOCKS, "-left_rotate", "1e9"], ["-left_rotate", "1e+09", "360"]),
     "exact in two dimensions": ([BLOCKS, "-exact", "impact", "-left_poissons_ratio", "0.3"], ["-exact", "'left'", "-left_poissons_ratio 0"]),
+    "exact beside each other": (["options/impact-solids.opts", "-exact", "impact", "-right_translate", "0,0.3,0"], ["-exact", "'right'", "end faces"]),
+    "exact and never apart": (["options/impact-solids.opts", "-exact", "impact", "-contact_law", "bonded"], ["-exact", "-contact_law bonded", "part again"]),
     "exact with loads": (["options/impact-high-speed.opts", "-right_body_force", "1e3"], ["-exact", "'right'", "body forces"]),
 }
 
@@ -235,6 +242,15 @@ def test_input_without_sense_on_three_ranks(words):
         run = words(*given, ranks=3)
         refused(run, named)
         assert run.stderr.count("impakt: error") == 1, run.stderr
+
+
+def test_tables_from_pipes(words, tmp_path):
+    """What may never begin is not waited for: tables, options files and checkpoints."""
+    os.mkfifo(tmp_path / "pipe.opts")
+    refused(words(BLOCKS, "-left_body_force", "table:pipe.opts,0"), ["-left_body_force", "'pipe.opts'", "a pipe"])
+    refused(words("pipe.opts"), ["'pipe.opts'", "a pipe"])
+    refused(words(BLOCKS, "-restart", "pipe.opts"), ["-restart pipe.opts", "it is no file"])
+    refused(words(BLOCKS, "-restart_state", "nowhere.h5"), ["-restart_state nowhere.h5", "No such file"])
 
 
 @pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])

@@ -61,112 +61,6 @@ static PetscErrorCode PackPoint(Body body, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The place of an element: the mean of its nodes' places, added up in ascending order: the order of the nodes depends on the ranks */
-static void GetElementKey(Body body, PetscInt e, PetscReal key[TABLES_KEY])
-{
-  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
-  PetscReal      sorted[ELEMENT_MAX_DOFS];
-
-  for (PetscInt d = 0; d < TABLES_KEY; d++) {
-    key[d] = 0;
-    for (PetscInt a = 0; a < n && d < dim; a++) {
-      const PetscReal x = body->mesh.coordinates[body->mesh.connectivity[e * n + a] * dim + d];
-      PetscInt        k = a;
-
-      for (; k > 0 && sorted[k - 1] > x; k--) sorted[k] = sorted[k - 1];
-      sorted[k] = x;
-    }
-    for (PetscInt a = 0; a < n && d < dim; a++) key[d] += sorted[a] / (PetscReal)n;
-  }
-}
-
-/* The point of the element as it was packed that has become point g. Elements with several points have one for each node, in the same
-   order; `places`: of the nodes as they were packed. */
-static PetscInt FindPoint(Body body, PetscInt e, PetscInt g, const PetscReal places[])
-{
-  const PetscInt   n = body->model.element->nodes, dim = body->mesh.dim;
-  const PetscReal *x = body->mesh.coordinates + body->mesh.connectivity[e * n + g] * dim;
-
-  if (body->model.element->history.points != n) return g;
-  for (PetscInt a = 0; a < n; a++) {
-    PetscBool same = PETSC_TRUE;
-
-    for (PetscInt d = 0; d < dim; d++) same = (PetscBool)(same && places[a * dim + d] == x[d]);
-    if (same) return a;
-  }
-  return g;
-}
-
-/* Columns of an element: its place, those of its nodes, the history of its points */
-static PetscInt HistoryWidth(Body body)
-{
-  const Element element = body->model.element;
-
-  return TABLES_KEY + element->nodes * body->mesh.dim + element->history.points * element->history.n;
-}
-
-/* The history of the material, element by element */
-static PetscErrorCode PackHistory(Body body, Tables tables)
-{
-  const Element    element = body->model.element;
-  const PetscInt   nodes = element->nodes, dim = body->mesh.dim, width = HistoryWidth(body), count = element->count;
-  const PetscInt   of_element = element->history.points * element->history.n;
-  PetscReal       *packed;
-  const PetscReal *saved;
-  size_t           size;
-  char             name[256];
-
-  PetscFunctionBegin;
-  saved = BodyHistoryGetSaved(body, &size);
-  if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(count * width, &packed));
-  for (PetscInt e = 0; e < count; e++) {
-    PetscReal *row = packed + e * width;
-
-    GetElementKey(body, e, row);
-    row += TABLES_KEY;
-    for (PetscInt a = 0; a < nodes; a++)
-      for (PetscInt d = 0; d < dim; d++) *row++ = body->mesh.coordinates[body->mesh.connectivity[e * nodes + a] * dim + d];
-    for (PetscInt k = 0; k < of_element; k++) row[k] = saved[(e / 8 * of_element + k) * 8 + e % 8];
-  }
-  PetscCall(Name(body, "history", name, sizeof(name)));
-  PetscCall(TablesAdd(tables, name, count, width, packed));
-  PetscCall(PetscFree(packed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode UnpackHistory(Body body, Tables tables)
-{
-  const Element    element = body->model.element;
-  const PetscInt   points = element->history.points, n_history = element->history.n, of_element = points * n_history;
-  PetscReal       *saved;
-  const PetscReal *packed;
-  PetscInt         n, row;
-  size_t           size;
-  char             name[256];
-
-  PetscFunctionBegin;
-  saved = BodyHistoryGetSaved(body, &size);
-  if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Name(body, "history", name, sizeof(name)));
-  PetscCall(TablesGet(tables, name, HistoryWidth(body), &n, &packed));
-  for (PetscInt e = 0; e < element->count; e++) {
-    const PetscReal *places;
-    PetscReal        key[TABLES_KEY];
-
-    GetElementKey(body, e, key);
-    PetscCall(TablesFind(tables, name, key, &row));
-    places = packed + row * HistoryWidth(body) + TABLES_KEY;
-    for (PetscInt g = 0; g < points; g++) {
-      const PetscReal *from = places + element->nodes * body->mesh.dim + FindPoint(body, e, g, places) * n_history;
-
-      for (PetscInt c = 0; c < n_history; c++) saved[(e / 8 * of_element + g * n_history + c) * 8 + e % 8] = from[c];
-    }
-  }
-  BodyHistoryRestore(body);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether the next controller step, which begins whole, goes on with what a nonlinear body remembers of whole steps: see steplevel.c */
 static PetscBool GoesOn(Body body)
 {
@@ -239,7 +133,7 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   }
   PetscCall(TablesAdd(tables, body->hdr.name, n, width, packed));
   PetscCall(PetscFree(packed));
-  PetscCall(PackHistory(body, tables));
+  PetscCall(BodyPackHistory(body, tables));
   PetscCall(PackPoint(body, tables));
   if (body->model.linear || !body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Name(body, "compliance", name, sizeof(name)));
@@ -282,7 +176,7 @@ PetscErrorCode BodyUnpack(Body body, Tables tables)
       for (PetscInt d = 0; d < dim; d++) values[i * dim + d] = packed[rows[i] * width + TABLES_KEY + k * dim + d];
     PetscCall(VecRestoreArrayWrite(vecs[k], &values));
   }
-  PetscCall(UnpackHistory(body, tables));
+  PetscCall(BodyUnpackHistory(body, tables));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(BodyStateCopy(&body->state, &body->saved));
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
@@ -328,6 +222,7 @@ PetscErrorCode BodyVisitShared(Body body, Checkpoint checkpoint)
   PetscCall(CheckpointCheckInts(checkpoint, "substeps of a step", 1, &body->time.substeps));
   PetscCall(CheckpointVisitReals(checkpoint, "external work", 1, &state->external_work));
   PetscCall(CheckpointVisitReals(checkpoint, "damping work", 1, &state->damping_work));
+  PetscCall(CheckpointVisitReals(checkpoint, "plastic work before", 1, &body->plastic_before));
   PetscCall(CheckpointVisitReals(checkpoint, "time", 1, &state->time));
   PetscCall(CheckpointVisitInts(checkpoint, "step", 1, &state->step));
   PetscCall(CheckpointVisitInts(checkpoint, "accepted level", 1, &body->time.accepted_level));

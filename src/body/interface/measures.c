@@ -196,7 +196,7 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   measures->potential        = sums[1];
   measures->external_work    = body->state.external_work;
   measures->damping_work     = body->state.damping_work;
-  measures->plastic_work     = sums[15];
+  measures->plastic_work     = sums[15] - body->plastic_before;
   measures->hourglass_energy = sums[14];
   BodyFinishRotation(body, sums + 11, measures->rotation);
   PetscCall(BodyGetDamping(body, &drag, NULL)); /* which takes momentum */

@@ -188,10 +188,11 @@ struct _p_Body {
   BodyTime          time;
   BodyIntegrator    integrator;
   ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
-  BodyState         state, saved;  /* as it is; at the start of the controller step */
-  BodyState         kept;          /* put aside by BodyKeep() */
-  BodyHistory       history;       /* of the material at the points of integration; NULL where it has none */
-  BodyState         substep_start; /* u and v, which are NULL unless loads or the integrator read them */
+  BodyState         state, saved;   /* as it is; at the start of the controller step */
+  BodyState         kept;           /* put aside by BodyKeep() */
+  BodyHistory       history;        /* of the material at the points of integration; NULL where it has none */
+  PetscReal         plastic_before; /* plastic work in the history that was done before this run [J] */
+  BodyState         substep_start;  /* u and v, which are NULL unless loads or the integrator read them */
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
     Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */

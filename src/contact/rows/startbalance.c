@@ -8,6 +8,9 @@
    Rows that are tied have g = 0, others l >= 0, g >= 0, l g = 0; where springs hold the rows, as in the penalty method, g = -l / k stands
    in place of g = 0. The active set settles in rounds, the forces of each are found by conjugate gradients. Nonlinear bodies repeat it with
    the tangents at the displacements found. The forces are those of the first record of the history.
+
+   With friction, closed nodes stick where they have been put, so that a state of rest under friction stays one; rows across their normals
+   are then like ties. Those whose forces are beyond what the law allows slide under forces that are given: see frictionstart.c.
 */
 #include <contact/activeset/rounds.h>
 #include <contact/compliance/inversemass.h>
@@ -20,14 +23,19 @@
 /* Rounds of nonlinear layers; the layer is in balance when its last change is below this part of the largest one */
 #define MAX_ROUNDS 50
 #define SMALL      1e-13
+/* Times that friction may change its mind about which nodes stick */
+#define MAX_RUBS 100
 
 typedef struct {
   Contact      contact;
-  PetscBool   *takes_part; /* per row: its force is looked for here */
-  PetscReal   *springs;    /* per row: compliance of the spring that holds it, 0 if it is rigid [m/N] */
-  PetscReal   *relaxed;    /* per row: g* [m] */
-  PetscReal   *gap, *force;
+  PetscBool   *takes_part;      /* per row: its force is looked for here */
+  PetscReal   *springs;         /* per row: compliance of the spring that holds it, 0 if it is rigid [m/N] */
+  PetscReal   *relaxed;         /* per row: g* [m] */
+  PetscBool   *sticks;          /* per row across a normal: its force is looked for as long as its node is closed */
+  PetscReal   *given;           /* per row across a normal that does not stick: its force [N] */
+  PetscReal   *put, *slip;      /* per row across a normal: B u as the bodies have been put, and by how much it has changed [m] */
   PetscScalar *on_body, *moved; /* work space, per row */
+  PetscBool    rubs;            /* there is friction */
   PetscReal    change;          /* of the layers in this round [m] */
   Rounds       rounds;
   KSP          ksp;
@@ -50,6 +58,23 @@ static PetscErrorCode MultiplyLayers(StartBalance *start, const PetscScalar forc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the force of a row is looked for in this round */
+static inline PetscBool IsSolved(const StartBalance *start, PetscInt i)
+{
+  const Contact contact = start->contact;
+
+  if (!start->rubs || i % contact->dim == 0) return contact->end.active[i];
+  return (PetscBool)(start->sticks[i] && contact->end.active[i - i % contact->dim]);
+}
+
+/* The force that a row has, whatever is found */
+static inline PetscReal GetGiven(const StartBalance *start, PetscInt i)
+{
+  const Contact contact = start->contact;
+
+  return start->rubs && !start->sticks[i] && contact->end.active[i - i % contact->dim] ? start->given[i] : 0;
+}
+
 /* y = (S + springs) x on active rows; ones on the diagonal of the others */
 static PetscErrorCode MultiplyActive(Mat S, Vec x, Vec y)
 {
@@ -62,27 +87,30 @@ static PetscErrorCode MultiplyActive(Mat S, Vec x, Vec y)
   PetscCall(PetscMalloc1(start->contact->rows.n, &force));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArrayWrite(y, &out));
-  for (PetscInt i = 0; i < start->contact->rows.n; i++) force[i] = start->contact->end.active[i] ? in[i] : 0;
+  for (PetscInt i = 0; i < start->contact->rows.n; i++) force[i] = IsSolved(start, i) ? in[i] : 0;
   PetscCall(MultiplyLayers(start, force, out));
-  for (PetscInt i = 0; i < start->contact->rows.n; i++) out[i] = start->contact->end.active[i] ? out[i] + start->springs[i] * in[i] : in[i];
+  for (PetscInt i = 0; i < start->contact->rows.n; i++) out[i] = IsSolved(start, i) ? out[i] + start->springs[i] * in[i] : in[i];
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscCall(VecRestoreArrayRead(x, &in));
   PetscCall(PetscFree(force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces of the active rows, and the gaps that they leave */
+/* Forces of the active rows, and the gaps that they leave; of rows across normals the slips */
 static PetscErrorCode SolveActive(StartBalance *start)
 {
   const Contact      contact = start->contact;
+  PetscScalar       *change = start->moved + contact->rows.n, *all = change + contact->rows.n, *rhs;
   KSPConvergedReason reason;
   PetscReal          left, size;
-  PetscScalar       *rhs;
   const PetscScalar *force;
 
   PetscFunctionBegin;
+  PetscCall(PetscArrayzero(change, contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) all[i] = GetGiven(start, i);
+  if (start->rubs) PetscCall(MultiplyLayers(start, all, change));
   PetscCall(VecGetArrayWrite(start->rhs, &rhs));
-  for (PetscInt i = 0; i < contact->rows.n; i++) rhs[i] = contact->end.active[i] ? -start->relaxed[i] : 0;
+  for (PetscInt i = 0; i < contact->rows.n; i++) rhs[i] = IsSolved(start, i) ? -start->relaxed[i] - change[i] : 0;
   PetscCall(VecRestoreArrayWrite(start->rhs, &rhs));
   PetscCall(KSPSolve(start->ksp, start->rhs, start->solution));
   PetscCall(KSPGetConvergedReason(start->ksp, &reason));
@@ -93,25 +121,30 @@ static PetscErrorCode SolveActive(StartBalance *start)
              "set -contact_balanced_start false to start from the displacements as they are",
              KSPConvergedReasons[reason], (double)(left / size));
   PetscCall(VecGetArrayRead(start->solution, &force));
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.force[i] = contact->end.active[i] ? PetscRealPart(force[i]) : 0;
-  PetscCall(MultiplyLayers(start, force, rhs = start->moved + contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    contact->end.force[i] = IsSolved(start, i) ? PetscRealPart(force[i]) : GetGiven(start, i);
+    all[i]                = contact->end.force[i];
+  }
   PetscCall(VecRestoreArrayRead(start->solution, &force));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    contact->end.gap[i] = start->takes_part[i] ? start->relaxed[i] + PetscRealPart(rhs[i]) : contact->start.gap[i];
+  PetscCall(MultiplyLayers(start, all, change));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscReal opened = start->relaxed[i] + PetscRealPart(change[i]);
+    const PetscBool rubs   = ContactRowRubs(contact, i);
+
+    contact->end.gap[i] = start->takes_part[i] && !rubs ? opened : contact->start.gap[i];
+    start->slip[i]      = rubs ? opened : 0;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows join and leave until the forces fit the gaps */
-static PetscErrorCode SolveRows(StartBalance *start)
+/* Rows join and leave until the forces fit the gaps, under given forces of nodes that slide */
+static PetscErrorCode SolveRounds(StartBalance *start)
 {
   const Contact contact = start->contact;
   PetscBool     changed = PETSC_TRUE, flips;
 
   PetscFunctionBegin;
   PetscCall(RoundsBegin(&start->rounds));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    contact->end.active[i] = (PetscBool)(start->takes_part[i] &&
-                                         (contact->rows.tied[i] || start->relaxed[i] < -contact->options.tolerance));
   while (changed) {
     PetscCall(RoundsNext(&start->rounds));
     PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
@@ -119,6 +152,31 @@ static PetscErrorCode SolveRows(StartBalance *start)
     PetscCall(RoundsChange(&start->rounds));
     PetscCall(RoundsHaveChanged(&start->rounds, &changed));
     if (changed) PetscCall(RoundsBreakCycle(&start->rounds, &flips));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forces of all rows */
+static PetscErrorCode SolveRows(StartBalance *start)
+{
+  const Contact contact = start->contact;
+  PetscBool     changed = start->rubs;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    contact->end.active[i] = (PetscBool)(start->takes_part[i] && !ContactRowRubs(contact, i) &&
+                                         (contact->rows.tied[i] || start->relaxed[i] < -contact->options.tolerance));
+    start->sticks[i]       = start->rubs;
+    start->given[i]        = 0;
+  }
+  PetscCall(SolveRounds(start));
+  for (PetscInt rub = 0; changed; rub++) {
+    PetscCheck(rub < MAX_RUBS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+               "The forces of friction of the first state, in which massless nodes are in balance, did not settle in %d rounds; set "
+               "-contact_balanced_start false to start from the displacements as they are",
+               MAX_RUBS);
+    PetscCall(ContactJudgeRubbing(contact, start->slip, start->sticks, start->given, &changed));
+    if (changed) PetscCall(SolveRounds(start));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,7 +189,13 @@ static PetscErrorCode Relax(StartBalance *start)
   PetscFunctionBegin;
   start->change = 0;
   PetscCall(ContactComputeStartGaps(contact));
-  PetscCall(PetscArraycpy(start->relaxed, contact->start.gap, contact->rows.n));
+  ContactAlignRubbingRows(contact);
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    start->relaxed[i] = contact->start.gap[i];
+    if (!ContactRowRubs(contact, i)) continue;
+    PetscCall(ContactGetOpening(contact, i, &start->relaxed[i]));
+    start->relaxed[i] -= start->put[i];
+  }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal change;
 
@@ -205,11 +269,15 @@ static PetscErrorCode Create(Contact contact, StartBalance *start)
   PetscFunctionBegin;
   PetscCall(PetscMemzero(start, sizeof(*start)));
   start->contact = contact;
-  PetscCall(PetscCalloc5(n, &start->takes_part, n, &start->springs, n, &start->relaxed, n, &start->on_body, 2 * n, &start->moved));
+  PetscCall(PetscCalloc5(n, &start->takes_part, n, &start->springs, n, &start->relaxed, n, &start->on_body, 3 * n, &start->moved));
+  start->rubs = (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION);
+  PetscCall(PetscCalloc4(n, &start->sticks, n, &start->given, n, &start->put, n, &start->slip));
   PetscCall(FindRows(start));
   for (PetscInt i = 0; i < n; i++) start->springs[i] = SpringCompliance(contact, i);
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &start->rounds));
   start->rounds.known = start->takes_part;
+  for (PetscInt i = 0; i < n; i++)
+    if (ContactRowRubs(contact, i)) PetscCall(ContactGetOpening(contact, i, &start->put[i]));
   PetscCall(ContactCreateRowVec(contact, &start->rhs));
   PetscCall(VecDuplicate(start->rhs, &start->solution));
   PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, start, &start->S));
@@ -233,6 +301,7 @@ static PetscErrorCode Destroy(StartBalance *start)
   PetscCall(MatDestroy(&start->S));
   PetscCall(VecDestroy(&start->rhs));
   PetscCall(VecDestroy(&start->solution));
+  PetscCall(PetscFree4(start->sticks, start->given, start->put, start->slip));
   PetscCall(PetscFree5(start->takes_part, start->springs, start->relaxed, start->on_body, start->moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -251,6 +320,8 @@ static PetscErrorCode Finish(StartBalance *start)
     PetscCall(BodyStartUnderForces(contact->bodies[b], start->on_body));
   }
   PetscCall(ContactComputeStartGaps(contact));
+  ContactAlignRubbingRows(contact);
+  for (PetscInt i = 0; i < n && start->rubs; i++) contact->end.active[i] = contact->end.active[i - i % contact->dim];
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, n));
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, n));
   PetscCall(PetscArraycpy(contact->energy.accepted_force, contact->end.force, n));

@@ -1,0 +1,185 @@
+/* The history of a body's material as a table, for another number of ranks and for runs that begin with the state of another. */
+#include <body/layout/bodyimpl.h>
+#include "bodyvisit.h"
+
+/* The place of an element: the mean of its nodes' places, added up in ascending order: the order of the nodes depends on the ranks */
+static void GetElementKey(Body body, PetscInt e, PetscReal key[TABLES_KEY])
+{
+  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
+  PetscReal      sorted[ELEMENT_MAX_DOFS];
+
+  for (PetscInt d = 0; d < TABLES_KEY; d++) {
+    key[d] = 0;
+    for (PetscInt a = 0; a < n && d < dim; a++) {
+      const PetscReal x = body->mesh.coordinates[body->mesh.connectivity[e * n + a] * dim + d];
+      PetscInt        k = a;
+
+      for (; k > 0 && sorted[k - 1] > x; k--) sorted[k] = sorted[k - 1];
+      sorted[k] = x;
+    }
+    for (PetscInt a = 0; a < n && d < dim; a++) key[d] += sorted[a] / (PetscReal)n;
+  }
+}
+
+/* The point of the element as it was packed that has become point g. Elements with several points have one for each node, in the same
+   order; `places`: of the nodes as they were packed. */
+static PetscInt FindPoint(Body body, PetscInt e, PetscInt g, const PetscReal places[])
+{
+  const PetscInt   n = body->model.element->nodes, dim = body->mesh.dim;
+  const PetscReal *x = body->mesh.coordinates + body->mesh.connectivity[e * n + g] * dim;
+
+  if (body->model.element->history.points != n) return g;
+  for (PetscInt a = 0; a < n; a++) {
+    PetscBool same = PETSC_TRUE;
+
+    for (PetscInt d = 0; d < dim; d++) same = (PetscBool)(same && places[a * dim + d] == x[d]);
+    if (same) return a;
+  }
+  return g;
+}
+
+/* Columns of an element: its place, those of its nodes, the history of its points */
+static PetscInt HistoryWidth(Body body)
+{
+  const Element element = body->model.element;
+
+  return TABLES_KEY + element->nodes * body->mesh.dim + element->history.points * element->history.n;
+}
+
+/* The table of the history: that of another material means something else */
+static PetscErrorCode NameHistory(Body body, const char material[], char name[], size_t size)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, size, "%s/history of %s", body->hdr.name, material));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyPackHistory - adds the table of the history of the material, element by element */
+PetscErrorCode BodyPackHistory(Body body, Tables tables)
+{
+  const Element    element = body->model.element;
+  const PetscInt   nodes = element->nodes, dim = body->mesh.dim, width = HistoryWidth(body), count = element->count;
+  const PetscInt   of_element = element->history.points * element->history.n;
+  PetscReal       *packed;
+  const PetscReal *saved;
+  size_t           size;
+  char             name[256];
+
+  PetscFunctionBegin;
+  saved = BodyHistoryGetSaved(body, &size);
+  if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(count * width, &packed));
+  for (PetscInt e = 0; e < count; e++) {
+    PetscReal *row = packed + e * width;
+
+    GetElementKey(body, e, row);
+    row += TABLES_KEY;
+    for (PetscInt a = 0; a < nodes; a++)
+      for (PetscInt d = 0; d < dim; d++) *row++ = body->mesh.coordinates[body->mesh.connectivity[e * nodes + a] * dim + d];
+    for (PetscInt k = 0; k < of_element; k++) row[k] = saved[(e / 8 * of_element + k) * 8 + e % 8];
+  }
+  PetscCall(NameHistory(body, ((PetscObject)body->model.material)->type_name, name, sizeof(name)));
+  PetscCall(TablesAdd(tables, name, count, width, packed));
+  PetscCall(PetscFree(packed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyUnpackHistory - from the tables of the same run */
+PetscErrorCode BodyUnpackHistory(Body body, Tables tables)
+{
+  const Element    element = body->model.element;
+  const PetscInt   points = element->history.points, n_history = element->history.n, of_element = points * n_history;
+  PetscReal       *saved;
+  const PetscReal *packed;
+  PetscInt         n, row;
+  size_t           size;
+  char             name[256];
+
+  PetscFunctionBegin;
+  saved = BodyHistoryGetSaved(body, &size);
+  if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NameHistory(body, ((PetscObject)body->model.material)->type_name, name, sizeof(name)));
+  PetscCall(TablesGet(tables, name, HistoryWidth(body), &n, &packed));
+  for (PetscInt e = 0; e < element->count; e++) {
+    const PetscReal *places;
+    PetscReal        key[TABLES_KEY];
+
+    GetElementKey(body, e, key);
+    PetscCall(TablesFind(tables, name, key, &row));
+    places = packed + row * HistoryWidth(body) + TABLES_KEY;
+    for (PetscInt g = 0; g < points; g++) {
+      const PetscReal *from = places + element->nodes * body->mesh.dim + FindPoint(body, e, g, places) * n_history;
+
+      for (PetscInt c = 0; c < n_history; c++) saved[(e / 8 * of_element + g * n_history + c) * 8 + e % 8] = from[c];
+    }
+  }
+  BodyHistoryRestore(body);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The name of the material whose history the tables have for a body; NULL if they have none */
+static PetscErrorCode FindHistory(Body body, Tables tables, const char *material[])
+{
+  char     begin[256];
+  size_t   length;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  *material = NULL;
+  PetscCall(NameHistory(body, "", begin, sizeof(begin)));
+  PetscCall(PetscStrlen(begin, &length));
+  TablesGetNumber(tables, &n);
+  for (PetscInt i = 0; i < n && !*material; i++) {
+    const char      *name;
+    PetscInt         rows, width;
+    const PetscReal *values;
+    PetscBool        same;
+
+    PetscCall(TablesGetTable(tables, i, &name, &rows, &width, &values));
+    PetscCall(PetscStrncmp(name, begin, length, &same));
+    if (same) *material = name + length;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  BodyTakeHistory - the history of a body's material from the tables of another run
+
+  Collective
+
+  Input Parameters:
++ body   - the `Body`, set up, before `BodySetInitialState()`
+- tables - the tables, of a run with the same mesh
+
+  Notes:
+  Where the body had none there, as an elastic one, its material stays virgin. Plastic work that has been done before is none of this run:
+  call `BodyNotePlasticBefore()` when the displacements are there.
+*/
+PetscErrorCode BodyTakeHistory(Body body, Tables tables)
+{
+  const char *before, *now = ((PetscObject)body->model.material)->type_name;
+  PetscBool   same;
+
+  PetscFunctionBegin;
+  PetscCall(FindHistory(body, tables, &before));
+  if (!before) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcmp(before, now, &same));
+  PetscCheck(same, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-restart_state: the checkpoint has the history of body '%s' for the material %s, which means nothing for %s; set "
+             "-%s_material_type %s",
+             body->hdr.name, before, now, body->hdr.name, before);
+  PetscCall(BodyUnpackHistory(body, tables));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyNotePlasticBefore - plastic work that has been done until now is none of this run; after BodyTakeHistory() and BodySetInitialState()
+ */
+PetscErrorCode BodyNotePlasticBefore(Body body)
+{
+  BodyMeasures measures;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetMeasures(body, &measures));
+  body->plastic_before += measures.plastic_work;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
