@@ -51,11 +51,12 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the energy that the springs of each pair have gained in the step */
-static void AddSprings(Contact contact, PetscReal sums[])
+/* Adds the energy that the springs of each pair have gained in the step. `across`: those across the normals too */
+static void AddSprings(Contact contact, PetscBool across, PetscReal sums[])
 {
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    sums[2 * contact->rows.pair[i]] += (*contact->ops->stored)(contact, i, contact->end.gap[i]) - contact->energy.last_stored[i];
+    if (across || !ContactRowRubs(contact, i))
+      sums[2 * contact->rows.pair[i]] += (*contact->ops->stored)(contact, i, contact->end.gap[i]) - contact->energy.last_stored[i];
 }
 
 /* Work of contact on the bodies in the step as it has been made without changes at its start, and the forces of pairs that touch: for each
@@ -68,7 +69,7 @@ PetscErrorCode ContactComputeWork(Contact contact)
   PetscCall(PetscArrayzero(energy->pair_sums, 2 * contact->n_pairs));
   PetscCall(ContactComputeFrictionLoss(contact, energy->last_force));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddWorkOn(contact, b));
-  AddSprings(contact, energy->pair_sums);
+  AddSprings(contact, PETSC_FALSE, energy->pair_sums);
   for (PetscInt i = 0; i < contact->rows.n; i++)
     energy->pair_sums[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]),
                                                                  PetscAbsReal(energy->accepted_force[i]));
@@ -87,7 +88,7 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeEnergy(contact->bodies[b], &bodies[b]));
   PetscCall(PetscArrayzero(springs, 2 * contact->n_pairs));
-  AddSprings(contact, springs);
+  AddSprings(contact, PETSC_TRUE, springs);
   for (PetscInt i = 0; i < contact->rows.n; i++)
     springs[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]), PetscAbsReal(energy->accepted_force[i]));
   if (contact->ranks.size > 1)

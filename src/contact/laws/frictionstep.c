@@ -7,6 +7,7 @@
 #include "friction.h"
 #include <contact/compliance/forces.h>
 #include <contact/compliance/interfaceoperator.h>
+#include <checkpoint/checkpoint.h>
 #include <solver/densefactor.h>
 
 /* Rows of nodes that may touch in one step, on each rank; dense matrices of that order */
@@ -27,7 +28,60 @@ typedef struct {
   FrictionProblem   problem;
   PetscInt          room; /* rows that the problem has room for */
   PetscReal         atol; /* what S tells and what bodies do may differ by this [m] */
+  /* springs between both sides of each row, which make it give by flexibility (force - multiplier); all are 0 where there are none */
+  ContactFrictionSprings springs;
+  PetscBool              has_springs;
+  PetscReal             *flexibility; /* [m/N] */
+  PetscReal             *multiplier;  /* [N] */
 } FrictionStep;
+
+/* Stiffness of springs from the areas of the rows as they are */
+static PetscErrorCode SetUpSprings(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs && step->has_springs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscReal          parameter, scale;
+
+    PetscCall((*step->springs.getparameter)(contact, pair, step->springs.penalty, step->springs.scale, &parameter, &scale));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscReal stiffness = parameter * contact->rows.area[i] * contact->resultants.cross_section[p];
+
+      step->flexibility[i] = stiffness > 0 ? 1 / stiffness : 0;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Energy of the spring of a row [J]. One across the normal has no gap, and its force tells; a gap below 0 of it is how far it is stretched. */
+static PetscReal StoredEnergy(Contact contact, PetscInt i, PetscReal gap)
+{
+  const FrictionStep *step = (const FrictionStep *)contact->data;
+
+  if (!(step->flexibility[i] > 0)) return 0;
+  if (gap < 0) return 0.5 * PetscSqr(gap) / step->flexibility[i];
+  return ContactRowRubs(contact, i) ? 0.5 * step->flexibility[i] * PetscSqr(contact->end.force[i]) : 0;
+}
+
+/* By how much a spring has given since it had the force of the multiplier [m] */
+static PetscReal Give(Contact contact, PetscInt i)
+{
+  const FrictionStep *step = (const FrictionStep *)contact->data;
+
+  return step->flexibility[i] * (contact->end.force[i] - step->multiplier[i]);
+}
+
+/* Slips over the controller step of what springs across the normals hold on to */
+static PetscErrorCode ComputeSlips(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactComputeSlips(contact));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (ContactRowRubs(contact, i)) contact->friction.slip[i] += Give(contact, i);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode FreeProblem(FrictionProblem *problem)
 {
@@ -83,6 +137,9 @@ static PetscErrorCode ListRows(Contact contact)
              contact->friction.name, n / contact->dim, (int)contact->dim, MOST_ROWS);
   PetscCall(MakeRoom(step, n, contact->rows.n_all));
   PetscCall(InterfaceOperatorAssemble(step->S, INTERFACE_GAP, -1, step->problem.S));
+  for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = step->flexibility[i];
+  PetscCall(InterfaceOperatorGather(step->S, step->mine, step->problem.opened));
+  for (PetscInt i = 0; i < n; i++) step->problem.S[i * (n + 1)] += step->problem.opened[i];
   for (PetscInt i = 0; i < contact->rows.n; i += contact->dim) {
     PetscReal limit[2];
 
@@ -99,7 +156,8 @@ static PetscErrorCode GatherOpened(Contact contact, PetscScalar opened[])
   FrictionStep *step = (FrictionStep *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = i % contact->dim ? contact->friction.slip[i] : contact->end.gap[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) 
+    step->mine[i] = i % contact->dim ? contact->friction.slip[i] : contact->end.gap[i] + Give(contact, i);
   PetscCall(InterfaceOperatorGather(step->S, step->mine, opened));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -111,7 +169,7 @@ static PetscErrorCode Integrate(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ForcesIntegrate(contact, &step->forces, contact->end.force, 1));
-  if (!ContactFailed(contact)) PetscCall(ContactComputeSlips(contact));
+  if (!ContactFailed(contact)) PetscCall(ComputeSlips(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -282,29 +340,14 @@ static PetscErrorCode StartProblem(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Step(Contact contact)
+/* Forces for which the law holds, and the bodies under these, with multipliers as they are */
+static PetscErrorCode Settle(Contact contact)
 {
   FrictionStep *step = (FrictionStep *)contact->data;
-  PetscBool     in_contact, more;
+  PetscBool     more;
   PetscReal     mismatch = 0, round_off = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(step->marks, contact->rows.n));
-  PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
-  PetscCall(ForcesBeginStep(contact, &step->forces, &in_contact));
-  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!in_contact) {
-    PetscCall(ContactComputeSlips(contact));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    if (contact->start.active[i]) step->marks[i] = INTERFACE_SOLVED;
-    contact->end.force[i] = contact->start.force[i];
-  }
-  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-  if (in_contact) PetscCall(Integrate(contact));
-  else PetscCall(ContactComputeSlips(contact)); /* of the free trial */
-  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkPenetrating(contact, &more));
   PetscCall(StartProblem(contact));
   for (PetscInt sweep = 0; sweep < MOST_SWEEPS; sweep++) {
@@ -324,7 +367,6 @@ static PetscErrorCode Step(Contact contact)
 
       /* what solves the problem is checked by the law itself */
       if (residual > RESIDUAL_MOST * PetscMax(step->atol, round_off)) PetscCall(Fail(contact, PETSC_FALSE, 0));
-      if (!contact->energy.again && IsAmbiguous(&step->problem)) contact->counts.ambiguous_steps++;
       contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, residual);
       PetscFunctionReturn(PETSC_SUCCESS);
     }
@@ -333,12 +375,111 @@ static PetscErrorCode Step(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nothing is remembered from step to step but what contact itself has in a checkpoint */
+/* The forces that have been found become multipliers, until springs hardly give any more */
+static PetscErrorCode Augment(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+  PetscReal     worst, time;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < step->springs.max_it; k++) {
+    worst = 0;
+    for (PetscInt i = 0; i < contact->rows.n; i++) worst = PetscMax(worst, PetscAbsReal(Give(contact, i)));
+    if (contact->ranks.size > 1)
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+    if (worst <= step->springs.tolerance) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(PetscArraycpy(step->multiplier, contact->end.force, contact->rows.n));
+    PetscCall(ComputeSlips(contact));
+    PetscCall(Settle(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ForcesGetTime(contact, &time));
+  PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                           "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+                           " augmentations gaps and slips are off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or "
+                           "loosen -contact_augmentation_tolerance",
+                           (double)time, step->springs.max_it, (double)worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What springs hold at the end of the step [J] */
+static PetscErrorCode SumStored(Contact contact)
+{
+  PetscReal energy = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) energy += (*contact->ops->stored)(contact, i, contact->end.gap[i]);
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  contact->resultants.penalty_energy = energy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Step(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+  PetscBool     in_contact;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(step->marks, contact->rows.n));
+  PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
+  contact->resultants.penalty_energy = 0;
+  PetscCall(ForcesBeginStep(contact, &step->forces, &in_contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!in_contact) {
+    PetscCall(ContactComputeSlips(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (contact->start.active[i]) step->marks[i] = INTERFACE_SOLVED;
+    contact->end.force[i] = contact->start.force[i];
+    /* springs along normals without multipliers push by how deep they are; those across them go on from where they are */
+    step->multiplier[i] = step->springs.max_it || ContactRowRubs(contact, i) ? contact->start.force[i] : 0;
+  }
+  PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
+  if (in_contact) PetscCall(Integrate(contact));
+  else PetscCall(ComputeSlips(contact)); /* of the free trial */
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Settle(contact));
+  if (!ContactFailed(contact) && step->springs.max_it) PetscCall(Augment(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->energy.again && IsAmbiguous(&step->problem)) contact->counts.ambiguous_steps++;
+  PetscCall(SumStored(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nothing is remembered from step to step but what contact itself has in a checkpoint, and springs as the rows had them */
 static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 {
+  FrictionStep *step = (FrictionStep *)contact->data;
+
   PetscFunctionBegin;
-  (void)contact;
-  (void)checkpoint;
+  if (step->has_springs) PetscCall(CheckpointVisitReals(checkpoint, "flexibility", contact->rows.n, step->flexibility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RowsChanged(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(SetUpSprings(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Springs, and by how much they may be stretched in the end */
+static PetscErrorCode ViewSprings(Contact contact, PetscViewer viewer)
+{
+  const FrictionStep *step = (const FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscReal parameter, scale;
+
+    PetscCall((*step->springs.getparameter)(contact, &contact->pairs[p], step->springs.penalty, step->springs.scale, &parameter, &scale));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g N/m^3, along the normals and across them\n",
+                                     contact->pairs[p].name, (double)parameter));
+  }
+  if (step->springs.max_it)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until gaps and slips are within %g m\n", (double)step->springs.tolerance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -349,6 +490,7 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(PetscViewerASCIIPrintf(viewer, "  contact forces at the end of the step from the compliance of the interface, to %g m\n",
                                    (double)step->atol));
+  if (step->has_springs) PetscCall(ViewSprings(contact, viewer));
   if (contact->friction.law.view) PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -362,7 +504,7 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(InterfaceOperatorDestroy(&step->S));
   PetscCall(FrictionSolverDestroy(&step->solver));
   PetscCall(FreeProblem(&step->problem));
-  PetscCall(PetscFree2(step->marks, step->mine));
+  PetscCall(PetscFree4(step->marks, step->mine, step->flexibility, step->multiplier));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -389,12 +531,14 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes controller steps with friction: takes the place of a method that would close gaps by the same forces without it */
-PetscErrorCode ContactStepByFriction(Contact contact)
+/* Makes controller steps with friction: takes the place of a method that would close gaps by the same forces without it, or hold them by
+   springs (`NULL`: there are none) */
+PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprings *springs)
 {
   /* all of S is wanted as a matrix */
   const InterfaceSettings settings = {.prefix = "friction_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
-  FrictionStep           *step;
+  const ContactFrictionSprings given = springs ? *springs : (ContactFrictionSprings){0};
+  FrictionStep                *step;
 
   PetscFunctionBegin;
   PetscTryTypeMethod(contact, destroy);
@@ -406,7 +550,7 @@ PetscErrorCode ContactStepByFriction(Contact contact)
   contact->friction.steps = PETSC_TRUE;
   contact->data           = step;
   contact->ops->step      = Step;
-  contact->ops->stored    = ContactStoresNothing;
+  contact->ops->stored    = springs && !given.max_it ? StoredEnergy : ContactStoresNothing;
   contact->ops->view      = View;
   contact->ops->destroy   = Destroy;
   contact->ops->visit     = Visit;
@@ -416,6 +560,11 @@ PetscErrorCode ContactStepByFriction(Contact contact)
   PetscCall(ForcesCreate(contact, &step->forces));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
   PetscCall(FrictionSolverCreate(&step->solver));
-  PetscCall(PetscCalloc2(contact->rows.n, &step->marks, contact->rows.n, &step->mine));
+  PetscCall(PetscCalloc4(contact->rows.n, &step->marks, contact->rows.n, &step->mine, contact->rows.n, &step->flexibility, contact->rows.n,
+                         &step->multiplier));
+  step->springs     = given;
+  step->has_springs = (PetscBool)(springs != NULL);
+  if (step->has_springs) contact->ops->rowschanged = RowsChanged;
+  PetscCall(SetUpSprings(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

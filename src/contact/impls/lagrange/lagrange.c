@@ -30,7 +30,7 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
                                              "the end of the step; leave -<body>_mass_redistribute at true, or choose -contact_law "
                                              "frictionless"));
   if (contact->options.law == CONTACT_LAW_FRICTION) {
-    PetscCall(ContactStepByFriction(contact));
+    PetscCall(ContactStepByFriction(contact, NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (forward) {

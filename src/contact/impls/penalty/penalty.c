@@ -147,12 +147,31 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Steps with friction have springs across the normals too, and forces that follow from the compliance of the interface */
+PetscErrorCode PenaltyStepByFriction(Contact contact)
+{
+  const Penalty               *penalty = (const Penalty *)contact->data;
+  const ContactFrictionSprings springs = {.penalty      = penalty->penalty,
+                                          .scale        = penalty->scale,
+                                          .getparameter = PenaltyGetPairParameter,
+                                          .tolerance    = penalty->augmentation_max_it ? penalty->augmentation_tolerance : 0,
+                                          .max_it       = penalty->augmentation_max_it};
+
+  PetscFunctionBegin;
+  PetscCall(ContactStepByFriction(contact, &springs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode PenaltySetUp(Contact contact)
 {
   Penalty       *penalty = (Penalty *)contact->data;
   const PetscInt n       = contact->rows.n;
 
   PetscFunctionBegin;
+  if (contact->options.law == CONTACT_LAW_FRICTION) {
+    PetscCall(PenaltyStepByFriction(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP || penalty->damping > 0, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT,
              "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "

@@ -31,7 +31,9 @@ typedef struct {
 } Penalty;
 
 PETSC_INTERN PetscErrorCode PenaltyReadParameter(Contact);
+PETSC_INTERN PetscErrorCode PenaltyGetPairParameter(Contact, const ContactPair *, PetscReal, PetscReal, PetscReal *, PetscReal *);
 PETSC_INTERN PetscErrorCode PenaltySetUpSprings(Contact);
+PETSC_INTERN PetscErrorCode PenaltyStepByFriction(Contact);
 PETSC_INTERN PetscErrorCode PenaltyViewParameter(Contact, PetscViewer);
 PETSC_INTERN PetscErrorCode PenaltySetUp(Contact);
 PETSC_INTERN PetscErrorCode PenaltySolve(Contact);

@@ -29,17 +29,18 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The penalty parameter of a pair: as given, or from an element on each side, one behind the other, and a scale */
-static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, PetscReal *parameter, PetscReal *scale)
+/* The penalty parameter of a pair: as `given`, or, where that is 0, from an element on each side, one behind the other, and a scale, `wanted`
+   or, where that is 0, by the mass of the contact nodes */
+PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair, PetscReal given, PetscReal wanted, PetscReal *parameter,
+                                       PetscReal *scale)
 {
-  const Penalty *penalty      = (const Penalty *)contact->data;
-  PetscReal      flexibility  = 0;
-  PetscBool      all_massless = PETSC_TRUE;
+  PetscReal flexibility  = 0;
+  PetscBool all_massless = PETSC_TRUE;
 
   PetscFunctionBegin;
-  *parameter = penalty->penalty;
-  *scale     = penalty->scale;
-  if (!penalty->springs || penalty->penalty > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  *parameter = given;
+  *scale     = wanted;
+  if (given > 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal stiffness = 0;
     PetscBool massless;
@@ -51,6 +52,17 @@ static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, P
   }
   if (!(*scale > 0)) *scale = all_massless ? MASSLESS_SCALE : MASS_SCALE;
   *parameter = *scale / flexibility;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, PetscReal *parameter, PetscReal *scale)
+{
+  const Penalty *penalty = (const Penalty *)contact->data;
+
+  PetscFunctionBegin;
+  *parameter = 0;
+  *scale     = penalty->scale;
+  if (penalty->springs) PetscCall(PenaltyGetPairParameter(contact, pair, penalty->penalty, penalty->scale, parameter, scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -111,7 +111,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
   if (contact->options.law == CONTACT_LAW_FRICTION) {
-    PetscCall(ContactStepByFriction(contact));
+    PetscCall(ContactStepByFriction(contact, NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCheck(contact->options.constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
