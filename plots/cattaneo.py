@@ -2,8 +2,8 @@
 
     python plots/cattaneo.py out/cattaneo-cylinders.h5 out/cattaneo-spheres.h5 figure.png
 
-Of cylinders the traction across the contact at some load steps, from the fields that the run wrote too; of spheres the force across over the way of the
-body that is moved, which is a loop. What is moved and held is the surface "back" of either body (-<body>_boundary_displacement back).
+Of cylinders the traction across the contact at some load steps, from the fields that the run wrote too; of spheres the force across over the load steps,
+and what friction has taken after half a loop. What is moved and held is the surface "back" of either body (-<body>_boundary_displacement back).
 
 K. L. Johnson, Contact mechanics (1985), section 7.2: (7.28) cylinders, (7.35) to (7.42) spheres; the loop of spheres in section 7.4 after R. D. Mindlin,
 H. Deresiewicz, Elastic spheres in contact under varying oblique forces, Journal of Applied Mechanics 20 (1953).
@@ -184,7 +184,7 @@ def draw_loop(axes, run):
     other.set_ylabel(f"taken by friction [{unit}]")
     other.axhline(factor * (run.loss[turn] + theory), **DASHED)
     axes.set_title(
-        f"spheres pushed to and fro: a loop takes {factor * theory:.3g} {unit} in theory"
+        f"spheres pushed to and fro: half a loop takes {factor * theory:.3g} {unit} in theory"
     )
     axes.set_xlabel("time")
     axes.set_ylabel("Q/µP")
