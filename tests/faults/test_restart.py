@@ -424,7 +424,8 @@ def test_plastic_flow_preloads_dynamic(run_in, folder, integrator):
 def test_flow_goes_on_from_a_state(run_in, folder, same_runs):
     """Begun with a state, a run is continued from its own checkpoint to the last bit, plastic work and all."""
     before, whole, other = folder("before"), folder("whole"), folder("other")
-    run_in(PLASTIC + FLOWS + "j2", before, 1, *"-b_ts_type static -time_step 0.1 -time_end 1 -b_boundary_traction_ymax 0,-3e8*t".split(), "-checkpoint", "c.h5")
+    static = "-b_ts_type static -time_step 0.1 -time_end 1 -b_boundary_traction_ymax 0,-3e8*t "
+    run_in(PLASTIC + FLOWS + "j2 " + static, before, 1, "-checkpoint", "c.h5")
     case = PLASTIC + FLOWS + f"j2 -time_step 1e-5 -time_end 4e-4 -b_boundary_traction_ymax 0,-5e8 -restart_state {before / 'c.h5'}"
     run_in(case, whole, 1)
     run_in(case, other, 1, "-checkpoint", "c.h5", "-checkpoint_interval", 25)
