@@ -50,3 +50,13 @@ def test_vibration(impakt):
     )
     assert not warnings(run)
     assert run.summary["bodies"]["b"]["rotation_max"] <= 1e-10
+
+
+def test_spin_has_no_momentum(impakt):
+    """The momentum of a block that spins about its centre is round-off of its parts, and no change of that is an error."""
+    run = impakt(
+        "-bodies b -b_dm_plex_dim 2 -b_dm_plex_box_faces 4,4 -b_density 1000 -b_youngs_modulus 1e7 -b_poissons_ratio 0.3 -b_material_type neo_hookean "
+        "-b_initial_velocity -10*(y-0.5),10*(x-0.5) -time_step 0.01 -time_end 0.5"
+    )
+    assert run.summary["system"]["momentum_error_max"] <= 1e-10
+    assert not any("the momentum error" in text for text in run.summary["warnings"])
