@@ -130,7 +130,7 @@ PetscErrorCode BodyGetReactions(Body body, PetscReal force[], PetscReal moment[]
   PetscCall(VecGetArrayRead(body->state.u, &u));
   PetscCall(VecGetArrayRead(body->state.applied, &applied));
   PetscCall(VecGetArrayRead(outside, &external));
-  for (PetscInt g = 0; g < loads->n_groups; g++)
+  for (PetscInt g = 0; g < loads->n_groups && loads->groups[g].prescription < loads->n_prescribed; g++)
     AddGroup(&loads->groups[g], body->mesh.dim, x, u, applied, external, loads->reactions + N_SUMS * loads->groups[g].prescription);
   PetscCall(VecRestoreArrayRead(outside, &external));
   PetscCall(VecRestoreArrayRead(body->state.applied, &applied));
