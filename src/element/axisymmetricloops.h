@@ -211,7 +211,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, PetscBool mean, const Solid *s
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdReal       P[POINTS][9], pressure = {0}, volume = {0};
     Field          X, U, F = {0};
-    Means          means = {{0}};
+    Means          means = {{0}, {0}};
     PetscInt       bad;
 
     GetField(connectivity, first, count, solid->coordinates, &X);
@@ -273,7 +273,7 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     SimdReal strain[9], S[9], P[POINTS][9], pressure = {0}, volume = {0};
     Field    X, U, V, F = {0};
-    Means    means = {{0}};
+    Means    means = {{0}, {0}};
 
     GetField(connectivity, first, count, solid->coordinates, &X);
     GetField(connectivity, first, count, u, &U);
@@ -308,7 +308,7 @@ SIMD_INLINE void GetPoints(const Solid *solid, PetscInt first, PetscInt count, c
 {
   SimdReal volume = {0};
   Field    X, U;
-  Means    means = {{0}};
+  Means    means = {{0}, {0}};
 
   GetField(connectivity, first, count, solid->coordinates, &X);
   GetField(connectivity, first, count, u, &U);
