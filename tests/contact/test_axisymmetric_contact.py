@@ -76,41 +76,39 @@ def test_contact_patch(impakt, low, high, simplex):
     assert next(iter(run.history["contact"].values()))["force"][-1] == pytest.approx(2e6 * np.pi * 0.25, rel=1e-9)
 
 
-def hertz_of(run, body):
-    """Modulus, and Hertz's load for an approach, of a ball of 1 m of the options files."""
-    return 1e9 / (1 - 0.3**2)
+MODULUS = 1e9 / (1 - 0.3**2)  # of the balls of 1 m in the options files, as Hertz has it
 
 
 def test_hertz_pressure(impakt):
-    """Pressed by a little: at a/R = 0.022 the profile within 0.9 a is Hertz's for the load; radius from the profile."""
+    """At a/R = 0.022, with 31 elements to the radius, the profile within 0.9 a is Hertz's for the load: radius and largest pressure from the profile to 0.3 %
+    (measured 0.10 % and -0.21 %), nodes to 0.5 % of the largest (measured 0.34 %), but for the one on the axis, which is 0.9 % low."""
     run = impakt(SPHERE)
     load = next(iter(run.history["contact"].values()))["force"][-1]
-    modulus = hertz_of(run, "sphere")
-    radius = (3 * load / (4 * modulus)) ** (1 / 3)
+    radius = (3 * load / (4 * MODULUS)) ** (1 / 3)
     peak = 3 * load / (2 * np.pi * radius**2)
     with h5py.File(run.folder / "out/hertz-sphere-axisymmetric-fields.h5") as fields:
         positions = fields["mesh/positions"][:, :2]
         pressure = fields["contact_pressure"][max(fields["contact_pressure"])][()].ravel()
-    surface = (np.abs(np.hypot(positions[:, 0], positions[:, 1] - 1) - 1) < 1e-3) & (positions[:, 0] < 0.9 * radius) & (positions[:, 1] < 0.5)
+    surface = (pressure > 0) & (positions[:, 0] < 0.9 * radius)
     distance = positions[surface, 0] / radius
     error = np.abs(pressure[surface] / peak - hertz.hertz_pressure(distance))
     fitted = np.array(hertz.fit(distance, pressure[surface] / peak))
-    print(len(distance), radius, error.max(), fitted)
-    assert len(distance) > 10
-    assert error.max() <= 0.006
+    assert len(distance) > 20
+    assert error.max() <= 0.012
+    assert np.sort(error)[-2] <= 0.005
     assert fitted == pytest.approx([1, 1], abs=3e-3)
 
 
 def test_hertz_impact(impakt):
-    """Contact time, to a whole step of 0.3 %, and largest force of the true sphere, which the mesh weighs as much as, to 0.3 %. Restitution; energy."""
+    """Contact time, to a whole step of 0.3 %, and largest force of the true sphere, which the mesh weighs as much as, to 0.3 %.
+    Measured: -0.27 % and 0.12 %."""
     run = impakt(IMPACT)
     body = run.history["body/ball"]
-    mass, speed, modulus = 4000 / 3 * np.pi, 2e-3, hertz_of(run, "ball")
+    mass, speed = 4000 / 3 * np.pi, 2e-3
     assert body["momentum"][0, 1] == pytest.approx(-mass * speed, rel=1e-12)
-    approach = (15 * mass * speed**2 / (16 * modulus)) ** 0.4
+    approach = (15 * mass * speed**2 / (16 * MODULUS)) ** 0.4
     force = next(iter(run.history["contact"].values()))["force"][:]
-    print(force.max() / (4 / 3 * modulus * approach**1.5) - 1, np.count_nonzero(force) * 2e-4 / (2.943 * approach / speed) - 1)
-    assert force.max() == pytest.approx(4 / 3 * modulus * approach**1.5, rel=3e-3)
+    assert force.max() == pytest.approx(4 / 3 * MODULUS * approach**1.5, rel=3e-3)
     assert np.count_nonzero(force) * 2e-4 == pytest.approx(2.943 * approach / speed, rel=3e-3)
     assert run.summary["contact"]["onsets"] == 1
     assert body["mean_velocity"][-1, 1] == pytest.approx(speed, rel=1e-4)
@@ -129,7 +127,6 @@ def test_taylor(impakt, faces, step, radius, length):
     """Foulk's converged radius and length, 7.226 and 21.43 mm, to 0.5 and 0.3 %."""
     run = impakt(f"{TAYLOR} -rod_dm_plex_box_faces {faces} -time_step {step} -output_fields fields.h5 -output_fields_interval 100000")
     found = foot_and_length(run)
-    print(found)
     assert found[0] == pytest.approx(7.226e-3, rel=radius)
     assert found[1] == pytest.approx(21.43e-3, rel=length)
     assert abs(run.summary["system"]["energy_error_final"]) <= 1e-3
@@ -138,7 +135,6 @@ def test_taylor(impakt, faces, step, radius, length):
 def test_taylor_wall(impakt):
     """On a wall that only pushes, the rod of taylor-bar.opts in three dimensions: 7.284 and 21.51 mm with 6 divisions and 40 elements along."""
     found = foot_and_length(impakt(f"{WALL} -output_fields fields.h5 -output_fields_interval 100000"))
-    print(found)
     assert found[0] == pytest.approx(7.284e-3, rel=5e-3)
     assert found[1] == pytest.approx(21.51e-3, rel=3e-3)
 
@@ -156,11 +152,10 @@ def tubes(law="", more=""):
 
 @pytest.mark.parametrize("law", ["", "-contact_law tied"])
 def test_tubes(impakt, law):
-    """Pressure goes over from ring to ring as within one tube, which Lame's solution is of. Measured: 2e-4."""
+    """Pressure goes over from ring to ring as within one tube, which Lame's solution is of. Measured: 9e-5."""
     run = impakt(tubes(law))
-    print([run.summary["bodies"][b]["displacement_error"] for b in "ab"])
     for b in "ab":
-        assert run.summary["bodies"][b]["displacement_error"] <= 1e-3
+        assert run.summary["bodies"][b]["displacement_error"] <= 2e-4
 
 
 CYLINDER = "-obstacles o -o_obstacle_type cylinder -o_point 0,0,0 -o_axis 0,1,0 -o_radius 1 -contact_pairs b.xmin:o"
@@ -169,14 +164,13 @@ RING = "-bodies b -b_axisymmetric true -b_dm_plex_dim 2 -b_dm_plex_box_lower 1,0
 
 def test_shaft(impakt):
     """A tube that is pressed from outside on a rigid shaft, without getting longer: sigma_rr = -p of the wall, where u = 0. With u = C r + D / r and C = -D / a^2:
-    p_shaft from sigma_rr = E / (1 + nu) (C / (1 - 2 nu) - D / r^2)."""
+    p_shaft from sigma_rr = E / (1 + nu) (C / (1 - 2 nu) - D / r^2). Measured: 1.4e-4."""
     run = impakt(
         f"{RING} -b_ts_type static -b_boundary_displacement ymin,ymax -b_boundary_displacement_ymin free,0 -b_boundary_displacement_ymax free,0 -b_boundary_traction xmax -b_boundary_traction_xmax -1e5,0 {CYLINDER}"
     )
     outer, inner = (1 / 0.4 + 1 / r**2 for r in (2, 1))  # sigma_rr by -D E / (1 + nu)
     force = next(iter(run.history["contact"].values()))["force"][-1]
-    print(force, 1e5 * inner / outer * 2 * np.pi * 0.3)
-    assert force == pytest.approx(1e5 * inner / outer * 2 * np.pi * 0.3, rel=1e-3)
+    assert force == pytest.approx(1e5 * inner / outer * 2 * np.pi * 0.3, rel=3e-4)
 
 
 @pytest.mark.parametrize("ranks", [2, 3])
