@@ -134,8 +134,8 @@ static void AddGeometricPart(PetscInt n, const Point *point, PetscReal theta, Pe
 
       for (PetscInt k = 0; k < 3; k++)
         for (PetscInt l = 0; l < 3; l++) trace += point->turned[i][3 * k + l] * point->turned[j][3 * l + k];
-      K[i * n + j] += point->weight * (point->ratio * (work[i] * point->g[j] + point->g[i] * work[j]) + 3 * third * point->g[i] * point->g[j] +
-                                       third * (trace - dtheta[i] * dtheta[j] / (theta * theta)) +
+      K[i * n + j] += point->weight * (point->ratio * (work[i] * point->g[j] + point->g[i] * work[j]) +
+                                       3 * third * point->g[i] * point->g[j] + third * (trace - dtheta[i] * dtheta[j] / (theta * theta)) +
                                        pressure * point->J * (point->D[i] * point->D[j] - trace));
     }
 }

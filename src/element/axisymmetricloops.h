@@ -19,7 +19,7 @@ typedef struct {
 
 /* A point of integration of a batch */
 typedef struct {
-  Gradients at; /* H with u_r / r in H[8]; with a mean dilatation it becomes H' */
+  Gradients at;             /* H with u_r / r in H[8]; with a mean dilatation it becomes H' */
   SimdReal  radius, weight; /* r [m], and det(dX/dxi) r */
   SimdReal  j;              /* J - 1 with F as it is; of linear materials the trace of H */
   Dilated   dilated;
@@ -65,9 +65,9 @@ SIMD_INLINE void GetPoint(PetscBool linear, Field *X, Field *U, const PetscReal 
     const PetscReal hoop = u[p] / point->radius[p], xx = point->at.H[0][p], yy = point->at.H[4][p];
     const PetscReal plane = xx + yy + (xx * yy - point->at.H[1][p] * point->at.H[3][p]);
 
-    point->weight[p]   = point->at.determinant[p] * point->radius[p];
-    point->at.H[8][p]  = linear || 1 + hoop > 0 ? hoop : NAN; /* a ring that has gone through the axis */
-    point->j[p]        = linear ? xx + yy + hoop : plane + hoop * (1 + plane);
+    point->weight[p]  = point->at.determinant[p] * point->radius[p];
+    point->at.H[8][p] = linear || 1 + hoop > 0 ? hoop : NAN; /* a ring that has gone through the axis */
+    point->j[p]       = linear ? xx + yy + hoop : plane + hoop * (1 + plane);
   }
 }
 
@@ -204,13 +204,13 @@ SIMD_INLINE void FinishPressure(const Means *means, const SimdReal volume, SimdR
 SIMD_INLINE PetscInt AddBatches(PetscBool linear, PetscBool mean, const Solid *solid, PetscReal scale, PetscInt count,
                                 const PetscInt connectivity[], const PetscReal u[], PetscReal f[])
 {
-  PetscInt  inverted  = -1;
+  PetscInt  inverted   = -1;
   RingPoint at[POINTS] = {0};
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdReal       P[POINTS][9], pressure = {0}, volume = {0};
-    Field          X, U, F = {0};
+    Field          X, U, F                              = {0};
     Means          means = {{0}, {0}};
     PetscInt       bad;
 

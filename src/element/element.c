@@ -176,11 +176,13 @@ static PetscErrorCode CheckAxisymmetric(Element element)
   PetscFunctionBegin;
   if (!element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(element->dim == 2, comm, PETSC_ERR_USER_INPUT,
-             "-%saxisymmetric true: the mesh has %" PetscInt_FMT " dimensions; rings are made of plane meshes, whose first coordinate is the "
+             "-%saxisymmetric true: the mesh has %" PetscInt_FMT
+             " dimensions; rings are made of plane meshes, whose first coordinate is the "
              "distance from the axis",
              Prefix(element), element->dim);
   PetscCheck(!element->plane_stress, comm, PETSC_ERR_USER_INPUT,
-             "-%splane_stress true and -%saxisymmetric true: rings have a stress along them; leave one out", Prefix(element), Prefix(element));
+             "-%splane_stress true and -%saxisymmetric true: rings have a stress along them; leave one out", Prefix(element),
+             Prefix(element));
   PetscCheck(!element->cross_section_dim, comm, PETSC_ERR_USER_INPUT,
              "-%sthickness %g and -%saxisymmetric true: rings have no thickness, they go all around; leave one out", Prefix(element),
              (double)element->cross_section, Prefix(element));

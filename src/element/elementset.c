@@ -151,8 +151,8 @@ PetscErrorCode ElementGetPlaneStress(Element element, PetscBool *plane_stress)
   Level: intermediate
 
   Notes:
-  Forces, masses and energies are those of whole rings. Triangles have the formulation `ELEMENT_FULL`, quadrilaterals `ELEMENT_MEAN_DILATATION`
-  too. Rings have no thickness, and are not in plane stress.
+  Forces, masses and energies are those of whole rings. Triangles have the formulation `ELEMENT_FULL`, quadrilaterals
+`ELEMENT_MEAN_DILATATION` too. Rings have no thickness, and are not in plane stress.
 
   A single triangle has a motion without strain at its centroid that is not rigid; two that have an edge in common do not.
 

@@ -18,9 +18,9 @@ struct _p_Surface {
   PetscMPIInt *owner_rank;
   PetscBool    axisymmetric; /* areas are those of rings, see SurfaceSetAxisymmetric() */
   PetscReal    on_axis;      /* nodes with a smaller first coordinate lie on the axis [m] */
-  PetscBool    round;   /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
-  PetscSF      sf;      /* from owned nodes to ghosts, one number for each node */
-  PetscSF      vectors; /* the same, three numbers for each node */
+  PetscBool    round;        /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
+  PetscSF      sf;           /* from owned nodes to ghosts, one number for each node */
+  PetscSF      vectors;      /* the same, three numbers for each node */
 };
 
 /* A face of the Neumann side as one rank sends it to another */

@@ -111,9 +111,9 @@ static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
 static void SetUpPatch(Surface surface, PetscInt f, const PetscInt marks[], Patch *patch)
 {
   const SurfaceData *data = &surface->data;
-  const PetscInt n = data->face_nodes, *nodes = data->faces + f * n;
-  PetscReal      x[4][3];
-  Frame          frame;
+  const PetscInt     n = data->face_nodes, *nodes = data->faces + f * n;
+  PetscReal          x[4][3];
+  Frame              frame;
 
   *patch = (Patch){.n = n, .axisymmetric = surface->axisymmetric};
   for (PetscInt k = 0; k < n; k++)

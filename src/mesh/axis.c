@@ -33,9 +33,10 @@ PetscErrorCode MeshGetAxisTolerance(DM dm, PetscReal *tolerance)
   PetscCall(DMGetBoundingBox(dm, lower, upper));
   PetscCall(PetscObjectGetName((PetscObject)dm, &name));
   *tolerance = ON_AXIS * upper[0];
-  PetscCheck(upper[0] > 0 && lower[0] >= -*tolerance, PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,
-             "-%s_axisymmetric true: the mesh reaches from x = %g to %g m; x is the distance from the axis, which is not negative: mesh one "
-             "half of the section alone, or move it (-%s_translate)",
-             name, (double)lower[0], (double)upper[0], name);
+  PetscCheck(
+      upper[0] > 0 && lower[0] >= -*tolerance, PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,
+      "-%s_axisymmetric true: the mesh reaches from x = %g to %g m; x is the distance from the axis, which is not negative: mesh one "
+      "half of the section alone, or move it (-%s_translate)",
+      name, (double)lower[0], (double)upper[0], name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -155,7 +155,8 @@ static PetscErrorCode FindMoves(const Ball *ball, Sphere *sphere)
       sectors[sphere->faces[sphere->corners * f + k]] += sector;
     }
   }
-  for (PetscInt i = 0; i < sphere->n_nodes; i++) sphere->move[i] = PetscPowReal(sectors[i] / volumes[i], 1.0 / (ball->turned ? 3 : ball->dim)) - 1;
+  for (PetscInt i = 0; i < sphere->n_nodes; i++)
+    sphere->move[i] = PetscPowReal(sectors[i] / volumes[i], 1.0 / (ball->turned ? 3 : ball->dim)) - 1;
   PetscCall(PetscFree2(volumes, sectors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -124,7 +124,8 @@ def foot_and_length(run):
 
 @pytest.mark.parametrize(("faces", "step", "radius", "length"), [("6,60", 4e-8, 0.015, 3e-3), *long(("16,160", 4e-8, 5e-3, 3e-3))])
 def test_taylor(impakt, faces, step, radius, length):
-    """Foulk's converged radius and length, 7.226 and 21.43 mm, to 0.5 and 0.3 %."""
+    """Foulk's converged radius and length, 7.226 and 21.43 mm, to 0.5 and 0.3 %. Measured: 7.134, 7.158, 7.184, 7.196 mm with 6, 8, 12, 16 elements to the radius, and 21.443 to
+    21.427 mm; energy to 6e-4."""
     run = impakt(f"{TAYLOR} -rod_dm_plex_box_faces {faces} -time_step {step} -output_fields fields.h5 -output_fields_interval 100000")
     found = foot_and_length(run)
     assert found[0] == pytest.approx(7.226e-3, rel=radius)
@@ -132,11 +133,13 @@ def test_taylor(impakt, faces, step, radius, length):
     assert abs(run.summary["system"]["energy_error_final"]) <= 1e-3
 
 
+@pytest.mark.long
 def test_taylor_wall(impakt):
-    """On a wall that only pushes, the rod of taylor-bar.opts in three dimensions: 7.284 and 21.51 mm with 6 divisions and 40 elements along."""
+    """On a wall that only pushes, the rod of taylor-bar.opts in three dimensions: 7.313 and 21.49 mm with 8 divisions, its finest mesh in test_taylor.py. Measured: 7.319
+    and 21.477 mm; with 6 and 8 elements to the radius 7.241 and 7.287 mm."""
     found = foot_and_length(impakt(f"{WALL} -output_fields fields.h5 -output_fields_interval 100000"))
-    assert found[0] == pytest.approx(7.284e-3, rel=5e-3)
-    assert found[1] == pytest.approx(21.51e-3, rel=3e-3)
+    assert found[0] == pytest.approx(7.313e-3, rel=5e-3)
+    assert found[1] == pytest.approx(21.49e-3, rel=3e-3)
 
 
 def tubes(law="", more=""):

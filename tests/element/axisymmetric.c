@@ -61,7 +61,8 @@ static PetscReal get_volume(const Solid *solid)
 }
 
 /* u = (a r, b z): all stresses are constant, those across the axis and along the ring the same, so that inner nodes are in balance on any
-   mesh. By linear elasticity, with lambda = mu = 80 Pa: sigma_rr = lambda (2 a + b) + 2 mu a; the energy is the density times the volume. */
+   mesh. By linear elasticity, with lambda = mu = 80 Pa: sigma_rr = lambda (2 a + b) + 2 mu a; the energy is the density times the volume.
+ */
 static void uniform_strains_are_exact(void **state)
 {
   const PetscReal a = 0.11, b = -0.07, trace = 2 * a + b, across = LAME * (trace + 2 * a), along = LAME * (trace + 2 * b);
@@ -98,15 +99,15 @@ static void uniform_strains_are_exact(void **state)
       }
 }
 
-/* A ring of 1 m x 1 m, from 0.7 m to 1.7 m: pi (1.7^2 - 0.7^2) m^3 of 3 kg/m^3; the mass of a node is half the height times the integral of 2 pi r and
-   its shape function, pi / 3 (2 r_a + r_b) */
+/* A ring of 1 m x 1 m, from 0.7 m to 1.7 m: pi (1.7^2 - 0.7^2) m^3 of 3 kg/m^3; the mass of a node is half the height times the integral of
+   2 pi r and its shape function, pi / 3 (2 r_a + r_b) */
 static void mass_is_that_of_the_ring(void **state)
 {
   const PetscReal inner = 0.7, outer = 1.7, of_inner = 1.5 * PETSC_PI / 3 * (2 * inner + outer),
                   of_outer = 1.5 * PETSC_PI / 3 * (inner + 2 * outer);
-  PetscReal M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-  Mesh      mesh;
-  Solid     solid;
+  PetscReal       M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  Mesh            mesh;
+  Solid           solid;
 
   (void)state;
   for (PetscInt s = 0; s < KINDS; s++) {

@@ -132,10 +132,11 @@ static PetscErrorCode CheckAxis(Body body)
     PetscCall(PetscFree(vertices));
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &bad, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
-  PetscCheck(bad < 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-%sboundary_displacement_%s moves nodes on the axis x = 0 of an axisymmetric body along x: they stay there; write the word free, "
-             "or a formula in x that is 0 there",
-             ((PetscObject)body)->prefix, loads->prescribed[bad].surface);
+  PetscCheck(
+      bad < 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-%sboundary_displacement_%s moves nodes on the axis x = 0 of an axisymmetric body along x: they stay there; write the word free, "
+      "or a formula in x that is 0 there",
+      ((PetscObject)body)->prefix, loads->prescribed[bad].surface);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -111,10 +111,11 @@ static PetscErrorCode CheckAxis(Body body, int which, Vec values)
     if (body->mesh.on_axis[node] && value[node * body->mesh.dim] != 0) leaves = PETSC_TRUE;
   PetscCall(VecRestoreArrayRead(values, &value));
   PetscCall(BodyAnyRank(body, &leaves));
-  PetscCheck(!leaves, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-%s%s moves nodes on the axis x = 0 of an axisymmetric body along x: they stay there; its first component must be 0, or a formula "
-             "in x that is 0 there",
-             ((PetscObject)body)->prefix, initial[which]);
+  PetscCheck(
+      !leaves, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-%s%s moves nodes on the axis x = 0 of an axisymmetric body along x: they stay there; its first component must be 0, or a formula "
+      "in x that is 0 there",
+      ((PetscObject)body)->prefix, initial[which]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

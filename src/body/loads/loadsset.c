@@ -66,9 +66,10 @@ PetscErrorCode BodyLoadsAddBodyForce(Body body, const char text[])
 PetscErrorCode BodyLoadsCheckGravity(Body body)
 {
   PetscFunctionBegin;
-  PetscCheck(!body->model.element->axisymmetric || body->loads->gravity[0] == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-%sgravity %g,...: gravity of an axisymmetric body is along its axis, y; for a force away from the axis there is -%sbody_force",
-             ((PetscObject)body)->prefix, (double)body->loads->gravity[0], ((PetscObject)body)->prefix);
+  PetscCheck(
+      !body->model.element->axisymmetric || body->loads->gravity[0] == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-%sgravity %g,...: gravity of an axisymmetric body is along its axis, y; for a force away from the axis there is -%sbody_force",
+      ((PetscObject)body)->prefix, (double)body->loads->gravity[0], ((PetscObject)body)->prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -272,7 +272,8 @@ static PetscErrorCode FindFactor(MomentsProblem *problem)
                                {0, SECOND_ORDER, SOFT_CENTRE, SOFT_INERTIA}};
   const PetscInt n_attempts = (PetscInt)(sizeof(attempts) / sizeof(attempts[0])), dim = problem->body->mesh.dim;
   /* in one dimension nothing turns, and no ring does */
-  const PetscBool centre_alone = (PetscBool)(dim == 1 || problem->body->model.element->axisymmetric || problem->body->mass.moments == BODY_MASS_CENTRE);
+  const PetscBool centre_alone = (PetscBool)(dim == 1 || problem->body->model.element->axisymmetric ||
+                                             problem->body->mass.moments == BODY_MASS_CENTRE);
   PetscReal       coefficients[MAX_MOMENTS], moments[MAX_MOMENTS];
   PetscBool       converged = PETSC_FALSE;
 
