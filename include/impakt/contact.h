@@ -316,6 +316,7 @@ PETSC_EXTERN PetscErrorCode ContactGetAllowUnstable(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetSharedTimes(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactSetBalance(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetBalance(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactSetAutomaticBalance(Contact);
 PETSC_EXTERN PetscErrorCode ContactGetSharedTimes(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetUnlimitedReason(Contact, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode ContactSetBalancedStart(Contact, PetscBool);

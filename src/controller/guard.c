@@ -21,7 +21,7 @@
 
   Note:
   What is compared is kinetic and potential energy of all bodies and energy of penalty springs, less the work of loads and of held
-  displacements, at the end of each controller step. There is no guard where nothing can touch, nor where a body is static: what its contact
+  displacements, at the end of each controller step. There is no guard where a body is static: what its contact
   forces have done is known up to their lag behind it by a step.
 
 .seealso: `Controller`, `ControllerGetEnergyGuard()`, `ContactSetEnergyCap()`
@@ -92,6 +92,12 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
     if (PetscAbsReal(frame->pairs[p].force) > PetscAbsReal(frame->pairs[pair].force)) pair = p;
   if (frame->n_pairs) PetscCall(ContactGetPair(controller->contact, pair, &pair_name, NULL, NULL));
   PetscCall(PetscObjectGetName((PetscObject)controller->bodies[body], &body_name));
+  PetscCheck(
+      frame->n_pairs, PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
+      "The energy has grown by %.3g %% at time %.9g s (controller step %" PetscInt_FMT
+      "), most of it in body '%s', and nothing can touch. Choose a smaller -time_step; -energy_guard %g ends runs that gain more than "
+      "this part of their energy, 0 none",
+      (double)(100 * gain), (double)frame->time, frame->step, body_name, (double)controller->guard.part);
   PetscCall(ContactGetUnlimitedReason(controller->contact, &always, NULL));
   PetscCheck(
       !always, PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
@@ -133,7 +139,7 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
 
   PetscFunctionBegin;
   PetscCall(CheckFinite(controller, frame));
-  if (controller->guard.part == 0 || !frame->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (controller->guard.part == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < frame->n_bodies; b++) {
     PetscBool without_inertia;
 

@@ -155,8 +155,8 @@ PetscReal TransferPresentGap(Transfer transfer, PetscInt row)
          AlongRow(transfer, row, data->reference, transfer->column_reference);
 }
 
-/* Marks rows that are to follow: those of nodes that touch, or may within the reach. Nodes beyond the end of the partner have their gap
-   from where it ends, which only a build tells. */
+/* Marks rows that are to follow: those of nodes that touch, or may within the reach. Those of nodes beyond the end of the partner continue
+   it as a straight line, and slip along that; where it ends now a build tells. */
 static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscBool *any)
 {
   const RowSet *set   = &transfer->rows;
@@ -168,7 +168,7 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];
 
-    transfer->followed[row] = (PetscBool)(set->opposite[row] && !set->beyond[row] && n <= FOLLOW_MAX &&
+    transfer->followed[row] = (PetscBool)(set->opposite[row] && n <= FOLLOW_MAX &&
                                           (touches[row] || TransferPresentGap(transfer, row) <= reach));
     if (transfer->followed[row]) found = 1;
     else transfer->follow.known[row] = PETSC_FALSE;

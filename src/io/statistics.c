@@ -57,12 +57,14 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
     s->results.supports[i].body = supports[i].body;
     s->results.supports[i].name = supports[i].name;
   }
-  PetscCall(PetscCalloc3(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change));
+  PetscCall(PetscCalloc4(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change,
+                         s->results.n_bodies, &s->mass));
   for (PetscInt i = 0; i < s->results.n_bodies; i++) {
     PetscReal arm = 0;
 
     s->results.bodies[i].displacement_error = NAN;
     PetscCall(BodyHasHistory(bodies[i], &s->results.bodies[i].plastic));
+    PetscCall(BodyGetMass(bodies[i], &s->mass[i]));
     PetscCall(GetArm(bodies[i], &arm));
     s->arm = PetscMax(s->arm, arm);
   }
@@ -73,6 +75,9 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Momentum of a body below this part of (2 m T)^(1/2), which it cannot exceed, is round-off of its parts, as where it only spins */
+#define NO_MOMENTUM 1e-9
+
 static PetscReal Norm(const PetscReal x[3])
 {
   return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
@@ -82,8 +87,10 @@ static PetscReal Norm(const PetscReal x[3])
 static void NoteInitialState(Statistics s, const ControllerFrame *frame)
 {
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    const PetscReal momentum = Norm(frame->bodies[i].momentum), most = PetscSqrtReal(2 * s->mass[i] * frame->bodies[i].kinetic);
+
     s->initial_energy[i] = BodyMeasuresGetBalance(&frame->bodies[i]);
-    s->momentum_scale += Norm(frame->bodies[i].momentum);
+    s->momentum_scale += momentum > NO_MOMENTUM * most ? momentum : most;
     s->angular_scale += Norm(frame->bodies[i].angular_momentum);
     for (PetscInt d = 0; d < 3; d++) {
       s->momentum[d] += frame->bodies[i].momentum[d];
@@ -307,7 +314,7 @@ PetscErrorCode StatisticsDestroy(Statistics *statistics)
   PetscCall(ContactTimesDestroy(&(*statistics)->times));
   PetscCall(PetscFree((*statistics)->results.supports));
   PetscCall(PetscFree2((*statistics)->results.pairs, (*statistics)->results.bodies));
-  PetscCall(PetscFree3((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change));
+  PetscCall(PetscFree4((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change, (*statistics)->mass));
   PetscCall(PetscFree((*statistics)->series));
   PetscCall(PetscFree(*statistics));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -17,6 +17,7 @@ struct _n_Statistics {
   PetscReal          time; /* of the last frame [s] */
   PetscInt           total_sweeps, contact_sweeps;
   PetscReal         *initial_energy; /* of each body [J] */
+  PetscReal         *mass;           /* of each body [kg] */
   PetscReal         *body_change;    /* least and largest change of the energy of each body since the start [J] */
   PetscReal          system_change[2];
   const EnergyScale *scale;                     /* of energies, the controller's */

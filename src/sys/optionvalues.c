@@ -84,11 +84,29 @@ PetscErrorCode OptionsDescribeMissing(const char option[], char text[], size_t s
   PetscCall(FindKnown(option, &known));
   if (known) {
     PetscCall(PetscStrcmp(known->value, "true|false", &on_or_off));
+    if (!on_or_off) PetscCall(PetscStrcmp(known->value, "true|false|auto", &on_or_off));
     viewer = (PetscBool)(known->value[0] == '[');
     wants  = (PetscBool)(!on_or_off && !viewer);
   } else PetscCall(WantsValue(option, &wants));
   if (wants && known) PetscCall(PetscSNPrintf(text, size, "has no value: it takes %s (%s)", known->value, known->text));
   else if (wants) PetscCall(PetscSNPrintf(text, size, "has no value: give one after it"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The value of a switch that may be another word as well, `other`, which the caller has looked for. `option` without its dash */
+PetscErrorCode OptionsReadSwitch(MPI_Comm comm, const char option[], const char other[], const char value[], PetscBool *flag)
+{
+  static const char *const words[] = {"true", "yes", "on", "1", "false", "no", "off", "0"};
+  PetscBool                same    = PETSC_FALSE;
+  PetscInt                 which   = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 8 && !same; i++) {
+    PetscCall(PetscStrcasecmp(value, words[i], &same));
+    which = i;
+  }
+  PetscCheck(same, comm, PETSC_ERR_USER_INPUT, "-%s is true, false or %s, not '%s'", option, other, value);
+  *flag = (PetscBool)(which < 4);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -73,3 +73,13 @@ def test_near_refuses_contact_elsewhere(impakt):
 def test_near_is_a_value(impakt):
     run = impakt(f"{LANDING} -b_mass_redistribute far", expect_failure=True)
     assert "-b_mass_redistribute is true, false or near, not 'far'" in run.stderr
+
+
+@pytest.mark.parametrize(
+    ("layers", "more", "words"), [(2, "", "move the centre of mass of body 'b'"), (2, "-contact_facing false", "change moments of inertia of body 'b'"), (8, "-b_dm_plex_box_faces 12,8 -contact_facing false", None)]
+)
+def test_thin_plates_say_what_they_lose(impakt, layers, more, words):
+    """Of two layers of triangles, of which one is beside the massless nodes, or both are: 13 % of the thickness, and 71 % of a moment of inertia."""
+    texts = [text for text in impakt(f"{COMMON} {box(2, 1, layers)} {more}").summary["warnings"] if "massless" in text]
+    assert len(texts) == (words is not None)
+    assert all(words in text and "-b_mass_redistribute near" in text for text in texts)

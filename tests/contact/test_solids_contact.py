@@ -68,8 +68,9 @@ def test_substeps(substeps, pairing, shared_run):
     assert bars.summary["contact"]["onsets"] == solids.summary["contact"]["onsets"] == 1
     for run in (bars, solids):
         assert run.summary["schwarz"]["max"] == 2  # one to close the gaps, one to see that they are closed
-        # round-off of 500 steps, which more substeps have more of; measured: 7e-13 for each substep of an implicit side, 1e-15 of explicit ones
-        assert run.summary["system"]["momentum_error_max"] <= 1e-12 * max(substeps)
+        # round-off of 500 steps, which more substeps have more of; measured: 7e-13 to 1.1e-12 for each substep of an implicit side, as the processor
+        # has it, 1e-15 of explicit ones
+        assert run.summary["system"]["momentum_error_max"] <= 3e-12 * max(substeps)
 
 
 @pytest.mark.parametrize("shape", ["quad4-turned", *long("hex8-turned")])

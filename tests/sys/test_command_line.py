@@ -149,7 +149,7 @@ TEXTS = re.compile(r"^(file|\[viewer\])|filename")  # any text will do, or is fo
 def test_missing_values(batch, words):
     """Nothing but what can be true or false, and viewers, may stand alone."""
     for case, option, value in KNOWN[batch::BATCHES]:
-        if value == "true|false" or value.startswith("["):
+        if value in ("true|false", "true|false|auto") or value.startswith("["):
             continue
         refused(words(f"options/{case}.opts", f"-{option}", *SHORT), [f"-{option} (the command line) has no value"])
 

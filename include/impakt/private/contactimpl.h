@@ -27,6 +27,7 @@ struct _ContactOps {
      another number of ranks; and back, after rowschanged() */
   PetscErrorCode (*pack)(Contact, Tables);
   PetscErrorCode (*unpack)(Contact, Tables);
+  PetscErrorCode (*maybalance)(Contact, PetscBool *); /* (NULL: not) whether gaps may be turned, see ContactSetBalance() */
   /* (NULL) whether pairs may come and go in the course of a run; then `reset` undoes `setup`, which follows if there are rows */
   PetscBool (*mayreplacerows)(Contact);
   PetscErrorCode (*reset)(Contact);
@@ -117,6 +118,7 @@ typedef struct {
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
   PetscBool            balanced_start;   /* massless nodes are brought into balance in the first state */
   PetscBool            balance;          /* forces have the same sum along the normals of both sides, see ContactSetBalance() */
+  PetscBool            auto_balance;     /* whether they have follows from the bodies, at the set-up */
   PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */

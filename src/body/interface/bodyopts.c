@@ -1,6 +1,7 @@
 /* A body from its options, and its initial state. */
 #include <body/layout/bodyimpl.h>
 #include <impakt/mesh.h>
+#include <sys/optionvalues.h>
 #include "bodysetup.h"
 
 /* Every body named by -bodies must be described somewhere */
@@ -25,30 +26,12 @@ static PetscErrorCode CreateMesh(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A value of an option that has other values than yes and no too */
-static PetscErrorCode ReadBool(Body body, const char name[], const char value[], PetscBool *flag)
-{
-  static const char *const words[] = {"true", "yes", "on", "1", "false", "no", "off", "0"};
-  PetscBool                same    = PETSC_FALSE;
-  PetscInt                 which   = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < 8 && !same; i++) {
-    PetscCall(PetscStrcasecmp(value, words[i], &same));
-    which = i;
-  }
-  PetscCheck(same, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s is true, false or near, not '%s'",
-             ((PetscObject)body)->prefix, name, value);
-  *flag = (PetscBool)(which < 4);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ReadMass(Body body)
 {
   BodyMassType    type;
   BodyMassMoments moments      = body->mass.moments;
   PetscBool       redistribute = body->mass.redistribute, near = body->mass.near, given;
-  char            value[16] = "";
+  char            value[16] = "", name[256];
 
   PetscFunctionBegin;
   PetscCall(BodySetUpMassType(body));
@@ -60,7 +43,10 @@ static PetscErrorCode ReadMass(Body body)
   if (given) {
     PetscCall(PetscStrcasecmp(value, "near", &near));
     redistribute = PETSC_TRUE;
-    if (!near && value[0]) PetscCall(ReadBool(body, "mass_redistribute", value, &redistribute));
+    if (!near && value[0]) {
+      PetscCall(PetscSNPrintf(name, sizeof(name), "%smass_redistribute", ((PetscObject)body)->prefix));
+      PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)body), name, "near", value, &redistribute));
+    }
   }
   PetscCall(PetscOptionsEnum("-mass_moments", "What is kept when mass moves", "BodySetMassMoments", BodyMassMomentsNames,
                              (PetscEnum)moments, (PetscEnum *)&moments, NULL));

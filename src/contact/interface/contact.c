@@ -41,6 +41,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   (*contact)->options.facing           = PETSC_TRUE;
   (*contact)->options.shared_times     = PETSC_TRUE;
   (*contact)->options.balanced_start   = PETSC_TRUE;
+  (*contact)->options.auto_balance     = PETSC_TRUE;
   (*contact)->options.slip_bound       = SLIP_BOUND;
   (*contact)->energy.limits            = PETSC_TRUE;
   (*contact)->energy.excess            = ENERGY_EXCESS;
@@ -290,6 +291,9 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->options.constraint]));
   if (contact->options.stabilization != CONTACT_STABILIZATION_NONE)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  stabilization %s\n", ContactStabilizations[contact->options.stabilization]));
+  if (contact->options.balance)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  forces balanced along the normals of both sides%s\n",
+                                     contact->options.auto_balance ? " (-contact_balance auto)" : ""));
   if (contact->energy.unlimited) PetscCall(PetscViewerASCIIPrintf(viewer, "  energy not limited: %s\n", contact->energy.unlimited));
   else if (contact->energy.limits)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  energy limited: contact may gain %g of it in all%s%s\n", (double)contact->energy.excess,

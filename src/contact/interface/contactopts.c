@@ -1,6 +1,7 @@
 /* Contact from the options. */
 #include <contact/parts.h>
 #include <sys/names.h>
+#include <sys/optionvalues.h>
 
 /* The law: one of the enumeration, or one of the registry of friction laws */
 static PetscErrorCode ReadLaw(Contact contact)
@@ -24,10 +25,28 @@ static PetscErrorCode ReadLaw(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* -contact_balance: on where it has no value */
+static PetscErrorCode ReadBalance(Contact contact, const char value[])
+{
+  PetscBool automatic, balance = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcasecmp(value, "auto", &automatic));
+  if (automatic) {
+    PetscCall(ContactSetAutomaticBalance(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (value[0]) PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)contact), "contact_balance", "auto", value, &balance));
+  PetscCall(ContactSetBalance(contact, balance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What the methods share */
 static PetscErrorCode ReadSettings(Contact contact)
 {
   PetscReal energy_tolerance = 0;
+  char      balance[64]      = "";
+  PetscBool given;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
@@ -50,8 +69,9 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.angle_bound, &contact->options.angle_bound, NULL));
   PetscCall(PetscOptionsBool("-contact_allow_unstable", "What is known to gain energy runs all the same", "ContactSetAllowUnstable",
                              contact->options.allow_unstable, &contact->options.allow_unstable, NULL));
-  PetscCall(PetscOptionsBool("-contact_balance", "Forces have the same sum along the normals of both sides", "ContactSetBalance",
-                             contact->options.balance, &contact->options.balance, NULL));
+  PetscCall(PetscOptionsString("-contact_balance", "Forces have the same sum along the normals of both sides", "ContactSetBalance",
+                               contact->options.auto_balance ? "auto" : PetscBools[contact->options.balance], balance, sizeof(balance),
+                               &given));
   PetscCall(PetscOptionsBool("-contact_shared_times", "Contact holds at all times that all bodies have", "ContactSetSharedTimes",
                              contact->options.shared_times, &contact->options.shared_times, NULL));
   PetscCall(PetscOptionsBool("-contact_balanced_start", "Massless nodes are brought into balance in the first state",
@@ -64,6 +84,7 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscCheck(energy_tolerance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_energy_tolerance %g must be positive; a large one for none", (double)energy_tolerance);
   PetscCall(ContactSetEnergyTolerance(contact, energy_tolerance));
+  if (given) PetscCall(ReadBalance(contact, balance));
   PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
              (double)contact->options.slip_bound, (double)contact->options.angle_bound);
@@ -184,7 +205,7 @@ static PetscErrorCode ReadRowSides(Contact contact)
 . -contact_shared_times (true|false)                            - whether contact holds at all times that all bodies have in common, or
                                                                  at the ends of controller steps alone
 . -contact_balanced_start (true|false)                          - whether massless nodes are brought into balance in the first state
-. -contact_balance (true|false)                                 - whether forces have the same sum along the normals of both sides
+. -contact_balance (true|false|auto)                            - whether forces have the same sum along the normals of both sides
 . -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
 . -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
 - -contact_energy_tolerance t                                   - energy that contact may take or bring in a step, 1e-3

@@ -5,6 +5,10 @@
    11.5 degrees are too coarse: discs of 32 edges keep half of their spin or more */
 #define EDGE   0.31
 #define COARSE 0.2
+/* Surfaces without a face that bends by more are flat, and need no balance */
+#define FLAT 1e-3
+/* Pairs whose gaps are turned unasked, at most: the turns of all are unknowns of one dense matrix */
+#define MOST_PAIRS 100
 
 /*@
   ContactSetBalance - whether the forces of a pair have the same sum along the normals of both of its surfaces
@@ -13,10 +17,10 @@
 
   Input Parameters:
 + contact - the `Contact`, not yet set up
-- balance - false by default
+- balance - what `ContactSetAutomaticBalance()` would choose by default
 
   Options Database Key:
-. -contact_balance (true|false) - whether they have
+. -contact_balance (true|false|auto) - whether they have
 
   Level: intermediate
 
@@ -35,7 +39,7 @@
   Schwarz's method, massless contact nodes, Dirichlet-Neumann conditions and Newton's method as the outer iteration. For others it is an
   error. A pair should touch in one place, and faces bend by 11.5 degrees at most.
 
-.seealso: `Contact`, `ContactGetBalance()`, `ContactSetBounds()`
+.seealso: `Contact`, `ContactSetAutomaticBalance()`, `ContactGetBalance()`, `ContactSetBounds()`
 @*/
 PetscErrorCode ContactSetBalance(Contact contact, PetscBool balance)
 {
@@ -43,7 +47,37 @@ PetscErrorCode ContactSetBalance(Contact contact, PetscBool balance)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscValidLogicalCollectiveBool(contact, balance, 2);
   ContactCheckNotSetUp(contact);
-  contact->options.balance = balance;
+  contact->options.balance      = balance;
+  contact->options.auto_balance = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSetAutomaticBalance - lets the set-up choose whether forces have the same sum along the normals of both sides of a pair; the default
+
+  Logically Collective
+
+  Input Parameter:
+. contact - the `Contact`, not yet set up
+
+  Options Database Key:
+. -contact_balance auto - the same
+
+  Level: intermediate
+
+  Note:
+  They have where all pairs are of bodies whose surfaces are round without edges, by 11.5 degrees a face at most, and all the rest is as
+  `ContactSetBalance()` wants it.
+
+.seealso: `Contact`, `ContactSetBalance()`, `ContactGetBalance()`
+@*/
+PetscErrorCode ContactSetAutomaticBalance(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  ContactCheckNotSetUp(contact);
+  contact->options.balance      = PETSC_FALSE;
+  contact->options.auto_balance = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,11 +90,11 @@ PetscErrorCode ContactSetBalance(Contact contact, PetscBool balance)
 . contact - the `Contact`
 
   Output Parameter:
-. balance - whether they have
+. balance - whether they have; `PETSC_FALSE` before the set-up where that chooses
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetBalance()`
+.seealso: `Contact`, `ContactSetBalance()`, `ContactSetAutomaticBalance()`
 @*/
 PetscErrorCode ContactGetBalance(Contact contact, PetscBool *balance)
 {
@@ -71,8 +105,8 @@ PetscErrorCode ContactGetBalance(Contact contact, PetscBool *balance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest bend of a face of one side of a pair, as a chord, edges left out */
-static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt side, PetscReal *bend)
+/* The largest bend of a face of one side of a pair, as a chord, without those that are `edge` or more */
+static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt side, PetscReal edge, PetscReal *bend)
 {
   const SurfaceData *data;
 
@@ -86,9 +120,58 @@ static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt
       PetscReal        square = 0;
 
       for (PetscInt d = 0; d < contact->dim; d++) square += PetscSqr(a[d] - b[d]);
-      if (square < PetscSqr(EDGE)) *bend = PetscMax(*bend, PetscSqrtReal(square));
+      if (square < PetscSqr(edge)) *bend = PetscMax(*bend, PetscSqrtReal(square));
     }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, bend, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether gaps of a pair are to be turned unasked */
+static PetscErrorCode SuitsBalance(Contact contact, const ContactPair *pair, PetscBool *suits)
+{
+  PetscBool linear = PETSC_TRUE, axisymmetric;
+
+  PetscFunctionBegin;
+  *suits = PETSC_FALSE;
+  if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetAxisymmetric(contact->bodies[pair->body[0]], &axisymmetric));
+  if (axisymmetric) PetscFunctionReturn(PETSC_SUCCESS); /* moments are in balance around the ring */
+  for (PetscInt side = 0; side < 2; side++) {
+    PetscReal bend;
+    PetscBool is_static, is_linear;
+    Material  material;
+
+    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
+    PetscCall(MaterialIsLinear(material, &is_linear));
+    PetscCall(GetBend(contact, pair, side, PETSC_MAX_REAL, &bend));
+    if (is_static || bend > COARSE || bend < FLAT) PetscFunctionReturn(PETSC_SUCCESS);
+    linear = (PetscBool)(linear && is_linear);
+  }
+  *suits = (PetscBool)!linear;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether gaps are turned where neither the user nor the program has said so. Surfaces are known, but not how they are to be moved. */
+PetscErrorCode ContactChooseBalance(Contact contact)
+{
+  PetscBool suits = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  if (!contact->options.auto_balance) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->options.balance = PETSC_FALSE;
+  if (contact->dim == 1 || contact->options.law != CONTACT_LAW_FRICTIONLESS || contact->options.constraint != CONTACT_CONSTRAINT_GAP ||
+      contact->options.stabilization != CONTACT_STABILIZATION_NONE || !contact->options.shared_times || contact->neighbours.come_and_go ||
+      !contact->n_pairs || contact->n_pairs > MOST_PAIRS || !contact->ops->maybalance)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall((*contact->ops->maybalance)(contact, &suits));
+  for (PetscInt p = 0; p < contact->n_pairs && suits; p++) PetscCall(SuitsBalance(contact, &contact->pairs[p], &suits));
+  if (!suits) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->options.balance = PETSC_TRUE;
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) {
+    PetscCall(SurfaceSetRound(contact->surfaces[s].surface, (PetscBool)(contact->dim == 3)));
+    PetscCall(SurfaceUpdate(contact->surfaces[s].surface, NULL));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,7 +199,7 @@ PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
     PetscCall(MaterialIsLinear(material, &is_linear));
     PetscCheck(!is_static, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_balance: body '%s' of pair %s has no inertia", name, pair->name);
-    PetscCall(GetBend(contact, pair, side, &bend));
+    PetscCall(GetBend(contact, pair, side, EDGE, &bend));
     PetscCheck(bend <= COARSE, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_balance: faces of body '%s' of pair %s bend by up to %.3g degrees; refine its surface until that is 11.5 or less",
                name, pair->name, (double)(bend * 180 / PETSC_PI));

@@ -242,6 +242,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
     PetscCall(ContactCreateSurfaces(contact, &contact->pairs[p], &extent));
     PetscCall(ContactChooseRowSide(contact, &contact->pairs[p]));
   }
+  PetscCall(ContactChooseBalance(contact));
   PetscCall(ContactOrderBodies(contact)); /* again, since pairs may have been turned round */
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(ContactCreateTransfer(contact, &contact->pairs[p]));

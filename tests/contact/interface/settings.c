@@ -53,6 +53,9 @@ static void set_and_got(void **state)
     assert_int_equal(settings.constraint, k ? CONTACT_CONSTRAINT_GAP_RATE : CONTACT_CONSTRAINT_BOTH);
     assert_int_equal(settings.stabilization, k ? CONTACT_STABILIZATION_NAIVE : CONTACT_STABILIZATION_CONTACT_STABILIZED);
   }
+  ok(ContactSetAutomaticBalance(contact));
+  get(contact, &settings);
+  assert_int_equal(settings.balance, PETSC_FALSE); /* until the set-up finds that it suits the bodies */
   ok(ContactDestroy(&contact));
 }
 

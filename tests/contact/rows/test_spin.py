@@ -125,6 +125,52 @@ def test_ranks(shared_run):
     assert spins(two) == pytest.approx(spins(one), abs=1e-5)
 
 
+ROUND = discs((12, 12), angle=30, step=5e-7).replace(" -contact_balance", "") + " -time_end 1.5e-4"
+BALANCED = "forces balanced along the normals of both sides"
+
+
+def test_automatic(shared_run):
+    """Discs have it unasked, with the same bits."""
+    alone, asked = (shared_run(f"{ROUND} {more}") for more in ("", "-contact_balance"))
+    assert f"{BALANCED} (-contact_balance auto)" in alone.stdout
+    one, other = (next(iter(run.history["contact"].values()))["force"][()] for run in (alone, asked))
+    assert np.array_equal(one, other) and one.max() > 1e3
+
+
+# coarse faces, edges, what turns do not go with: no balance, and no error; last: on where the user says so, and off
+@pytest.mark.parametrize(
+    ("more", "has"),
+    [
+        ("-contact_balance auto", True),
+        ("-a_ts_type alpha2", True),
+        ("-contact_balance false", False),
+        ("-b_ball_divisions 6", False),
+        ("-a_material_type linear_elastic -b_material_type linear_elastic", False),
+        ("-contact_law tied -contact_tie_distance 100 -time_end 1e-6", False),
+        ("-contact_law coulomb -contact_friction 0.1", False),
+        ("-schwarz_snes_type anderson", False),
+        ("-schwarz_transmission robin", False),
+        ("-a_mass_redistribute false", False),
+        ("-contact_type penalty", False),
+        ("-a_ts_time_step 2.5e-7 -b_ts_time_step 2.5e-7", True),
+        ("-a_ts_time_step 2.5e-7", True),
+        ("-a_ts_type alpha2 -b_ts_time_step 1e-7", True),
+        ("-a_ts_time_step 2.5e-7 -contact_shared_times false", False),
+    ],
+)
+def test_where_it_is_chosen(more, has, impakt):
+    assert (BALANCED in impakt(f"{ROUND} -time_end 5e-6 {more}").stdout) == has
+
+
+def test_edges(impakt):
+    nonlinear = "-left_material_type neo_hookean -right_material_type neo_hookean"
+    assert BALANCED not in impakt(f"-options_file options/blocks.opts {nonlinear} -time_end 2e-6").stdout
+
+
+def test_value(impakt):
+    assert "-contact_balance is true, false or auto, not 'maybe'" in impakt(f"{ROUND} -contact_balance maybe", expect_failure=True).stderr
+
+
 @pytest.mark.parametrize(
     ("more", "words"),
     [

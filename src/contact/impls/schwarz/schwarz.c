@@ -296,6 +296,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->stepback       = SchwarzStepBack;
   contact->ops->steplevel      = SchwarzSetStepLevel;
   contact->ops->accept         = SchwarzAcceptTied;
+  contact->ops->maybalance     = SchwarzMayTurn;
   contact->ops->mayreplacerows = MayReplaceRows;
   contact->ops->reset          = ContactReset_Schwarz;
   contact->ops->view           = ContactView_Schwarz;

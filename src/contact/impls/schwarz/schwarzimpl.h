@@ -224,6 +224,7 @@ PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzFinishCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpTurns(Contact, PetscInt *);
 PETSC_INTERN PetscErrorCode SchwarzCheckTurns(Contact);
+PETSC_INTERN PetscErrorCode SchwarzMayTurn(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzDestroyTurns(Contact);
 PETSC_INTERN PetscErrorCode SchwarzHoldTurns(Contact);
 PETSC_INTERN PetscErrorCode SchwarzTakeTurns(Contact, const PetscScalar[]);

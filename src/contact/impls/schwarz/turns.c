@@ -81,6 +81,25 @@ PetscErrorCode SchwarzCheckTurns(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether turns suit the method, before it is set up */
+PetscErrorCode SchwarzMayTurn(Contact contact, PetscBool *may)
+{
+  const Schwarz *schwarz  = (const Schwarz *)contact->data;
+  char           type[64] = SNESNEWTONLS;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetString(NULL, "schwarz_", "-snes_type", type, sizeof(type), NULL));
+  PetscCall(PetscStrcmp(type, SNESNEWTONLS, may));
+  if (schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN || schwarz->swap) *may = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs && *may; p++) {
+    PetscBool mass;
+
+    PetscCall(BodyPrescribesMass(contact->bodies[contact->pairs[p].body[0]], &mass));
+    if (mass) *may = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchwarzDestroyTurns(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;

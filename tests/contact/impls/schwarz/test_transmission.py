@@ -39,9 +39,9 @@ def test_one_solution(case, way, shared_run):
     reference, summary = shared_run(base).summary, shared_run(joined(base, WAYS[way])).summary
     assert summary["schwarz"]["mean_contact_steps"] > 1.4
     # Where both sides make the same substeps only the outer tolerance is left, 1e-12 m: 3e-10 was seen in these figures, which are
-    # means and peaks over many steps. Where they do not, what happens between the ends of the controller step is a matter of the conditions: a soft
+    # means and peaks over many steps, and 2.2e-9 with another processor's kernels of the factors. Where they do not, what happens between the ends of the controller step is a matter of the conditions: a soft
     # spring leaves a path that a displacement forces; 3e-5 was seen in the peak of the force.
-    tolerance = 5e-5 if case == "IE" else 2e-9
+    tolerance = 5e-5 if case == "IE" else 1e-8
     for name in ("force_mean", "force_peak", "impulse"):
         assert same(summary["contact"][name], reference["contact"][name], tolerance), name
     for name in ("first_contact_time", "release_time", "onsets", "steps_in_contact"):

@@ -52,10 +52,11 @@ def test_reactions_over_substeps_are_refused(impakt):
     options = f"{BLOCKS} {WITH_MASS} -left_ts_time_step 5e-7 -left_youngs_modulus 1e11 -time_end 1e-4"
     run = impakt(options, expect_failure=True)
     assert "-schwarz_traction reaction" in run.stderr and "-contact_allow_unstable true" in run.stderr
-    run = impakt(f"{options} -contact_allow_unstable true", expect_failure=True)
-    assert "did not converge in the step that ends at time 2.9e-05 s" in run.stderr
-    run = impakt(f"{options} -contact_allow_unstable true -schwarz_unconverged accept -energy_guard 0")
-    assert run.summary["system"]["energy_error_max"] > 1e3  # measured: 1e10 by 6e-4 s
+    # What is wrong grows from round-off: on one processor the energy has grown 1e10 times by 6e-4 s, in steps that did not converge; on another
+    # all converged, and 12 % of the momentum are lost.
+    run = impakt(f"{options} -time_end 6e-4 -contact_allow_unstable true -schwarz_unconverged accept -energy_guard 0")
+    assert run.summary["system"]["momentum_error_max"] > 0.05
+    assert any("momentum error" in text for text in run.summary["warnings"])
     bars = "-options_file options/bars-high-speed.opts -time_step 1e-6 -time_end 1e-4"
     run = impakt(f"{bars} {WITH_MASS} -left_ts_time_step 1e-7")
     assert abs(run.summary["system"]["energy_error_final"]) <= 1e-3
