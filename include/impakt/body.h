@@ -95,6 +95,8 @@ PETSC_EXTERN PetscErrorCode BodySetMaterial(Body, Material);
 PETSC_EXTERN PetscErrorCode BodySetCrossSection(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetThickness(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetPlaneStress(Body, PetscBool);
+PETSC_EXTERN PetscErrorCode BodySetAxisymmetric(Body, PetscBool);
+PETSC_EXTERN PetscErrorCode BodyGetAxisymmetric(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySetElementFormulation(Body, const char[]);
 PETSC_EXTERN PetscErrorCode BodySetTSType(Body, TSType);
 PETSC_EXTERN PetscErrorCode BodySetTimeStep(Body, PetscReal);

@@ -42,6 +42,8 @@ PETSC_EXTERN PetscErrorCode ElementSetThickness(Element, PetscReal);
 PETSC_EXTERN PetscErrorCode ElementGetCrossSection(Element, PetscReal *);
 PETSC_EXTERN PetscErrorCode ElementSetPlaneStress(Element, PetscBool);
 PETSC_EXTERN PetscErrorCode ElementGetPlaneStress(Element, PetscBool *);
+PETSC_EXTERN PetscErrorCode ElementSetAxisymmetric(Element, PetscBool);
+PETSC_EXTERN PetscErrorCode ElementGetAxisymmetric(Element, PetscBool *);
 PETSC_EXTERN PetscErrorCode ElementSetFormulation(Element, const char[]);
 PETSC_EXTERN PetscErrorCode ElementGetFormulation(Element, const char *[]);
 PETSC_EXTERN PetscErrorCode ElementSetFromOptions(Element);

@@ -4,4 +4,5 @@
 
 PETSC_EXTERN PetscErrorCode MeshCreate(MPI_Comm, const char[], const char[], DM *);
 PETSC_EXTERN PetscErrorCode MeshGetSurface(DM, const char[], PetscInt *, PetscInt **);
+PETSC_EXTERN PetscErrorCode MeshGetAxisTolerance(DM, PetscReal *);
 PETSC_EXTERN PetscErrorCode MeshGetNodeSet(DM, const char[], PetscInt *, PetscInt **);

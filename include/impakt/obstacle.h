@@ -40,6 +40,7 @@ PETSC_EXTERN PetscErrorCode ObstacleGetVelocity(Obstacle, const PetscReal[], Pet
 PETSC_EXTERN PetscErrorCode ObstacleSetFromOptions(Obstacle);
 PETSC_EXTERN PetscErrorCode ObstacleSetUp(Obstacle);
 PETSC_EXTERN PetscErrorCode ObstacleGetType(Obstacle, ObstacleType *);
+PETSC_EXTERN PetscErrorCode ObstacleGetPlace(Obstacle, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetGap(Obstacle, const PetscReal[], PetscReal *, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetName(Obstacle, const char *[]);
 PETSC_EXTERN PetscErrorCode ObstacleView(Obstacle, PetscViewer);

@@ -37,7 +37,7 @@ typedef struct {
   PetscReal *positions;                 /* per node: present position [m] */
   PetscReal *normals;                   /* per node: outward unit normal, of the faces around it weighted by their areas, or
                                            as SurfaceSetRound() says */
-  PetscReal *areas;                     /* per node: integral of its shape function [m^2, m or 1] */
+  PetscReal *areas;                     /* per node: integral of its shape function [m^2, m or 1]; of rings times 2 pi x [m^2] */
   PetscReal *sizes;                     /* per node: edge length of the smallest face around it [m or 1] */
   PetscReal *face_normals;              /* per face: outward unit normal */
   PetscReal *face_areas;                /* per face [m^2, m or 1] */
@@ -48,6 +48,7 @@ PETSC_EXTERN PetscErrorCode SurfaceFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscBool, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceSetRound(Surface, PetscBool);
+PETSC_EXTERN PetscErrorCode SurfaceSetAxisymmetric(Surface);
 PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
 PETSC_EXTERN PetscErrorCode SurfaceView(Surface, PetscViewer);
 PETSC_EXTERN PetscErrorCode SurfaceViewFromOptions(Surface, PetscObject, const char[]);

@@ -98,6 +98,7 @@ PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
 PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
 PETSC_INTERN PetscErrorCode ContactLetTouch(Contact, PetscBool);
+PETSC_INTERN PetscErrorCode ContactCheckAxisymmetric(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactChooseBalance(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpBalance(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactSetUpTurns(Contact);

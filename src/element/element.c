@@ -168,6 +168,27 @@ PetscErrorCode ElementGetMaterial(Element element, Material *material)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* An error where rings are asked for that there are not */
+static PetscErrorCode CheckAxisymmetric(Element element)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)element);
+
+  PetscFunctionBegin;
+  if (!element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(element->dim == 2, comm, PETSC_ERR_USER_INPUT,
+             "-%saxisymmetric true: the mesh has %" PetscInt_FMT
+             " dimensions; rings are made of plane meshes, whose first coordinate is the "
+             "distance from the axis",
+             Prefix(element), element->dim);
+  PetscCheck(!element->plane_stress, comm, PETSC_ERR_USER_INPUT,
+             "-%splane_stress true and -%saxisymmetric true: rings have a stress along them; leave one out", Prefix(element),
+             Prefix(element));
+  PetscCheck(!element->cross_section_dim, comm, PETSC_ERR_USER_INPUT,
+             "-%sthickness %g and -%saxisymmetric true: rings have no thickness, they go all around; leave one out", Prefix(element),
+             (double)element->cross_section, Prefix(element));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElementSetFromOptions - reads what the elements of a shape take from the options
 
@@ -180,6 +201,7 @@ PetscErrorCode ElementGetMaterial(Element element, Material *material)
 + -<body>_cross_section A           - of bars [m^2], default 1
 . -<body>_thickness h               - of plane elements [m], default 1
 . -<body>_plane_stress (true|false) - of plane elements, default false
+. -<body>_axisymmetric (true|false) - of plane elements, default false
 - -<body>_element_formulation (full|mean_dilatation|enhanced|reduced) - see `ElementSetFormulation()`
 
   Level: developer
@@ -189,7 +211,7 @@ PetscErrorCode ElementGetMaterial(Element element, Material *material)
 PetscErrorCode ElementSetFromOptions(Element element)
 {
   char      formulation[128];
-  PetscBool set;
+  PetscBool axisymmetric = element->axisymmetric, set;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
@@ -199,9 +221,12 @@ PetscErrorCode ElementSetFromOptions(Element element)
   PetscObjectOptionsBegin((PetscObject)element);
   PetscCall(PetscOptionsString("-element_formulation", "What elements do against locking", "ElementSetFormulation", formulation,
                                formulation, sizeof(formulation), &set));
+  PetscCall(PetscOptionsBool("-axisymmetric", "Rings about x = 0", "ElementSetAxisymmetric", axisymmetric, &axisymmetric, NULL));
   PetscOptionsEnd();
   if (set) PetscCall(ElementSetFormulation(element, formulation));
+  PetscCall(ElementSetAxisymmetric(element, axisymmetric));
   PetscTryTypeMethod(element, setfromoptions);
+  PetscCall(CheckAxisymmetric(element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,6 +258,7 @@ PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt conn
              element->cross_section_dim == 1 ? "cross-section" : "thickness", (double)element->cross_section);
   PetscCheck(!element->plane_stress || element->dim == 2, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
              "Elements in %" PetscInt_FMT " dimensions are not in plane stress", element->dim);
+  PetscCall(CheckAxisymmetric(element));
   element->count        = count;
   element->connectivity = connectivity;
   PetscCall(ElementApplyFormulation(element));
@@ -269,6 +295,7 @@ PetscErrorCode ElementDuplicate(Element element, Material material, Element *dup
   (*duplicate)->cross_section     = element->cross_section;
   (*duplicate)->cross_section_dim = element->cross_section_dim;
   (*duplicate)->plane_stress      = element->plane_stress;
+  (*duplicate)->axisymmetric      = element->axisymmetric;
   PetscCall(ElementSetFormulation(*duplicate, element->formulation));
   PetscTryTypeMethod(element, copy, *duplicate);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -300,8 +327,9 @@ PetscErrorCode ElementView(Element element, PetscViewer viewer)
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)element, viewer));
   if (element->dim == 1) PetscCall(PetscViewerASCIIPrintf(viewer, "  cross-section %g m^2\n", (double)element->cross_section));
   if (element->dim == 2)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  thickness %g m, %s\n", (double)element->cross_section,
-                                     element->plane_stress ? "plane stress" : "plane strain"));
+    PetscCall(element->axisymmetric ? PetscViewerASCIIPrintf(viewer, "  rings about x = 0\n")
+                                    : PetscViewerASCIIPrintf(viewer, "  thickness %g m, %s\n", (double)element->cross_section,
+                                                             element->plane_stress ? "plane stress" : "plane strain"));
   if (element->formulation) PetscCall(PetscViewerASCIIPrintf(viewer, "  formulation %s\n", element->formulation));
   PetscTryTypeMethod(element, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -55,6 +55,10 @@ PetscErrorCode ElementRegisterAll(void)
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_ENHANCED, ElementCreate_Enhanced));
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_REDUCED, ElementCreate_Quad4_Reduced));
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_REDUCED, ElementCreate_Hex8_Reduced));
+  PetscCall(ElementRegisterAxisymmetric(DM_POLYTOPE_TRIANGLE, ELEMENT_FULL, ElementCreate_Tri3_Axisymmetric));
+  PetscCall(ElementRegisterAxisymmetric(DM_POLYTOPE_QUADRILATERAL, ELEMENT_FULL, ElementCreate_Quad4_Axisymmetric));
+  PetscCall(
+      ElementRegisterAxisymmetric(DM_POLYTOPE_QUADRILATERAL, ELEMENT_MEAN_DILATATION, ElementCreate_Quad4_AxisymmetricMeanDilatation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -135,3 +135,59 @@ PetscErrorCode ElementGetPlaneStress(Element element, PetscBool *plane_stress)
   *plane_stress = element->plane_stress;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  ElementSetAxisymmetric - whether plane elements are rings about the axis x = 0
+
+  Logically Collective
+
+  Input Parameters:
++ element      - the `Element`
+- axisymmetric - `PETSC_TRUE` for rings: x is the distance from the axis, y goes along it; `PETSC_FALSE` by default
+
+  Options Database Key:
+. -<body>_axisymmetric (true|false) - rings
+
+  Level: intermediate
+
+  Notes:
+  Forces, masses and energies are those of whole rings. Triangles have the formulation `ELEMENT_FULL`, quadrilaterals
+`ELEMENT_MEAN_DILATATION` too. Rings have no thickness, and are not in plane stress.
+
+  A single triangle has a motion without strain at its centroid that is not rigid; two that have an edge in common do not.
+
+.seealso: `Element`, `BodySetAxisymmetric()`, `ElementGetAxisymmetric()`, `ElementSetFormulation()`
+@*/
+PetscErrorCode ElementSetAxisymmetric(Element element, PetscBool axisymmetric)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(element, axisymmetric, 2);
+  PetscCheck(!element->setup, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE, "Call before ElementSetUp()");
+  element->axisymmetric = axisymmetric;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementGetAxisymmetric - whether plane elements are rings about the axis x = 0
+
+  Not Collective
+
+  Input Parameter:
+. element - the `Element`
+
+  Output Parameter:
+. axisymmetric - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Element`, `ElementSetAxisymmetric()`
+@*/
+PetscErrorCode ElementGetAxisymmetric(Element element, PetscBool *axisymmetric)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscAssertPointer(axisymmetric, 2);
+  *axisymmetric = element->axisymmetric;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -13,10 +13,10 @@ static const char *Prefix(Element element)
 }
 
 /* The name in the registry: of the shape and of the formulation */
-static PetscErrorCode GetKey(DMPolytopeType cell_type, const char formulation[], size_t size, char key[])
+static PetscErrorCode GetKey(DMPolytopeType cell_type, PetscBool axisymmetric, const char formulation[], size_t size, char key[])
 {
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(key, size, "%s/%s", DMPolytopeTypes[cell_type], formulation));
+  PetscCall(PetscSNPrintf(key, size, "%s%s/%s", axisymmetric ? "axisymmetric " : "", DMPolytopeTypes[cell_type], formulation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,7 +42,19 @@ PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char f
   PetscFunctionBegin;
   PetscAssertPointer(formulation, 2);
   PetscCall(ElementInitializePackage());
-  PetscCall(GetKey(cell_type, formulation, sizeof(key), key));
+  PetscCall(GetKey(cell_type, PETSC_FALSE, formulation, sizeof(key), key));
+  PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for elements that are rings about an axis, which have their formulations, the full one among them, for themselves */
+PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
+{
+  char key[128];
+
+  PetscFunctionBegin;
+  PetscCall(ElementInitializePackage());
+  PetscCall(GetKey(cell_type, PETSC_TRUE, formulation, sizeof(key), key));
   PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,7 +124,7 @@ PetscErrorCode ElementGetFormulation(Element element, const char *formulation[])
 }
 
 /* Of the registry's names those of one shape, and the one that all shapes have */
-static PetscErrorCode GetNames(DMPolytopeType cell_type, size_t size, char names[])
+static PetscErrorCode GetNames(DMPolytopeType cell_type, PetscBool axisymmetric, size_t size, char names[])
 {
   const char **known;
   char         shape[64];
@@ -120,14 +132,16 @@ static PetscErrorCode GetNames(DMPolytopeType cell_type, size_t size, char names
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(names, ELEMENT_FULL, size));
-  PetscCall(GetKey(cell_type, "", sizeof(shape), shape));
+  PetscCall(GetKey(cell_type, axisymmetric, "", sizeof(shape), shape));
   PetscCall(PetscFunctionListGet(ElementFormulationList, &known, &n));
   for (int i = 0; i < n; i++) {
     const size_t length = strlen(shape);
-    PetscBool    same;
+    PetscBool    same, full;
 
     PetscCall(PetscStrncmp(known[i], shape, length, &same));
-    if (same) PetscCall(NamesAppend(names, size, ", ", known[i] + length));
+    if (!same) continue;
+    PetscCall(PetscStrcmp(known[i] + length, ELEMENT_FULL, &full));
+    if (!full) PetscCall(NamesAppend(names, size, ", ", known[i] + length));
   }
   PetscCall(PetscFree(known));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -167,7 +181,7 @@ static PetscErrorCode ChooseFormulation(Element element)
   PetscFunctionBegin;
   PetscCall(GetPoissonsRatio(element, &ratio));
   PetscCall(HasHistory(element, &flows));
-  PetscCall(GetKey(element->cell_type, ELEMENT_MEAN_DILATATION, sizeof(key), key));
+  PetscCall(GetKey(element->cell_type, element->axisymmetric, ELEMENT_MEAN_DILATATION, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
   PetscCall(PetscStrallocpy(create && (ratio > LOCKING_RATIO || flows) && !element->plane_stress ? ELEMENT_MEAN_DILATATION : ELEMENT_FULL,
                             &element->formulation));
@@ -184,20 +198,20 @@ PetscErrorCode ElementApplyFormulation(Element element)
   PetscFunctionBegin;
   if (!element->formulation) PetscCall(ChooseFormulation(element));
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_FULL, &full));
-  if (full) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetKey(element->cell_type, element->formulation, sizeof(key), key));
+  if (full && !element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetKey(element->cell_type, element->axisymmetric, element->formulation, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
   if (!create) {
     char names[1024];
 
-    PetscCall(GetNames(element->cell_type, sizeof(names), names));
+    PetscCall(GetNames(element->cell_type, element->axisymmetric, sizeof(names), names));
     SETERRQ(PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
-            "-%selement_formulation %s: elements of shape '%s' do not have it; they have %s", Prefix(element), element->formulation,
-            DMPolytopeTypes[element->cell_type], names);
+            "-%selement_formulation %s: %selements of shape '%s' do not have it; they have %s", Prefix(element), element->formulation,
+            element->axisymmetric ? "axisymmetric " : "", DMPolytopeTypes[element->cell_type], names);
   }
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_MEAN_DILATATION, &mean));
   PetscCall(HasHistory(element, &flows));
-  PetscCheck(mean || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
+  PetscCheck(full || mean || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
              "-%selement_formulation %s: it keeps no history of plastic flow; use mean_dilatation or full", Prefix(element),
              element->formulation);
   PetscCall((*create)(element));
@@ -217,7 +231,7 @@ PetscErrorCode ElementWarnOfLocking(Element element)
   PetscCall(GetPoissonsRatio(element, &ratio));
   PetscCall(HasHistory(element, &flows));
   if (!full || element->dim == 1 || element->plane_stress || (ratio <= LOCKING_RATIO && !flows)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetKey(element->cell_type, ELEMENT_MEAN_DILATATION, sizeof(key), key));
+  PetscCall(GetKey(element->cell_type, element->axisymmetric, ELEMENT_MEAN_DILATATION, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
   if (create && ratio <= STRONG_RATIO && !flows) PetscFunctionReturn(PETSC_SUCCESS);
   if (flows) PetscCall(PetscStrncpy(material, "a material that flows", sizeof(material)));

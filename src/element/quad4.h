@@ -53,3 +53,30 @@ SIMD_INLINE void VolumeGradient(SimdVector x[DIM][MODES], PetscInt i, SimdVector
   d[1] = -sign * x[1 - i][0];
   d[2] = 0 * d[0];
 }
+
+/* What the monomials leave of the function with values n at the nodes: its value in the middle */
+SIMD_INLINE void ConstantOfNodes(const SimdVector n[NODES], SimdVector *c)
+{
+  *c = 0.25 * ((n[0] + n[1]) + (n[2] + n[3]));
+}
+
+/* Adds the transpose to n */
+SIMD_INLINE void NodesOfConstant(const SimdVector *c, SimdVector n[NODES])
+{
+  for (PetscInt a = 0; a < NODES; a++) n[a] += 0.25 * *c;
+}
+
+/* The function with such a constant and coefficients m at a point */
+SIMD_INLINE void ValueOfModes(const SimdVector *c, const SimdVector m[MODES], const PetscReal xi[DIM], SimdVector *value)
+{
+  *value = *c + xi[0] * m[0] + xi[1] * m[1] + xi[0] * xi[1] * m[2];
+}
+
+/* Adds the transpose to c and m */
+SIMD_INLINE void ModesOfValue(const SimdVector *q, const PetscReal xi[DIM], SimdVector *c, SimdVector m[MODES])
+{
+  *c += *q;
+  m[0] += xi[0] * *q;
+  m[1] += xi[1] * *q;
+  m[2] += xi[0] * xi[1] * *q;
+}

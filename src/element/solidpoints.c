@@ -19,6 +19,7 @@ PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal positi
       positions[dim * g + i] = 0;
       for (PetscInt a = 0; a < element->nodes; a++) positions[dim * g + i] += N[a] * solid->coordinates[dim * nodes[a] + i];
     }
+    if (element->axisymmetric) weights[g] *= 2 * PETSC_PI * positions[dim * g];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -117,20 +117,6 @@ static PetscErrorCode SeesObstacle(Obstacle obstacle, const PetscReal x[], const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode KeepFaces(Surface surface, const PetscBool keep[])
-{
-  SurfaceData *data = &surface->data;
-  PetscInt     kept = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt f = 0; f < data->n_faces; f++)
-    if (keep[f]) surface->points[kept++] = surface->points[f];
-  PetscCall(SurfaceClearNodes(surface));
-  data->n_faces = kept;
-  PetscCall(SurfaceSetUpNodes(surface));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* How far the whole body of a surface reaches along each direction n: the largest n . x of all its nodes, displaced by u [m] */
 static PetscErrorCode GetSupport(Surface surface, Vec u, PetscInt n, const PetscReal directions[][3], PetscReal support[])
 {
@@ -276,7 +262,7 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
     }
   }
   for (PetscInt side = 0; side < 2; side++) {
-    if (surfaces[side] && wanted[side]) PetscCall(KeepFaces(surfaces[side], keep[side]));
+    if (surfaces[side] && wanted[side]) PetscCall(SurfaceKeepFaces(surfaces[side], keep[side]));
     PetscCall(PetscFree(keep[side]));
   }
   PetscCall(PetscFree(directions));

@@ -16,9 +16,11 @@ struct _p_Surface {
   PetscReal   *signs;       /* per face, in one dimension: direction of its outward normal, 1 or -1 */
   PetscInt    *owner_index; /* per node: its number on the rank that owns it */
   PetscMPIInt *owner_rank;
-  PetscBool    round;   /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
-  PetscSF      sf;      /* from owned nodes to ghosts, one number for each node */
-  PetscSF      vectors; /* the same, three numbers for each node */
+  PetscBool    axisymmetric; /* areas are those of rings, see SurfaceSetAxisymmetric() */
+  PetscReal    on_axis;      /* nodes with a smaller first coordinate lie on the axis [m] */
+  PetscBool    round;        /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
+  PetscSF      sf;           /* from owned nodes to ghosts, one number for each node */
+  PetscSF      vectors;      /* the same, three numbers for each node */
 };
 
 /* A face of the Neumann side as one rank sends it to another */
@@ -183,6 +185,7 @@ PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const Pe
 PETSC_INTERN PetscErrorCode ExchangeFaces(MPI_Comm, Surface, Surface, PetscReal, PetscReal, PetscInt *, Face *[]);
 PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
+PETSC_INTERN PetscErrorCode SurfaceKeepFaces(Surface, const PetscBool[]);
 PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, PetscReal *);
 
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);

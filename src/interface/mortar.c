@@ -15,6 +15,8 @@ typedef struct {
   PetscReal combine[4][4]; /* function of node k: sum_l combine[k][l] phi_l */
   PetscReal lumped[4];     /* int phi_k */
   PetscReal mass[4][4];    /* int phi_k phi_l */
+  PetscBool axisymmetric;  /* integrals have the weight 2 pi x, which is along the face: */
+  PetscReal x, slope;      /* in the middle, and with the first coordinate of its plane [m, 1] */
 } Patch;
 
 /* A node far beyond the end of the partner has no row. Its neighbours on the face take its shape function over, so that the functions of
@@ -59,6 +61,8 @@ static void IntegrateSegment(Patch *patch, const Segment *segment, PetscInt n_pa
 
   for (PetscInt k = 0; k < 4; k++)
     for (PetscInt j = 0; j < 4; j++) cross[k][j] = 0;
+  for (PetscInt q = 0; q < n_points && patch->axisymmetric; q++)
+    weights[q] *= 2 * PETSC_PI * PetscMax(0, patch->x + patch->slope * points[q][0]);
   for (PetscInt q = 0; q < n_points; q++) {
     ShapesAt(patch, points[q], shapes);
     FaceShapes(n_partner, (const PetscReal(*)[2])segment->partner_corners, points[q], partner);
@@ -104,17 +108,20 @@ static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
 }
 
 /* The patch of face f, before any segment has been added */
-static void SetUpPatch(const SurfaceData *data, PetscInt f, const PetscInt marks[], Patch *patch)
+static void SetUpPatch(Surface surface, PetscInt f, const PetscInt marks[], Patch *patch)
 {
-  const PetscInt n = data->face_nodes, *nodes = data->faces + f * n;
-  PetscReal      x[4][3];
-  Frame          frame;
+  const SurfaceData *data = &surface->data;
+  const PetscInt     n = data->face_nodes, *nodes = data->faces + f * n;
+  PetscReal          x[4][3];
+  Frame              frame;
 
-  *patch = (Patch){.n = n};
+  *patch = (Patch){.n = n, .axisymmetric = surface->axisymmetric};
   for (PetscInt k = 0; k < n; k++)
     for (PetscInt d = 0; d < 3; d++) x[k][d] = data->positions[3 * nodes[k] + d];
   FrameOfFace(n, (const PetscReal(*)[3])x, data->face_normals + 3 * f, &frame);
   for (PetscInt k = 0; k < n; k++) FrameProject(&frame, x[k], patch->corners[k]);
+  patch->x     = frame.origin[0];
+  patch->slope = frame.tangents[0][0];
   CombineFunctions(n, nodes, marks, patch->combine);
 }
 
@@ -193,7 +200,7 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
     patch          = (Patch){.n = 1, .lumped = {1}};
     cross[0][0][0] = dual[0][0] = 1;
   } else {
-    SetUpPatch(&surface->data, f, marks, &patch);
+    SetUpPatch(surface, f, marks, &patch);
     for (PetscInt i = begin; i < end; i++) IntegrateSegment(&patch, &segments->list[i], n_partner, cross[i - begin]);
     ComputeDual(&patch, dual);
     for (PetscInt k = 0; k < n; k++)

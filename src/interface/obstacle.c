@@ -199,6 +199,33 @@ PetscErrorCode ObstacleGetType(Obstacle obstacle, ObstacleType *type)
 }
 
 /*@
+  ObstacleGetPlace - where an obstacle is
+
+  Not Collective
+
+  Input Parameter:
+. obstacle - the `Obstacle`
+
+  Output Parameters:
++ point     - a point of the plane or of the cylinder's axis, or the centre of the sphere, 3 numbers [m]
+- direction - unit normal of the plane or direction of the cylinder; zeros for a sphere; 3 numbers
+
+  Level: developer
+
+.seealso: `Obstacle`, `ObstacleGetType()`
+@*/
+PetscErrorCode ObstacleGetPlace(Obstacle obstacle, PetscReal point[], PetscReal direction[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscAssertPointer(point, 2);
+  PetscAssertPointer(direction, 3);
+  PetscCall(PetscArraycpy(point, obstacle->point, 3));
+  PetscCall(PetscArraycpy(direction, obstacle->direction, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ObstacleGetGap - how far a point is from an obstacle
 
   Not Collective

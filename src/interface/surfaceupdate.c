@@ -54,6 +54,8 @@ static void AddFaces(Surface surface)
     normal[1] = normal[2] = 0;
     FaceNormal(n, (const PetscReal(*)[3])x, normal, &data->face_areas[f]);
     FaceNodeAreas(n, (const PetscReal(*)[3])x, normal, areas);
+    if (surface->axisymmetric) /* 2 pi x is linear along the face */
+      for (PetscInt k = 0; k < 2; k++) areas[k] = PETSC_PI / 3 * data->face_areas[f] * (2 * x[k][0] + x[1 - k][0]);
     for (PetscInt k = 0; k < n; k++) {
       data->areas[nodes[k]] += areas[k];
       data->sizes[nodes[k]] = PetscMin(data->sizes[nodes[k]], FaceSize(n, data->face_areas[f]));
@@ -127,6 +129,8 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
   PetscCall(PetscSFReduceEnd(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+  for (PetscInt i = 0; i < data->n_owned && surface->axisymmetric; i++)
+    if (data->reference[3 * i] <= surface->on_axis) data->normals[3 * i] = 0;
   for (PetscInt i = 0; i < data->n_owned; i++) (void)Normalize(data->normals + 3 * i);
   PetscCall(PetscSFBcastBegin(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));

@@ -102,6 +102,8 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscCall(ReadPole(comm, prefix, ball));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &ball->simplex, NULL));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-ball_keep_volume", &ball->keep_volume, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, prefix, "-axisymmetric", &ball->turned, NULL));
+  ball->turned = (PetscBool)(ball->turned && ball->dim == 2 && ball->n_cuts == 1 && ball->centre[0] == 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,6 +7,7 @@ typedef struct {
   PetscInt  n_cuts; /* planes that cut it: x = centre, then y = centre */
   PetscReal radius, centre[3], pole[3], grading;
   PetscBool simplex, keep_volume;
+  PetscBool turned; /* half a disc that becomes a ball as it is turned about x = 0 */
 } Ball;
 
 /* The central block, or the block of layers on one side of it: along the axis of that side places count layers */

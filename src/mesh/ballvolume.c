@@ -45,6 +45,10 @@ static void FaceVolumes(const Ball *ball, const PetscReal x[4][3], const PetscRe
 
     *volume = 0.5 * PetscAbsReal(x[0][0] * x[1][1] - x[0][1] * x[1][0]);
     *sector = 0.5 * PetscAtan2Real(PetscAbsReal(a[0] * b[1] - a[1] * b[0]), Dot(a, b));
+    if (ball->turned) { /* by Pappus's theorem, and of the ball by Archimedes's */
+      *volume *= 2 * PETSC_PI / 3 * (x[0][0] + x[1][0]);
+      *sector = 2 * PETSC_PI / 3 * PetscAbsReal(a[1] - b[1]);
+    }
     return;
   }
   *sector = (SolidAngle(direction[0], direction[1], direction[3]) + SolidAngle(direction[0], direction[2], direction[3])) / 3;
@@ -151,7 +155,8 @@ static PetscErrorCode FindMoves(const Ball *ball, Sphere *sphere)
       sectors[sphere->faces[sphere->corners * f + k]] += sector;
     }
   }
-  for (PetscInt i = 0; i < sphere->n_nodes; i++) sphere->move[i] = PetscPowReal(sectors[i] / volumes[i], 1.0 / ball->dim) - 1;
+  for (PetscInt i = 0; i < sphere->n_nodes; i++)
+    sphere->move[i] = PetscPowReal(sectors[i] / volumes[i], 1.0 / (ball->turned ? 3 : ball->dim)) - 1;
   PetscCall(PetscFree2(volumes, sectors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,7 +225,8 @@ static PetscBool CellsAreConvex(const BallGrid *grid)
 PetscErrorCode BallKeepVolume(BallGrid *grid)
 {
   const Ball     *ball   = grid->ball;
-  const PetscReal wanted = (ball->dim == 2 ? PETSC_PI : 4 * PETSC_PI / 3) / (PetscReal)(1 << ball->n_cuts);
+  const PetscReal wanted = ball->turned ? 4 * PETSC_PI / 3
+                                        : (ball->dim == 2 ? PETSC_PI : 4 * PETSC_PI / 3) / (PetscReal)(1 << ball->n_cuts);
   Sphere          sphere = {0};
   PetscReal      *before, share, most = 0;
 

@@ -110,6 +110,10 @@ static const KnownOption options[] = {
     {"materials", OPTION_OF_BODY, "cross_section", "A", "cross-sectional area of a bar [m^2], default 1"},
     {"materials", OPTION_OF_BODY, "thickness", "h", "thickness of a plane body [m], default 1"},
     {"materials", OPTION_OF_BODY, "plane_stress", "true|false", "plane stress in 2-D, default false: plane strain"},
+    {"materials", OPTION_OF_BODY, "axisymmetric", "true|false",
+     "in 2-D: rings about the axis x = 0, which x is the distance from and y goes along; forces, masses and contact areas are those of "
+     "whole "
+     "rings; default false"},
     {"materials", OPTION_OF_BODY, "element_formulation", "full|mean_dilatation|enhanced|reduced",
      "of quadrilaterals and hexahedra: fully integrated; with one change of volume for each element, against locking of nearly "
      "incompressible "

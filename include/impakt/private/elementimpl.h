@@ -32,7 +32,7 @@ struct _ElementOps {
                             PetscReal[]); /* of elements with history: plastic work of all elements of this rank [J], and the equivalent
                                              plastic strain, mean of each element; may be missing */
   PetscErrorCode (*points)(Element, PetscInt, PetscReal[], PetscReal[]); /* of one element: reference positions of its load points, n_points
-                                                                            x dim [m], and their weights [m^3, m^2 x thickness] */
+                                                                            x dim [m], and their weights [m^3, m^2 x thickness or 2 pi r] */
   PetscErrorCode (*nearest)(Element, PetscInt, const PetscReal[], PetscReal[],
                             PetscReal *); /* shape functions at a position in the undeformed element, and its distance [m], 0 inside; of a
                                              position outside those at a point of the element near to it. May be missing. */
@@ -58,6 +58,7 @@ struct _p_Element {
   PetscReal      cross_section;     /* of bars [m^2], thickness of plane bodies [m]; 1 for other shapes */
   PetscInt       cross_section_dim; /* dimension of the elements that the program has set it for; 0: it has not */
   PetscBool      plane_stress;      /* else plane strain */
+  PetscBool      axisymmetric;      /* of plane elements: rings about x = 0, which x is the distance from */
   char          *formulation;       /* NULL: the default, which the set-up finds */
   /* set by the constructor of the shape */
   PetscInt         dim, nodes; /* space dimension; nodes of one element */
@@ -87,5 +88,9 @@ PETSC_INTERN PetscErrorCode ElementCreate_Hex8_MeanDilatation(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Enhanced(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Reduced(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Hex8_Reduced(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Tri3_Axisymmetric(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Quad4_AxisymmetricMeanDilatation(Element);
+PETSC_INTERN PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
 PETSC_INTERN PetscErrorCode ElementApplyFormulation(Element);
 PETSC_INTERN PetscErrorCode ElementWarnOfLocking(Element);

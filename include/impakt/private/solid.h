@@ -25,6 +25,7 @@ typedef struct {
   MaterialKernels       kernels;
   MaterialKernels       unconstrained; /* of the same material when not in plane stress */
   PetscBool             plane_stress, linear;
+  PetscBool             mean_dilatation; /* of axisymmetric elements */
   PetscReal             load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
   SolidShape            reduced; /* the shape with another rule, where a formulation has one */
   void                 *own;     /* of the formulation */
@@ -68,6 +69,7 @@ SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, con
 
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid_MeanDilatation(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Solid_Axisymmetric(Element, PetscBool);
 PETSC_EXTERN PetscReal      SolidGetShape(Element, PetscInt, const PetscReal xi[], PetscReal N[], PetscReal gradient[]);
 PETSC_INTERN PetscErrorCode ElementPoints_Solid(Element, PetscInt, PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementNearest_Solid(Element, PetscInt, const PetscReal[], PetscReal[], PetscReal *);

@@ -309,6 +309,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(PetscFree(b->layer.contains));
   PetscCall(PetscFree(b->mesh.connectivity));
   PetscCall(PetscFree(b->mesh.coordinates));
+  PetscCall(PetscFree(b->mesh.on_axis));
   PetscCall(PetscFree(b->mesh.ghost_dofs));
   PetscCall(PetscFree(b->mesh.node_of_vertex));
   PetscCall(DMDestroy(&b->mesh.dm));

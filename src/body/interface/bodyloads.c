@@ -135,7 +135,7 @@ PetscErrorCode BodySetGravity(Body body, const PetscReal gravity[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(gravity, 2);
   PetscCall(Prepare(body));
-  BodyLoadsSetGravity(body, gravity);
+  PetscCall(BodyLoadsSetGravity(body, gravity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -147,6 +147,60 @@ PetscErrorCode BodySetThickness(Body body, PetscReal thickness)
 }
 
 /*@
+  BodySetAxisymmetric - whether a body with a plane mesh is made of rings about the axis x = 0
+
+  Logically Collective
+
+  Input Parameters:
++ body         - the `Body`, before its mesh is looked at
+- axisymmetric - `PETSC_TRUE` for rings: x is the distance from the axis, y goes along it; `PETSC_FALSE` by default
+
+  Options Database Key:
+. -<body>_axisymmetric (true|false) - rings
+
+  Level: intermediate
+
+  Notes:
+  Forces, masses, energies and contact areas are those of whole rings. Nodes on the axis are held in x.
+
+  Bodies of a contact pair are both axisymmetric, or none is. Obstacles are planes across the axis, spheres on it, and cylinders about it.
+
+.seealso: `Body`, `BodyGetAxisymmetric()`, `BodySetPlaneStress()`, `ElementSetAxisymmetric()`
+@*/
+PetscErrorCode BodySetAxisymmetric(Body body, PetscBool axisymmetric)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  BodyCheckNotSetUp(body);
+  PetscCall(ElementSetAxisymmetric(body->model.element, axisymmetric));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetAxisymmetric - whether a body is made of rings about the axis x = 0
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetFromOptions()`
+
+  Output Parameter:
+. axisymmetric - `PETSC_TRUE` if so
+
+  Level: intermediate
+
+.seealso: `Body`, `BodySetAxisymmetric()`
+@*/
+PetscErrorCode BodyGetAxisymmetric(Body body, PetscBool *axisymmetric)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(axisymmetric, 2);
+  PetscCall(ElementGetAxisymmetric(body->model.element, axisymmetric));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodySetPlaneStress - whether a plane body is free of stress across its plane, or of strain
 
   Logically Collective

@@ -55,6 +55,10 @@ PetscErrorCode BodySetUpDiscretization(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySetUpMesh(body));
+  if (body->mesh.touches_axis && !body->loads) {
+    PetscCall(BodyLoadsHoldAxis(body));
+    PetscCall(BodyNoteHeld(body));
+  }
   PetscCall(BodySetUpIntegrator(body));
   PetscCall(BodySetUpMassType(body));
   PetscFunctionReturn(PETSC_SUCCESS);

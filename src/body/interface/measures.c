@@ -137,6 +137,10 @@ static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal mom
     PetscCall(VecRestoreArrayRead(body->mesh.positions, &x));
   }
   PetscCall(VecRestoreArrayRead(nodal, &p));
+  if (body->model.element->axisymmetric) { /* around the ring it adds up to nothing but what goes along the axis */
+    momentum[0] = 0;
+    for (PetscInt d = 0; d < 3; d++) angular[d] = 0;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -151,6 +155,7 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
   for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) sum[i % body->mesh.dim] += mass[i] * v[i];
   PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
   PetscCall(VecRestoreArrayRead(body->state.v, &v));
+  if (body->model.element->axisymmetric) sum[0] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,6 +177,8 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
   potential energy it is what the scheme conserves.
 
   A static body has neither kinetic energy nor momentum.
+
+  Energies and momentum of an axisymmetric body are those of whole rings: it has momentum along y alone, and turns about nothing.
 
 .seealso: `Body`, `BodyMeasures`
 @*/
@@ -200,7 +207,7 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
   measures->hourglass_energy = sums[14];
   BodyFinishRotation(body, sums + 11, measures->rotation);
   PetscCall(BodyGetDamping(body, &drag, NULL)); /* which takes momentum */
-  measures->loaded = (PetscBool)(body->loads != NULL || drag > 0);
+  measures->loaded = (PetscBool)(BodyIsLoaded(body) || drag > 0);
   for (PetscInt d = 0; d < 3; d++) {
     measures->momentum[d]         = sums[2 + d];
     measures->angular_momentum[d] = sums[5 + d];

@@ -25,6 +25,8 @@ typedef struct {
   PetscInt      *ghost_dofs;     /* global numbers */
   Vec            positions;      /* reference positions of owned nodes, laid out as displacements [m] */
   PetscReal      cells[2];       /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
+  PetscBool     *on_axis;        /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
+  PetscBool      touches_axis;   /* there are such nodes on any rank */
 } BodyMesh;
 
 /* What internal forces come from */
@@ -378,6 +380,8 @@ PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodyLoadsHaveForce(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyLoadsHoldAxis(Body);
+PETSC_INTERN PetscBool      BodyIsLoaded(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsAddForce(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyLoadsPrescribe(Body, PetscReal, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyLoadsInitialState(Body, Vec, Vec);

@@ -96,7 +96,7 @@ static PetscReal GetShape(PetscInt dim, PetscInt nodes, PetscInt g, PetscReal N[
 }
 
 /* Position and outward unit normal at the points of a face (their time is left alone), and the shape functions there times the
-   weight [m^2]: of plane bodies times the thickness, of bars the cross-section. weights: n_points x nodes. */
+   weight [m^2]: of plane bodies times the thickness or, of rings, 2 pi r; of bars the cross-section. weights: n_points x nodes. */
 PetscErrorCode BodyFacesGetPoints(Body body, const BodyFaces *faces, PetscInt face, ExpressionPoint points[], PetscReal weights[])
 {
   const PetscInt  dim = body->mesh.dim, *nodes = faces->connectivity + face * faces->nodes;
@@ -127,6 +127,7 @@ PetscErrorCode BodyFacesGetPoints(Body body, const BodyFaces *faces, PetscInt fa
     if (area > 0)
       for (PetscInt d = 0; d < 3; d++) n[d] *= side / area;
     weight *= area * body->model.element->cross_section;
+    if (body->model.element->axisymmetric) weight *= 2 * PETSC_PI * x[0];
     for (PetscInt a = 0; a < faces->nodes; a++) weights[g * faces->nodes + a] = weight * N[a];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

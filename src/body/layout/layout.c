@@ -1,6 +1,7 @@
 /* Mesh and numbering: what the element loops and vectors of a body run over. */
 #include "bodyimpl.h"
 #include "cells.h"
+#include <impakt/mesh.h>
 
 /* One node at each vertex, `dim` displacements at each node */
 static PetscErrorCode SetUpSection(Body body)
@@ -134,6 +135,23 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nodes on the axis of an axisymmetric body */
+static PetscErrorCode FindAxis(Body body)
+{
+  PetscReal tolerance;
+
+  PetscFunctionBegin;
+  if (!body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MeshGetAxisTolerance(body->mesh.dm, &tolerance));
+  PetscCall(PetscCalloc1(body->mesh.local_nodes, &body->mesh.on_axis));
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++) {
+    body->mesh.on_axis[node] = (PetscBool)(body->mesh.coordinates[node * body->mesh.dim] <= tolerance);
+    if (body->mesh.on_axis[node]) body->mesh.touches_axis = PETSC_TRUE;
+  }
+  PetscCall(BodyAnyRank(body, &body->mesh.touches_axis));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Numbering, coordinates, connectivity and elements from the DMPlex, after BodySetUpCells() */
 PetscErrorCode BodySetUpLayout(Body body)
 {
@@ -148,6 +166,7 @@ PetscErrorCode BodySetUpLayout(Body body)
   body->mesh.node_of_vertex = node_of_vertex; /* freed with the body, whatever happens next */
   PetscCall(NumberNodes(body, vstart, vend, node_of_vertex));
   PetscCall(SetUpCoordinates(body, vstart, vend, node_of_vertex));
+  PetscCall(FindAxis(body));
   PetscCall(SetUpElements(body, vstart, vend, node_of_vertex));
   PetscCall(PetscCalloc1(body->mesh.local_nodes, &body->layer.contains));
   PetscCall(BodyCreateVec(body, &body->mesh.positions));

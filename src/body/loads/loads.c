@@ -95,6 +95,7 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
     if (!is_number) constant = PETSC_FALSE;
     PetscCall(ExpressionDestroy(&list[d]));
   }
+  PetscCall(BodyLoadsCheckGravity(body));
   PetscCheck(constant, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sgravity '%s': components are numbers; -%sbody_force takes formulas", ((PetscObject)body)->prefix, text,
              ((PetscObject)body)->prefix);
@@ -126,7 +127,9 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
   Notes:
   Expressions are those of `ExpressionCreate()`: formulas or `table:file`; positions are those of the reference configuration, and the
   normal is its outward unit normal, so that a pressure p is -p*nx,-p*ny,-p*nz. A traction of plane bodies acts on the edge times
-  the thickness, of bars on the cross-section.
+  the thickness, of rings on the circle around, of bars on the cross-section.
+
+  Nodes of rings on the axis are held in x whatever is prescribed. Gravity of rings is along y.
 
   Where several surfaces prescribe the same component of a node, that named last holds. `free` says nothing of a component: what
   another surface prescribes there, holds.
@@ -156,6 +159,7 @@ PetscErrorCode BodyLoadsSetFromOptions(Body body)
     if (!error) error = ReadForces(body, n_tractions, tractions, body_force);
     if (!error) error = ReadGravity(body, gravity);
   }
+  if (!error) error = BodyLoadsHoldAxis(body);
   if (n_displacements) PetscCall(PetscStrToArrayDestroy((int)n_displacements, displacements));
   if (n_tractions) PetscCall(PetscStrToArrayDestroy((int)n_tractions, tractions));
   PetscCall(error);

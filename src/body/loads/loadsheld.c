@@ -20,6 +20,19 @@ static PetscErrorCode MarkHeld(Body body, PetscInt i, const char surface[], Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nodes on the axis of rings stay there: that comes after all prescriptions */
+static PetscErrorCode MarkAxis(Body body, Vec local)
+{
+  PetscScalar *mark;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArray(local, &mark));
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++)
+    if (body->mesh.on_axis[node]) mark[node * body->mesh.dim] = body->loads->n_prescribed + 1;
+  PetscCall(VecRestoreArray(local, &mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* For each owned dof 1 + the number of the last prescription that holds it, else 0. A rank may own a node of a surface without
    having a face of it. */
 static PetscErrorCode MarkAllHeld(Body body, Vec marks)
@@ -33,6 +46,7 @@ static PetscErrorCode MarkAllHeld(Body body, Vec marks)
   if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
   PetscCall(VecSet(local, 0));
   for (PetscInt i = 0; i < loads->n_prescribed && !error; i++) error = MarkHeld(body, i, loads->prescribed[i].surface, local);
+  if (!error && body->mesh.on_axis) error = MarkAxis(body, local);
   if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
   PetscCall(error);
   if (ghosted) {
@@ -53,14 +67,15 @@ static void GetPoint(Body body, PetscInt dof, PetscReal t, ExpressionPoint *poin
   point->t = t;
 }
 
-static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt prescription, PetscInt component, HeldDofs *group)
+static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt prescription, PetscInt component, Expression displacement,
+                                HeldDofs *group)
 {
   const PetscInt n     = body->mesh.owned_nodes * body->mesh.dim;
   PetscInt       count = 0;
 
   PetscFunctionBegin;
   group->prescription = prescription;
-  group->displacement = body->loads->prescribed[prescription].component[component];
+  group->displacement = displacement;
   PetscCall(ExpressionIsSteady(group->displacement, &group->steady));
   PetscCall(ExpressionIsUniform(group->displacement, &group->uniform));
   for (PetscInt dof = component; dof < n; dof += body->mesh.dim) count += marks[dof] == prescription + 1;
@@ -90,6 +105,41 @@ static PetscErrorCode DestroyGroups(struct _BodyLoads *loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* An error where a displacement away from the axis is prescribed on it */
+static PetscErrorCode CheckAxis(Body body)
+{
+  const struct _BodyLoads *loads = body->loads;
+  PetscInt                 bad   = -1;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < loads->n_prescribed; i++) {
+    PetscInt n, *vertices;
+
+    if (!loads->prescribed[i].component[0]) continue;
+    PetscCall(MeshGetNodeSet(body->mesh.dm, loads->prescribed[i].surface, &n, &vertices));
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt node = body->mesh.node_of_vertex[vertices[k] - body->mesh.vertex_start];
+
+      for (PetscInt second = 0; second < 2 && body->mesh.on_axis[node]; second++) {
+        ExpressionPoint point;
+        PetscReal       value;
+
+        GetPoint(body, node * body->mesh.dim, second, &point);
+        PetscCall(ExpressionEvaluate(loads->prescribed[i].component[0], &point, &value));
+        if (value != 0) bad = PetscMax(bad, i);
+      }
+    }
+    PetscCall(PetscFree(vertices));
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &bad, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
+  PetscCheck(
+      bad < 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-%sboundary_displacement_%s moves nodes on the axis x = 0 of an axisymmetric body along x: they stay there; write the word free, "
+      "or a formula in x that is 0 there",
+      ((PetscObject)body)->prefix, loads->prescribed[bad].surface);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Which dofs are held, and by which prescription; to be called again when one has been added */
 PetscErrorCode BodyLoadsSetUpHeld(Body body)
 {
@@ -101,7 +151,9 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body)
   PetscErrorCode     error;
 
   PetscFunctionBegin;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!n && !body->mesh.touches_axis) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->mesh.touches_axis) PetscCall(CheckAxis(body));
+  if (body->mesh.touches_axis && !loads->axis) PetscCall(ExpressionCreate(PETSC_COMM_SELF, "", "0", &loads->axis));
   PetscCall(DestroyGroups(loads));
   PetscCall(BodyCreateVec(body, &marks));
   error = MarkAllHeld(body, marks);
@@ -112,10 +164,12 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body)
   PetscCall(PetscMalloc1(loads->n_held, &loads->held_dofs));
   for (PetscInt dof = 0, k = 0; dof < n_dofs; dof++)
     if (mark[dof] > 0) loads->held_dofs[k++] = dof;
-  PetscCall(PetscCalloc1(n * body->mesh.dim, &loads->groups));
+  PetscCall(PetscCalloc1(n * body->mesh.dim + 1, &loads->groups));
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt d = 0; d < body->mesh.dim; d++)
-      if (loads->prescribed[i].component[d]) PetscCall(FillGroup(body, mark, i, d, &loads->groups[loads->n_groups++]));
+      if (loads->prescribed[i].component[d])
+        PetscCall(FillGroup(body, mark, i, d, loads->prescribed[i].component[d], &loads->groups[loads->n_groups++]));
+  if (loads->axis) PetscCall(FillGroup(body, mark, n, 0, loads->axis, &loads->groups[loads->n_groups++]));
   PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(VecDestroy(&marks));
   PetscCall(BodyLoadsSetUpReactions(body));
@@ -125,6 +179,22 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body)
   PetscCheck(count[0] < count[1], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sboundary_displacement prescribes all components of all nodes of body '%s': there is nothing left to find; leave some free",
              ((PetscObject)body)->prefix, body->hdr.name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the program or the options have anything act on the body from outside, or hold it; its axis does neither */
+PetscBool BodyIsLoaded(Body body)
+{
+  return (PetscBool)(body->loads && (body->loads->n_prescribed || body->loads->n_loads || body->loads->has_gravity));
+}
+
+/* Holds the axis of an axisymmetric body, before other prescriptions come */
+PetscErrorCode BodyLoadsHoldAxis(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->mesh.touches_axis || body->loads) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&body->loads));
+  PetscCall(BodyLoadsSetUpHeld(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,5 +261,6 @@ PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *loads)
   }
   PetscCall(PetscFree(loads->prescribed));
   PetscCall(PetscFree(loads->reactions));
+  PetscCall(ExpressionDestroy(&loads->axis));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

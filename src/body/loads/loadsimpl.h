@@ -50,6 +50,7 @@ struct _BodyLoads {
   HeldDofs               *groups;
   PetscInt               *held_dofs; /* all of them, ascending */
   PetscReal              *reactions; /* work space of BodyGetReactions() */
+  Expression              axis;      /* 0: the distance from the axis of its nodes, the last prescription of all; NULL: there is no axis */
   /* forces; what comes below `ready` is made when they are first asked for */
   PetscInt         n_loads, n_uniform;
   Load            *loads;
@@ -68,7 +69,8 @@ PETSC_INTERN PetscErrorCode BodyLoadsRefuseNormal(Body, const char[], const Expr
 PETSC_INTERN PetscErrorCode BodyLoadsAddDisplacement(Body, const char[], const char[]);
 PETSC_INTERN PetscErrorCode BodyLoadsAddTraction(Body, const char[], const char[]);
 PETSC_INTERN PetscErrorCode BodyLoadsAddBodyForce(Body, const char[]);
-PETSC_INTERN void           BodyLoadsSetGravity(Body, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyLoadsSetGravity(Body, const PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyLoadsCheckGravity(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsSetInitial(Body, PetscBool, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyLoadsSetUpHeld(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsSetUpReactions(Body);

@@ -99,6 +99,26 @@ PetscErrorCode BodyLoadsSetInitial(Body body, PetscBool velocity, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* An error where nodes on the axis would leave it */
+static PetscErrorCode CheckAxis(Body body, int which, Vec values)
+{
+  const PetscScalar *value;
+  PetscBool          leaves = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(values, &value));
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++)
+    if (body->mesh.on_axis[node] && value[node * body->mesh.dim] != 0) leaves = PETSC_TRUE;
+  PetscCall(VecRestoreArrayRead(values, &value));
+  PetscCall(BodyAnyRank(body, &leaves));
+  PetscCheck(
+      !leaves, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-%s%s moves nodes on the axis x = 0 of an axisymmetric body along x: they stay there; its first component must be 0, or a formula "
+      "in x that is 0 there",
+      ((PetscObject)body)->prefix, initial[which]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Displacement [m] and velocity [m/s] of owned nodes at the start: those of the options, else zero, and those of held dofs as they
    are prescribed */
 PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
@@ -113,6 +133,7 @@ PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
     if (values) PetscCall(VecCopy(values, vecs[i]));
     else PetscCall(VecZeroEntries(vecs[i]));
   }
+  for (int i = 0; i < 2 && body->mesh.touches_axis; i++) PetscCall(CheckAxis(body, i, vecs[i]));
   PetscCall(BodyLoadsPrescribe(body, body->time.start, u, v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

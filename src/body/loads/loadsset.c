@@ -62,9 +62,23 @@ PetscErrorCode BodyLoadsAddBodyForce(Body body, const char text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Acceleration of all mass [m/s^2] */
-void BodyLoadsSetGravity(Body body, const PetscReal gravity[])
+/* An error of rings that would not remain rings */
+PetscErrorCode BodyLoadsCheckGravity(Body body)
 {
+  PetscFunctionBegin;
+  PetscCheck(
+      !body->model.element->axisymmetric || body->loads->gravity[0] == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-%sgravity %g,...: gravity of an axisymmetric body is along its axis, y; for a force away from the axis there is -%sbody_force",
+      ((PetscObject)body)->prefix, (double)body->loads->gravity[0], ((PetscObject)body)->prefix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Acceleration of all mass [m/s^2] */
+PetscErrorCode BodyLoadsSetGravity(Body body, const PetscReal gravity[])
+{
+  PetscFunctionBegin;
   for (PetscInt d = 0; d < body->mesh.dim; d++) body->loads->gravity[d] = gravity[d];
   body->loads->has_gravity = PETSC_TRUE;
+  PetscCall(BodyLoadsCheckGravity(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -107,6 +107,8 @@ static void AddGroup(const HeldDofs *group, PetscInt dim, const PetscScalar x[],
 
   A component of a node that several surfaces prescribe belongs to the one named last, whose prescription holds: no force is counted twice.
 
+  Of axisymmetric bodies the first component is the sum of what acts away from the axis, all around; there are no moments.
+
   The loads of a static body begin in its first step: at the start it has the reactions of its strain alone.
 
 .seealso: `Body`, `BodyGetNumReactions()`, `BodyGetReactionSurface()`, `BodyAddDisplacement()`
@@ -130,7 +132,7 @@ PetscErrorCode BodyGetReactions(Body body, PetscReal force[], PetscReal moment[]
   PetscCall(VecGetArrayRead(body->state.u, &u));
   PetscCall(VecGetArrayRead(body->state.applied, &applied));
   PetscCall(VecGetArrayRead(outside, &external));
-  for (PetscInt g = 0; g < loads->n_groups; g++)
+  for (PetscInt g = 0; g < loads->n_groups && loads->groups[g].prescription < loads->n_prescribed; g++)
     AddGroup(&loads->groups[g], body->mesh.dim, x, u, applied, external, loads->reactions + N_SUMS * loads->groups[g].prescription);
   PetscCall(VecRestoreArrayRead(outside, &external));
   PetscCall(VecRestoreArrayRead(body->state.applied, &applied));
@@ -142,7 +144,7 @@ PetscErrorCode BodyGetReactions(Body body, PetscReal force[], PetscReal moment[]
   for (PetscInt i = 0; i < loads->n_prescribed; i++)
     for (PetscInt d = 0; d < 3; d++) {
       force[3 * i + d]  = loads->reactions[N_SUMS * i + d];
-      moment[3 * i + d] = loads->reactions[N_SUMS * i + 3 + d];
+      moment[3 * i + d] = body->model.element->axisymmetric ? 0 : loads->reactions[N_SUMS * i + 3 + d];
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

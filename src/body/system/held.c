@@ -59,6 +59,8 @@ static PetscErrorCode FindFreeMotions(Body body, PetscInt n_fixed, const PetscIn
     for (PetscInt a = 0; a < n; a++)
       for (PetscInt b = 0; b < n; b++) gram[a * n + b] += BodyRigidMotion(body, &frame, a, dof) * BodyRigidMotion(body, &frame, b, dof);
   }
+  if (body->model.element->axisymmetric) /* rings are stretched by all but a motion along the axis */
+    for (PetscInt a = 0; a < n; a++) gram[a * n + a] += a == 1 ? 0 : body->mesh.owned_nodes;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, (PetscMPIInt)(n * n), MPIU_REAL, MPIU_SUM, comm));
   PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &order, gram, &order, eigenvalues, work, &lwork, &info));
   PetscCheck(info == 0, comm, PETSC_ERR_LIB, "LAPACK syev info %d", (int)info);

@@ -48,10 +48,12 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscR
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
   PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
   PetscCall(MaterialGetDensity(body->model.material, &density));
-  /* nothing is known of other formulations: their elements are looked at as soon as they store something */
+  /* nothing is known of other formulations, and volumes of rings grow with their radius: their elements are looked at as soon as they store
+   * something */
   PetscCall(ElementGetFormulation(body->model.element, &formulation));
   PetscCall(PetscStrcmp(formulation, ELEMENT_FULL, &full));
-  *energy = !full ? PETSC_REAL_MIN : 0.5 * modulus * shape->part * least / sum * body->mass.total / density;
+  *energy = !full || body->model.element->axisymmetric ? PETSC_REAL_MIN
+                                                       : 0.5 * modulus * shape->part * least / sum * body->mass.total / density;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

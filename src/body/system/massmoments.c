@@ -213,7 +213,7 @@ static PetscErrorCode CompareInertia(const MomentsProblem *problem, const PetscR
 
   PetscFunctionBegin;
   *error = 0;
-  if (dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (dim == 1 || problem->body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt m = dim + 1; m < problem->n_moments; m++) {
     const PetscInt  a = problem->pair[m][0] - 1, b = problem->pair[m][1] - 1;
     const PetscReal unit = problem->size[a] * problem->size[b];
@@ -271,8 +271,9 @@ static PetscErrorCode FindFactor(MomentsProblem *problem)
                                {0, SECOND_ORDER, 0, SOFT_INERTIA},
                                {0, SECOND_ORDER, SOFT_CENTRE, SOFT_INERTIA}};
   const PetscInt n_attempts = (PetscInt)(sizeof(attempts) / sizeof(attempts[0])), dim = problem->body->mesh.dim;
-  /* in one dimension nothing turns */
-  const PetscBool centre_alone = (PetscBool)(dim == 1 || problem->body->mass.moments == BODY_MASS_CENTRE);
+  /* in one dimension nothing turns, and no ring does */
+  const PetscBool centre_alone = (PetscBool)(dim == 1 || problem->body->model.element->axisymmetric ||
+                                             problem->body->mass.moments == BODY_MASS_CENTRE);
   PetscReal       coefficients[MAX_MOMENTS], moments[MAX_MOMENTS];
   PetscBool       converged = PETSC_FALSE;
 

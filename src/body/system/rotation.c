@@ -28,6 +28,10 @@ PetscErrorCode BodySetUpInertia(Body body)
   for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) sums[i % dim] += mass[i] * body->mesh.coordinates[i];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   for (PetscInt d = 0; d < 3; d++) body->mass.centre[d] = sums[d] / body->mass.total;
+  if (body->model.element->axisymmetric) { /* rings lie about the axis, and do not turn */
+    body->mass.centre[0] = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscArrayzero(sums, 9));
   for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i += dim) {
     PetscReal r[3] = {0};
@@ -57,7 +61,7 @@ PetscErrorCode BodySumRotation(Body body, PetscReal sum[3])
 
   PetscFunctionBegin;
   for (PetscInt d = 0; d < 3; d++) sum[d] = 0;
-  if (!body->model.linear || dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->model.linear || dim == 1 || body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
   PetscCall(VecGetArrayRead(body->state.u, &u));
   for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i += dim) {

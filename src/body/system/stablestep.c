@@ -30,6 +30,12 @@ static PetscBool IsMassless(Body body, PetscInt node)
   return (PetscBool)(body->mass.redistribute && body->layer.contains[node]);
 }
 
+/* Displacements that do not vibrate: of massless nodes, and of those that the axis holds */
+static PetscBool IsStill(Body body, PetscInt node, PetscInt component)
+{
+  return (PetscBool)(IsMassless(body, node) || (component == 0 && body->mesh.on_axis && body->mesh.on_axis[node]));
+}
+
 /* Largest eigenvalue of one element with its massless nodes held, which is a bound whether they are free or prescribed; u: displacement of
    this rank's nodes */
 static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], PetscReal *largest)
@@ -46,7 +52,7 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscSca
   PetscCall((*body->model.element->ops->stiffness)(body->model.element, e, u, K));
   PetscCall(BodyGetElementMass(body, e, M));
   for (PetscInt i = 0; i < n; i++)
-    if (!IsMassless(body, nodes[i / body->mesh.dim])) kept[n_kept++] = i;
+    if (!IsStill(body, nodes[i / body->mesh.dim], i % body->mesh.dim)) kept[n_kept++] = i;
   if (!n_kept) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < n_kept; i++)
     for (PetscInt j = 0; j < n_kept; j++) {
@@ -96,7 +102,7 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, const PetscScalar u[]
         chunk->coordinates[own * dim + d] = body->mesh.coordinates[nodes[a] * dim + d];
         chunk->at[own * dim + d]          = PetscRealPart(u[nodes[a] * dim + d]);
         extent = PetscMax(extent, PetscAbsReal(body->mesh.coordinates[nodes[a] * dim + d] - body->mesh.coordinates[nodes[0] * dim + d]));
-        chunk->inverse_mass[own * dim + d] = mass > 0 && !IsMassless(body, nodes[a]) ? 1 / mass : 0;
+        chunk->inverse_mass[own * dim + d] = mass > 0 && !IsStill(body, nodes[a], d) ? 1 / mass : 0;
         /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
         chunk->u[own * dim + d] = PetscSinReal(1 + 7.3 * i * i + 2.1 * i);
       }

@@ -129,11 +129,13 @@ static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt
 /* Whether gaps of a pair are to be turned unasked */
 static PetscErrorCode SuitsBalance(Contact contact, const ContactPair *pair, PetscBool *suits)
 {
-  PetscBool linear = PETSC_TRUE;
+  PetscBool linear = PETSC_TRUE, axisymmetric;
 
   PetscFunctionBegin;
   *suits = PETSC_FALSE;
   if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetAxisymmetric(contact->bodies[pair->body[0]], &axisymmetric));
+  if (axisymmetric) PetscFunctionReturn(PETSC_SUCCESS); /* moments are in balance around the ring */
   for (PetscInt side = 0; side < 2; side++) {
     PetscReal bend;
     PetscBool is_static, is_linear;

@@ -4,18 +4,28 @@
 /* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
 #define FORCE_ROUND_OFF 1e-9
 
+/* A surface of a body; `name` NULL: the whole of it */
+static PetscErrorCode CreateSurface(Contact contact, PetscInt body, const char name[], Surface *surface)
+{
+  PetscBool axisymmetric;
+  DM        dm;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDM(contact->bodies[body], &dm));
+  PetscCall(SurfaceCreate(dm, name, surface));
+  PetscCall(BodyGetAxisymmetric(contact->bodies[body], &axisymmetric));
+  if (axisymmetric) PetscCall(SurfaceSetAxisymmetric(*surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A surface of a pair, and that of its partner, with the faces alone that face the partner at the start; the partner's is NULL for an
  * obstacle */
 static PetscErrorCode CreateFacing(Contact contact, const ContactPair *pair, Surface surfaces[2])
 {
   PetscFunctionBegin;
   surfaces[0] = surfaces[1] = NULL;
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    DM dm;
-
-    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
-    PetscCall(SurfaceCreate(dm, pair->surface[side], &surfaces[side]));
-  }
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+    PetscCall(CreateSurface(contact, pair->body[side], pair->surface[side], &surfaces[side]));
   PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], pair->obstacle, PETSC_TRUE, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -143,7 +153,6 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt side, PetscBool shared)
 {
   ContactSurface *entry;
-  DM              dm;
 
   PetscFunctionBegin;
   if (contact->neighbours.come_and_go) { /* all bodies have theirs from the start, in their order */
@@ -173,8 +182,7 @@ static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt s
 
   entry  = &contact->surfaces[contact->n_surfaces++];
   *entry = (ContactSurface){.body = pair->body[side], .name = pair->surface[side], .shared = shared};
-  PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
-  PetscCall(SurfaceCreate(dm, pair->surface[side], &entry->surface));
+  PetscCall(CreateSurface(contact, pair->body[side], pair->surface[side], &entry->surface));
   PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
   PetscCall(PetscObjectReference((PetscObject)entry->surface));
   pair->surfaces[side] = entry->surface;
@@ -199,7 +207,7 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
 
     *entry = (ContactSurface){.body = b, .shared = PETSC_TRUE};
     PetscCall(BodyGetDM(contact->bodies[b], &dm));
-    PetscCall(SurfaceCreate(dm, NULL, &entry->surface));
+    PetscCall(CreateSurface(contact, b, NULL, &entry->surface));
     PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
     PetscCall(SurfaceGetVertices(entry->surface, &n, &vertices));
     PetscCall(BodySetContactNodes(contact->bodies[b], n, vertices));
@@ -253,6 +261,7 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
              "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT
              ", and another body has %" PetscInt_FMT,
              pair->name, dims[0], dims[1], contact->dim);
+  PetscCall(ContactCheckAxisymmetric(contact, pair));
   PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, faces[0], faces[1]));
   PetscCall(CheckFacing(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);

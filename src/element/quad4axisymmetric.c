@@ -1,0 +1,21 @@
+/* quad4 as a ring, fully integrated or with a mean dilatation. */
+#include <element/quad4.h>
+#undef WEIGHT
+#define WEIGHT (2 * PETSC_PI)
+#include <element/axisymmetricloops.h>
+
+PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element element)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementCreate_Solid_Axisymmetric(element, PETSC_FALSE));
+  SetLoops(element);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ElementCreate_Quad4_AxisymmetricMeanDilatation(Element element)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementCreate_Solid_Axisymmetric(element, PETSC_TRUE));
+  SetLoops(element);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,13 @@
+/* tri3 as a ring, with the strain along the ring of its centroid. */
+#include <element/tri3.h>
+#undef WEIGHT
+#define WEIGHT PETSC_PI
+#include <element/axisymmetricloops.h>
+
+PetscErrorCode ElementCreate_Tri3_Axisymmetric(Element element)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementCreate_Solid_Axisymmetric(element, PETSC_FALSE));
+  SetLoops(element);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
