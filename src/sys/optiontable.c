@@ -82,11 +82,12 @@ static const KnownOption options[] = {
     {"meshes", OPTION_OF_BODY, "rotate_centre", "x,y[,z]", "point that the rotation leaves in place [m], default the origin"},
     {"meshes", OPTION_OF_BODY, "translate", "x,y[,z]", "translation of the mesh, after the rotation [m]"},
 
-    {"materials", OPTION_OF_BODY, "material_type", "linear_elastic|saint_venant_kirchhoff|neo_hookean|j2|j2_small|johnson_cook",
+    {"materials", OPTION_OF_BODY, "material_type", "linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook",
      "constitutive model, default linear_elastic"},
     {"materials", OPTION_OF_BODY, "density", "rho", "mass density [kg/m^3]"},
     {"materials", OPTION_OF_BODY, "youngs_modulus", "E", "Young's modulus [Pa]"},
     {"materials", OPTION_OF_BODY, "poissons_ratio", "nu", "Poisson's ratio, default 0"},
+    {"materials", OPTION_OF_BODY, "mooney_rivlin_share", "m", "of mooney_rivlin: c01 / (c10 + c01), default 0: isochoric neo-Hookean"},
     {"materials", OPTION_OF_BODY, "yield_stress", "s", "of plastic models: stress at which the virgin material flows [Pa]"},
     {"materials", OPTION_OF_BODY, "hardening", "linear|voce|table",
      "of j2, j2_small: how strength grows with plastic strain, default linear"},
