@@ -140,10 +140,10 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
   const Tensor        f = {1 + H[0], H[1], H[2], H[3], 1 + H[4], H[5], H[6], H[7], 1 + H[8]}, c = TensorCofactor(f);
   const PetscReal     J = f.xx * c.xx + f.xy * c.xy + f.xz * c.xz, inverse = TensorDefined(J) / J;
   const PetscReal     a = c10 / (cbrt(J) * cbrt(J)), b = c01 / (J * cbrt(J));
-  const PetscReal     F[3][3] = {{f.xx, f.xy, f.xz}, {f.yx, f.yy, f.yz}, {f.zx, f.zy, f.zz}};
-  const PetscReal     G[3][3] = {{inverse * c.xx, inverse * c.xy, inverse * c.xz},
-                                 {inverse * c.yx, inverse * c.yy, inverse * c.yz},
-                                 {inverse * c.zx, inverse * c.zy, inverse * c.zz}};
+  const PetscReal     F[3][3]     = {{f.xx, f.xy, f.xz}, {f.yx, f.yy, f.yz}, {f.zx, f.zy, f.zz}};
+  const PetscReal     G[3][3]     = {{inverse * c.xx, inverse * c.xy, inverse * c.xz},
+                                     {inverse * c.yx, inverse * c.yy, inverse * c.yz},
+                                     {inverse * c.zx, inverse * c.zy, inverse * c.zz}};
   PetscReal           right[3][3] = {{0}}, left[3][3] = {{0}}, S[3][3], I1, I2, squares = 0, GG, across;
 
   for (int i = 0; i < 3; i++)
@@ -160,8 +160,8 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
       for (int k = 0; k < 3; k++) S[i][j] -= 2 * F[i][k] * right[k][j];
     }
   I2     = 0.5 * (I1 * I1 - squares);
-  GG     = 4. / 9 * a * I1 + 16. / 9 * b * I2 + kappa * J * J;                       /* of G_ij G_kl */
-  across = 2. / 3 * a * I1 + 4. / 3 * b * I2 - 0.5 * kappa * (J * J - 1);            /* of G_il G_kj */
+  GG     = 4. / 9 * a * I1 + 16. / 9 * b * I2 + kappa * J * J;            /* of G_ij G_kl */
+  across = 2. / 3 * a * I1 + 4. / 3 * b * I2 - 0.5 * kappa * (J * J - 1); /* of G_il G_kj */
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++)
@@ -192,7 +192,7 @@ static void Thickness(const void *data, const PetscReal H[9][8], PetscReal Hzz[8
   for (int iteration = 0; iteration < 2 * MAX_ITERATIONS && left; iteration++) {
     Stress(data, (const PetscReal(*)[8])full, P);
     for (int p = 0; p < 8; p++) {
-      const PetscReal old      = full[8][p];
+      const PetscReal old = full[8][p];
       PetscReal       point[9], size = 0, next;
 
       if (done[p]) continue;
@@ -232,7 +232,7 @@ static PetscReal SideStrain(const void *data, PetscReal strain, PetscReal H[9][8
   for (int i = 0; i < 9; i++)
     for (int p = 0; p < 8; p++) H[i][p] = i == 0 ? strain : 0;
   for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-    const PetscReal limit = -0.5 * (1 + side); /* not beyond an inverted point */
+    const PetscReal limit    = -0.5 * (1 + side); /* not beyond an inverted point */
     PetscReal       point[9] = {strain, 0, 0, 0, side, 0, 0, 0, side};
 
     Stress(data, H, P);

@@ -82,7 +82,8 @@ static const KnownOption options[] = {
     {"meshes", OPTION_OF_BODY, "rotate_centre", "x,y[,z]", "point that the rotation leaves in place [m], default the origin"},
     {"meshes", OPTION_OF_BODY, "translate", "x,y[,z]", "translation of the mesh, after the rotation [m]"},
 
-    {"materials", OPTION_OF_BODY, "material_type", "linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook",
+    {"materials", OPTION_OF_BODY, "material_type",
+     "linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook",
      "constitutive model, default linear_elastic"},
     {"materials", OPTION_OF_BODY, "density", "rho", "mass density [kg/m^3]"},
     {"materials", OPTION_OF_BODY, "youngs_modulus", "E", "Young's modulus [Pa]"},

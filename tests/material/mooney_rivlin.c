@@ -15,7 +15,7 @@ static void simple_shear_is_the_closed_form(void **state)
 
       stress_at(&kernels, H, P);
       for (int i = 0; i < 9; i++) cauchy[i] = P[i] + (i % 3 == 0 ? g * P[i + 1] : 0); /* P F^T */
-      near(cauchy[1], mu * g, 1e-14 * MODULUS * (1 + g * g)); /* round-off */
+      near(cauchy[1], mu * g, 1e-14 * MODULUS * (1 + g * g));                         /* round-off */
       near(cauchy[3], mu * g, 1e-14 * MODULUS * (1 + g * g));
       near(cauchy[0] - cauchy[8], 2 * c10 * g * g, 1e-14 * MODULUS * (1 + g * g * g * g));
       near(cauchy[4] - cauchy[8], -2 * c01 * g * g, 1e-14 * MODULUS * (1 + g * g * g * g));

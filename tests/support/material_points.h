@@ -3,8 +3,7 @@
 #include "support.h"
 #include <impakt/private/materialimpl.h>
 
-static const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN,
-                                     MATERIAL_MOONEY_RIVLIN};
+static const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN, MATERIAL_MOONEY_RIVLIN};
 /* none, metal, rubber-like, auxetic */
 static const PetscReal ratios[] = {0, 0.3, 0.45, -0.4};
 
