@@ -18,6 +18,7 @@ typedef struct _p_Material *Material;
 + `MATERIAL_LINEAR_ELASTIC`          - isotropic linear elasticity
 . `MATERIAL_SAINT_VENANT_KIRCHHOFF` - stress proportional to the Green-Lagrange strain
 . `MATERIAL_NEO_HOOKEAN`            - compressible neo-Hookean hyperelasticity
+. `MATERIAL_MOONEY_RIVLIN`          - Mooney-Rivlin hyperelasticity with volumetric and isochoric parts
 . `MATERIAL_J2`                     - metal plasticity at finite strain: von Mises' yield condition, Hencky's elasticity
 . `MATERIAL_J2_SMALL`               - the same for small strains and rotations
 - `MATERIAL_JOHNSON_COOK`           - metal plasticity at finite strain, whose strength depends on rate and temperature
@@ -30,6 +31,7 @@ typedef const char *MaterialType;
 #define MATERIAL_LINEAR_ELASTIC         "linear_elastic"
 #define MATERIAL_SAINT_VENANT_KIRCHHOFF "saint_venant_kirchhoff"
 #define MATERIAL_NEO_HOOKEAN            "neo_hookean"
+#define MATERIAL_MOONEY_RIVLIN          "mooney_rivlin"
 #define MATERIAL_J2                     "j2"
 #define MATERIAL_J2_SMALL               "j2_small"
 #define MATERIAL_JOHNSON_COOK           "johnson_cook"
@@ -90,6 +92,7 @@ PETSC_EXTERN PetscErrorCode MaterialGetDensity(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetYoungsModulus(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialGetYoungsModulus(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetPoissonsRatio(Material, PetscReal);
+PETSC_EXTERN PetscErrorCode MaterialSetMooneyRivlinShare(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialGetPoissonsRatio(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetYieldStress(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialSetHardeningModulus(Material, PetscReal);

@@ -49,7 +49,7 @@ static PetscErrorCode MaterialGetPoissonsRatio_Isotropic(Material material, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialSetFromOptions_Isotropic(Material material)
+PetscErrorCode MaterialSetFromOptions_Isotropic(Material material)
 {
   Isotropic  *constants = (Isotropic *)material->data;
   const char *prefix    = ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "";
@@ -93,7 +93,7 @@ static PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer view
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialDestroy_Isotropic(Material material)
+PetscErrorCode MaterialDestroy_Isotropic(Material material)
 {
   PetscFunctionBegin;
   PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetYoungsModulus_C", NULL));

@@ -58,7 +58,7 @@ PetscErrorCode MaterialSetOptionsPrefix(Material material, const char prefix[])
 - type     - its name
 
   Options Database Key:
-. -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean|j2|j2_small|johnson_cook) - the constitutive model
+. -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook) - the constitutive model
 
   Level: beginner
 
@@ -124,7 +124,7 @@ PetscErrorCode MaterialGetType(Material material, MaterialType *type)
 . material - the `Material`
 
   Options Database Keys:
-+ -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean|j2|j2_small|johnson_cook) - the constitutive model
++ -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook) - the constitutive model
 . -<body>_density rho                                                       - mass density [kg/m^3], required
 . -<body>_youngs_modulus E                                                  - of these models, at zero strain [Pa], required
 - -<body>_poissons_ratio (0)                                                - of these models, at zero strain; between -1 and 0.5

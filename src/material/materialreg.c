@@ -48,6 +48,7 @@ PetscErrorCode MaterialRegisterAll(void)
   PetscCall(MaterialRegister(MATERIAL_LINEAR_ELASTIC, MaterialCreate_LinearElastic));
   PetscCall(MaterialRegister(MATERIAL_SAINT_VENANT_KIRCHHOFF, MaterialCreate_SaintVenantKirchhoff));
   PetscCall(MaterialRegister(MATERIAL_NEO_HOOKEAN, MaterialCreate_NeoHookean));
+  PetscCall(MaterialRegister(MATERIAL_MOONEY_RIVLIN, MaterialCreate_MooneyRivlin));
   PetscCall(MaterialRegister(MATERIAL_J2, MaterialCreate_J2));
   PetscCall(MaterialRegister(MATERIAL_J2_SMALL, MaterialCreate_J2Small));
   PetscCall(MaterialRegister(MATERIAL_JOHNSON_COOK, MaterialCreate_JohnsonCook));

@@ -8,7 +8,7 @@ from solidmeshes import box, dim_of, sides, write_box
 from vibration import CANTILEVER, HEIGHT, first_mode, measured
 
 KINDS = [(shape, formulation) for shape in ("quad4", "hex8") for formulation in ("mean_dilatation", "enhanced", "reduced")]
-MATERIALS = ["linear_elastic", "saint_venant_kirchhoff", "neo_hookean"]
+MATERIALS = ["linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "mooney_rivlin"]
 
 
 def probes(run, body):

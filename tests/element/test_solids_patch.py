@@ -7,7 +7,7 @@ FACES = {2: (4, 3), 3: (3, 3, 3)}
 SIZE = (1.2, 0.9, 0.7)
 # displacement gradients of up to 0.3: finite; a linear elastic body takes them as they are
 GRADIENT = {2: "0.2*x-0.1*y,0.05*x+0.15*y", 3: "0.2*x-0.1*y+0.05*z,0.05*x+0.15*y-0.08*z,-0.1*x+0.3*y-0.12*z"}
-MATERIALS = ["linear_elastic", "saint_venant_kirchhoff", "neo_hookean"]
+MATERIALS = ["linear_elastic", "saint_venant_kirchhoff", "neo_hookean", "mooney_rivlin"]
 CASES = [(shape, stress) for shape in SHAPES for stress in ("strain", "stress") if dim_of(shape) == 2 or stress == "strain"]
 STEEL = "-b_density 3 -b_youngs_modulus 200 -b_poissons_ratio 0.3"
 

@@ -185,6 +185,21 @@ static void definition(int type, PetscReal nu, const PetscReal H[9], PetscReal P
   if (!strcmp(types[type], MATERIAL_NEO_HOOKEAN)) {
     for (int i = 0; i < 9; i++) P[i] = (PetscReal)(mu * (F[i] - cofactor[i] / J) + lambda / 2 * (J * J - 1) * cofactor[i] / J);
     *W = (PetscReal)(mu / 2 * trace - mu * logl(J) + lambda / 4 * (J * J - 1 - 2 * logl(J)));
+  } else if (!strcmp(types[type], MATERIAL_MOONEY_RIVLIN)) {
+    const long double c01 = (long double)SHARE * mu / 2, c10 = mu / 2 - c01, kappa = lambda + 2 * mu / 3;
+    const long double I1 = trace + 3, root = cbrtl(J), y2 = 1 / (root * root), y4 = y2 * y2;
+    long double       I2 = I1 * I1 / 2;
+
+    for (int i = 0; i < 9; i++) I2 -= C[i] * C[i] / 2;
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        const int         n  = 3 * i + j;
+        const long double FC = F[3 * i] * C[j] + F[3 * i + 1] * C[3 + j] + F[3 * i + 2] * C[6 + j], G = cofactor[n] / J;
+
+        P[n] = (PetscReal)(2 * c10 * y2 * (F[n] - I1 / 3 * G) + 2 * c01 * y4 * (I1 * F[n] - FC - 2 * I2 / 3 * G) +
+                           kappa / 2 * (J * J - 1) * G);
+      }
+    *W = (PetscReal)(c10 * (y2 * I1 - 3) + c01 * (y4 * I2 - 3) + kappa / 4 * (J * J - 1 - 2 * logl(J)));
   } else {
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) {

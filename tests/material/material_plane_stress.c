@@ -105,7 +105,7 @@ static void a_free_plate_is_a_bar(void **state)
         ok(MaterialComputeUniaxialTangent(material, 1, &e, &tangent));
         ok(MaterialComputeUniaxialEnergy(material, 1, &e, &energy));
         /* by hand: above a strain of 0.203, a neo-Hookean bar with nu = -0.4 has sides without equilibrium */
-        if (e > 0.203 && ratios[nu] < 0 && type == N_TYPES - 1) {
+        if (e > 0.203 && ratios[nu] < 0 && !strcmp(types[type], MATERIAL_NEO_HOOKEAN)) {
           assert_true(PetscIsNanReal(stress) && PetscIsNanReal(tangent) && PetscIsNanReal(energy));
           ok(MaterialDestroy(&material));
           continue;
@@ -118,7 +118,7 @@ static void a_free_plate_is_a_bar(void **state)
         stress_at(&kernels, H, P);
         kernels.tangent(kernels.data, H, A);
         near(P[4], 0, 1e-14 * MODULUS);
-        near(P[0], stress, 1e-14 * MODULUS);
+        near(P[0], stress, 1e-14 * (MODULUS + PetscAbsReal(stress))); /* round-off; observed: 7.6e-14 of a stress of 3.8, Mooney-Rivlin */
         near(A[0] - A[4] * A[36] / A[40], tangent, 1e-13 * MODULUS);
         near(energy_at(&kernels, H), energy, 1e-14 * MODULUS);
         ok(MaterialDestroy(&material));

@@ -3,13 +3,14 @@
 #include "support.h"
 #include <impakt/private/materialimpl.h>
 
-static const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
+static const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN, MATERIAL_MOONEY_RIVLIN};
 /* none, metal, rubber-like, auxetic */
 static const PetscReal ratios[] = {0, 0.3, 0.45, -0.4};
 
 #define LINEAR  0
-#define N_TYPES 3
+#define N_TYPES 4
 #define MODULUS 7.
+#define SHARE   0.3 /* of c01, of Mooney-Rivlin models */
 
 /* Where one of Lame's constants is meant */
 static inline PetscReal lambda_of(PetscReal nu)
@@ -24,8 +25,8 @@ static inline PetscReal mu_of(PetscReal nu)
 
 static inline Material create(const char type[], PetscReal nu, PetscBool plane_stress, MaterialKernels *kernels)
 {
-  PetscOptions options = options_begin("-density 1 -youngs_modulus %.17g -poissons_ratio %.17g -material_type %s", MODULUS, (double)nu,
-                                       type);
+  PetscOptions options = options_begin("-density 1 -youngs_modulus %.17g -poissons_ratio %.17g -material_type %s %s", MODULUS, (double)nu,
+                                       type, strcmp(type, MATERIAL_MOONEY_RIVLIN) ? "" : "-mooney_rivlin_share 0.3");
   Material     material;
 
   ok(MaterialCreate(PETSC_COMM_SELF, &material));

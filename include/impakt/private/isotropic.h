@@ -10,3 +10,5 @@ typedef struct {
 } Isotropic;
 
 PETSC_EXTERN PetscErrorCode MaterialCreate_Isotropic(Material);
+PETSC_INTERN PetscErrorCode MaterialSetFromOptions_Isotropic(Material);
+PETSC_INTERN PetscErrorCode MaterialDestroy_Isotropic(Material);

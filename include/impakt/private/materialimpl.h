@@ -42,6 +42,7 @@ PETSC_EXTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const voi
 PETSC_INTERN PetscErrorCode MaterialCreate_LinearElastic(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_SaintVenantKirchhoff(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_NeoHookean(Material);
+PETSC_INTERN PetscErrorCode MaterialCreate_MooneyRivlin(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_J2(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_J2Small(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_JohnsonCook(Material);
