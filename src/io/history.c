@@ -25,6 +25,7 @@ struct _n_History {
   PetscInt       n_bodies, *dims; /* space dimension of each body */
   PetscBool     *damped;          /* per body: it has Rayleigh damping */
   PetscBool      friction;        /* contact has friction */
+  PetscBool      springs;         /* contact has penalty springs */
   PetscBool     *plastic;         /* per body: its material flows */
   PetscBool     *hourglasses;     /* per body: its elements have one point */
   PetscInt       n_series, width;
@@ -73,9 +74,11 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
                          history->n_bodies, &history->hourglasses));
   PetscCall(ContactGetLaw(contact, &law));
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
-  PetscCall(PetscCalloc1(2 + 10 * n_pairs + 11 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
+  PetscCall(PetscCalloc1(3 + 10 * n_pairs + 11 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
+  if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", "J", 1, PETSC_FALSE));
   for (PetscInt i = 0; i < n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
     PetscCall(AddSeries(history, "/contact/", name, "force", "N", 1, PETSC_FALSE));
@@ -241,6 +244,7 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
 {
   *next++ = frame->time;
   *next++ = (PetscReal)frame->sweeps;
+  if (history->springs) *next++ = frame->penalty_energy;
   for (PetscInt i = 0; i < frame->n_pairs; i++) {
     *next++ = frame->pairs[i].force;
     *next++ = frame->pairs[i].gap;

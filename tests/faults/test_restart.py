@@ -41,6 +41,8 @@ VARIANTS = {
     "augmented Lagrangian": BLOCKS + "-contact_type augmented_lagrangian",
     "bonded": BLOCKS + "-contact_law bonded",
     "friction": BLOCKS + "-contact_law coulomb -contact_friction 0.3",
+    "friction by springs": BLOCKS + "-contact_type penalty -contact_law coulomb -contact_friction 0.3",
+    "friction, augmented": BLOCKS + "-contact_type augmented_lagrangian -contact_law coulomb -contact_friction 0.3",
     "nonlinear, friction": NONLINEAR + "-contact_law coulomb -contact_friction 0.3 -contact_friction_kinetic 0.1 -contact_friction_decay 1",
     "Robin": BLOCKS + "-schwarz_transmission robin",
     "impedance": BLOCKS + "-schwarz_transmission impedance",

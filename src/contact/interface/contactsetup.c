@@ -152,8 +152,8 @@ PetscErrorCode ContactSetUp(Contact contact)
   }
   PetscCheck(contact->options.law != CONTACT_LAW_FRICTION || contact->friction.steps || !contact->rows.n_all,
              PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law %s: -contact_type %s has no friction; choose schwarz or lagrange, which have the same", contact->friction.name,
-             ((PetscObject)contact)->type_name);
+             "-contact_law %s: -contact_type %s has no friction; choose schwarz, lagrange, penalty or augmented_lagrangian",
+             contact->friction.name, ((PetscObject)contact)->type_name);
   if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";
   contact->setup = PETSC_TRUE;
   StatusLineTell("first state");

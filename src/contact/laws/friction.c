@@ -26,7 +26,8 @@
 
   Note:
   The work of the forces across the normals, by the rule by which the integrators take them: half the sum of the forces at both ends of a
-  substep times the displacement in it; less what penalty springs across the normals have of it. Kinetic and potential energy and this, less the work of the loads, are what they were at the start.
+  substep times the displacement in it; less what penalty springs across the normals have of it. Kinetic and potential energy and this, less
+the work of the loads, are what they were at the start.
 
 .seealso: `Contact`, `ContactSetFrictionLaw()`, `ContactPairState`
 @*/
@@ -287,7 +288,8 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
     const PetscReal work = -0.5 * (start_force[i] + contact->end.force[i]) * friction->drive[i];
 
     friction->step_loss[i] += work;
-    if (ContactRowRubs(contact, i)) friction->step_loss[i] -= (*contact->ops->stored)(contact, i, CONTACT_NO_GAP) - contact->energy.last_stored[i];
+    if (ContactRowRubs(contact, i))
+      friction->step_loss[i] -= (*contact->ops->stored)(contact, i, CONTACT_NO_GAP) - contact->energy.last_stored[i];
     friction->pair_work[contact->rows.pair[i]] += work;
     friction->pair_step[contact->rows.pair[i]] += friction->step_loss[i];
   }

@@ -55,7 +55,8 @@ static PetscErrorCode SetUpSprings(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Energy of the spring of a row [J]. One across the normal has no gap, and its force tells; a gap below 0 of it is how far it is stretched. */
+/* Energy of the spring of a row [J]. One across the normal has no gap, and its force tells; a gap below 0 of it is how far it is stretched.
+ */
 static PetscReal StoredEnergy(Contact contact, PetscInt i, PetscReal gap)
 {
   const FrictionStep *step = (const FrictionStep *)contact->data;
@@ -156,7 +157,7 @@ static PetscErrorCode GatherOpened(Contact contact, PetscScalar opened[])
   FrictionStep *step = (FrictionStep *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) 
+  for (PetscInt i = 0; i < contact->rows.n; i++)
     step->mine[i] = i % contact->dim ? contact->friction.slip[i] : contact->end.gap[i] + Give(contact, i);
   PetscCall(InterfaceOperatorGather(step->S, step->mine, opened));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -536,8 +537,8 @@ static PetscErrorCode Check(Contact contact)
 PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprings *springs)
 {
   /* all of S is wanted as a matrix */
-  const InterfaceSettings settings = {.prefix = "friction_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
-  const ContactFrictionSprings given = springs ? *springs : (ContactFrictionSprings){0};
+  const InterfaceSettings      settings = {.prefix = "friction_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
+  const ContactFrictionSprings given    = springs ? *springs : (ContactFrictionSprings){0};
   FrictionStep                *step;
 
   PetscFunctionBegin;

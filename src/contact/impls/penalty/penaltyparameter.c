@@ -29,8 +29,8 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The penalty parameter of a pair: as `given`, or, where that is 0, from an element on each side, one behind the other, and a scale, `wanted`
-   or, where that is 0, by the mass of the contact nodes */
+/* The penalty parameter of a pair: as `given`, or, where that is 0, from an element on each side, one behind the other, and a scale,
+   `wanted` or, where that is 0, by the mass of the contact nodes */
 PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair, PetscReal given, PetscReal wanted, PetscReal *parameter,
                                        PetscReal *scale)
 {

@@ -1,0 +1,93 @@
+"""Friction by penalty springs and by the augmented Lagrangian: what the Schwarz method finds, but for what springs give; energy with that in springs."""
+
+import numpy as np
+import pytest
+from cases import joined, worst_energy_error
+
+PULSE = "-options_file options/shear-pulse.opts"
+SLOPE = "-options_file options/slope.opts"
+BLOCKS = "-options_file options/blocks.opts -left_initial_velocity 100,30 -contact_law coulomb -contact_friction 0.3"
+AUGMENTED, PENALTY = (f"-contact_type {name}" for name in ("augmented_lagrangian", "penalty"))
+EXPLICIT = "-upper_ts_type centraldifference -lower_ts_type centraldifference"
+
+
+def drift(run):
+    """Least and largest change of all energy, with what springs hold and friction has taken, in parts of the largest."""
+    bodies, history = run.history["body"], run.history
+    energy = sum(body["kinetic"][()] + body["potential"][()] - body["external_work"][()] for body in bodies.values())
+    whole = energy + sum(pair["friction_loss"][()] - pair["obstacle_work"][()] for pair in history["contact"].values())
+    if "penalty_energy" in history:
+        whole = whole + history["penalty_energy"][()]
+    change = (whole - whole[0]) / np.abs(energy).max()
+    return change.min(), change.max()
+
+
+@pytest.mark.parametrize("integrators", ["", EXPLICIT], ids=["II", "EE"])
+@pytest.mark.parametrize("more", ["", "-contact_penalty_scale 1", "-contact_friction 3 -contact_penalty_scale 1"], ids=["slides", "soft", "sticks"])
+def test_energy_of_springs(more, integrators, shared_run):
+    """Springs along and across the normals, which stick, slide and swing: measured 3e-15 of the energy."""
+    run = shared_run(joined(PULSE, PENALTY, more, integrators))
+    low, high = drift(run)
+    assert -1e-12 <= low <= high <= 1e-12
+    assert run.history["penalty_energy"][()].max() == pytest.approx(run.summary["system"]["penalty_energy_max"], rel=1e-12)
+    assert run.summary["contact"]["friction_least"] >= -1e-12
+    assert run.summary["schwarz"]["max"] == 2
+    if "-contact_friction 3" in more:
+        assert run.summary["contact"]["friction_loss"] <= 1e-12  # nothing slides, though springs give
+
+
+def test_converges(shared_run):
+    """What friction takes differs from that of the Schwarz method in proportion to the give of the springs: 2.3e-4 J with ten times the stiffness of the
+    elements, 2.3e-6 J with a thousand times; augmented by what springs give of 4e-10 of the size, and of the law of each round."""
+    loss = [shared_run(joined(PULSE, more)).summary["contact"]["friction_loss"] for more in ("", f"{PENALTY} -contact_penalty_scale 10", f"{PENALTY} -contact_penalty_scale 1000", AUGMENTED)]
+    off = [abs(each - loss[0]) for each in loss[1:]]
+    assert 50 <= off[0] / off[1] <= 200
+    assert off[2] <= 3e-4 * loss[0]
+
+
+@pytest.mark.parametrize("method", [AUGMENTED, PENALTY])
+def test_slope(method, shared_run):
+    """tan 30 is above 0.3: the block slides by g (sin 30 - 0.3 cos 30); and below 0.6: it stays, the springs stretched by its weight."""
+    run, reference = (shared_run(joined(SLOPE, each)) for each in (method, ""))
+    time, v = run.history["time"][()], run.history["body/block/mean_velocity"][()][:, 0]
+    late = time >= 0.06  # gravity has come
+    assert np.polyfit(time[late], v[late], 1)[0] == pytest.approx(9.81 * (0.5 - 0.3 * np.cos(np.radians(30))), rel=1e-3)
+    assert run.summary["contact"]["friction_loss"] == pytest.approx(reference.summary["contact"]["friction_loss"], rel=1e-5)  # 6e-6 of springs
+    still = shared_run(joined(SLOPE, method, "-contact_friction 0.6"))
+    v = still.history["body/block/mean_velocity"][()][:, 0]
+    assert np.abs(v[time >= 0.15]).max() <= 1e-6  # augmented: 1.8e-7, what its tolerance of 3e-10 m is in a step of 1e-3 s
+    if method == PENALTY:
+        # its weight across and along the slope, F^2 / 2 k of springs that the pressure loads evenly but for the ends
+        stiffness = float(still.stdout.split("penalty parameter of block.ymin:base.ymax ")[1].split()[0]) * 0.4
+        weight = 40 * 9.81
+        assert still.history["penalty_energy"][-1] == pytest.approx(0.5 * weight**2 / stiffness, rel=0.25)
+
+
+@pytest.mark.parametrize("method", [AUGMENTED, PENALTY])
+@pytest.mark.parametrize("more", ["-time_step 1e-4 -controller_step_cuts 0", "-time_step 1e-3 -controller_step_cuts 4"])
+def test_long_steps(more, method, shared_run):
+    """Energy with what springs hold does not grow, at any step."""
+    run = shared_run(joined(BLOCKS, method, more))
+    assert drift(run)[1] <= 1e-3
+    energy = sum(body["kinetic"] + body["potential"] for body in run.summary["bodies"].values())
+    assert run.summary["contact"]["friction_least"] >= -1e-7 * energy
+
+
+def test_one_force(shared_run):
+    """Sliding blocks: the augmented Lagrangian has the forces of the Schwarz method."""
+    pair = "left:right"
+    one, other = (shared_run(joined(BLOCKS, more, "-time_end 2e-4")).history[f"contact/{pair}/force_vector"][()] for more in ("", AUGMENTED))
+    assert np.abs(other - one).max() <= 1e-3 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("ranks", [2, 3])
+@pytest.mark.parametrize("method", [AUGMENTED, PENALTY])
+def test_ranks(method, ranks, shared_run):
+    one, more = (shared_run(joined(SLOPE, method, "-time_end 0.1"), n) for n in (1, ranks))
+    assert more.summary["contact"]["friction_loss"] == pytest.approx(one.summary["contact"]["friction_loss"], rel=1e-10)
+    assert worst_energy_error(more.summary) <= 1e-4
+
+
+def test_view(shared_run):
+    assert "along the normals and across them" in shared_run(joined(SLOPE, PENALTY)).stdout
+    assert "augmented until gaps and slips are within" in shared_run(joined(SLOPE, AUGMENTED)).stdout
