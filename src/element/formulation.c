@@ -192,7 +192,7 @@ static PetscErrorCode ChooseFormulation(Element element)
 PetscErrorCode ElementApplyFormulation(Element element)
 {
   PetscErrorCode (*create)(Element);
-  PetscBool full, mean, flows;
+  PetscBool full, mean, flows, enhanced, rubber;
   char      key[128];
 
   PetscFunctionBegin;
@@ -214,6 +214,12 @@ PetscErrorCode ElementApplyFormulation(Element element)
   PetscCheck(full || mean || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
              "-%selement_formulation %s: it keeps no history of plastic flow; use mean_dilatation or full", Prefix(element),
              element->formulation);
+  PetscCall(PetscStrcmp(element->formulation, ELEMENT_ENHANCED, &enhanced));
+  PetscCall(PetscObjectTypeCompare((PetscObject)element->material, MATERIAL_MOONEY_RIVLIN, &rubber));
+  PetscCheck(!enhanced || !rubber, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
+             "-%selement_formulation enhanced with mooney_rivlin has other states of equilibrium beside the one that is looked for, shaped "
+             "like hourglasses, from stretches of some 15 %% on; use mean_dilatation",
+             Prefix(element));
   PetscCall((*create)(element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

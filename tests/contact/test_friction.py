@@ -98,7 +98,7 @@ def test_block_slides(options, impakt):
 
 def test_more_than_one_solution(impakt):
     """A coefficient of 3 is large for the nodes at the block's edges, of 0.6 for none: a run says so."""
-    many, one = (impakt(joined(SLOPE, f"-contact_friction {mu} -time_end 0.02")) for mu in (3, 0.6))
+    many, one = (impakt(joined(SLOPE, f"-contact_friction {mu} -time_end 0.02 {more}")) for mu, more in ((3, "-block_dm_plex_box_faces 8,2"), (0.6, "")))
     assert many.summary["contact"]["ambiguous_steps"] == 20
     assert "impakt: warning: in 20 steps friction may have had more than one solution" in many.stderr
     assert one.summary["contact"]["ambiguous_steps"] == 0

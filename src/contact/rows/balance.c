@@ -53,7 +53,7 @@ PetscErrorCode ContactSetBalance(Contact contact, PetscBool balance)
 }
 
 /*@
-  ContactSetAutomaticBalance - lets the set-up choose whether forces have the same sum along the normals of both sides of a pair; the default
+  ContactSetAutomaticBalance - lets the set-up choose whether forces of a pair have the same sum along the normals of both sides; default
 
   Logically Collective
 
