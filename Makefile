@@ -115,7 +115,7 @@ ifneq ($(filter analyse coverage,$(MAKECMDGOALS)),)
 analysis := $(dir $(shell .setup/python --analysis))
 endif
 
-.PHONY: all run paper test test-all bench bench-compare scaling docs format lint analyse coverage fuzz fuzzers install force
+.PHONY: all run paper test test-all test-long bench bench-compare scaling docs format lint analyse coverage fuzz fuzzers install force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units) $(replays))
 
@@ -149,9 +149,10 @@ paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in 
 # Where TESTS does not say what is wanted, `make test` leaves out what is marked as long.
 test: ## unit tests on 1 to 3 ranks and regression tests, without the long ones; or what TESTS names
 test-all: ## all tests
-test test-all: $(BUILD)/impakt $(units) $(replays)
+test-long: ## the tests that `make test` leaves out
+test test-all test-long: $(BUILD)/impakt $(units) $(replays)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long")
+	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long") $(if $(filter $@,test-long),-m long)
 
 # BENCH="--largest 10000" makes it shorter
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yardstick_solids ## time and memory, beside plain C yardsticks: a report in out/bench
