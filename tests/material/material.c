@@ -344,7 +344,7 @@ static void names_an_unknown_type(void **state)
   PetscOptions options  = options_begin("-bar_material_type chewing_gum");
 
   (void)state;
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-bar_material_type|chewing_gum|linear_elastic, neo_hookean, saint_venant_kirchhoff",
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-bar_material_type|chewing_gum|linear_elastic, mooney_rivlin, neo_hookean, saint_venant_kirchhoff",
           MaterialSetFromOptions(material));
   refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "jelly", MaterialSetType(material, "jelly"));
   ok(MaterialDestroy(&material));

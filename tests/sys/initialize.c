@@ -106,7 +106,7 @@ static void starts_again(void **state)
     assert_int_equal(ImpaktInitialize(&argc, &argv), PETSC_SUCCESS);
     rank = PetscGlobalRank;
     ok(MaterialCreate(PETSC_COMM_WORLD, &material));
-    refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'own'|known: j2, j2_small, johnson_cook, linear_elastic, neo_hookean, saint",
+    refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'own'|known: j2, j2_small, johnson_cook, linear_elastic, mooney_rivlin, neo_hookean, saint",
             MaterialSetType(material, "own"));
     ok(MaterialRegister("own", CreateNothing));
     ok(MaterialSetType(material, "own"));
