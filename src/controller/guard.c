@@ -82,6 +82,7 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
 {
   PetscInt    body = 0, pair = 0;
   const char *pair_name = "none", *body_name, *always;
+  PetscBool   cap, balance;
 
   PetscFunctionBegin;
   for (PetscInt b = 1; b < frame->n_bodies; b++)
@@ -100,11 +101,14 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
       "nodes be massless (-<body>_mass_redistribute true), or choose a smaller -time_step; -energy_guard %g ends runs that gain more "
       "than this part of their energy, 0 none",
       (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, always, (double)controller->guard.part);
+  PetscCall(ContactGetEnergyCap(controller->contact, &cap, NULL));
+  PetscCall(ContactGetBalance(controller->contact, &balance));
   SETERRQ(PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
           "The energy has grown by %.3g %% at time %.9g s (controller step %" PetscInt_FMT
-          "), most of it in body '%s'; the pair with the largest force is %s. Choose a smaller -time_step, or let "
-          "-contact_energy_cap be true; -energy_guard %g ends runs that gain more than this part of their energy, 0 none",
-          (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, (double)controller->guard.part);
+          "), most of it in body '%s'; the pair with the largest force is %s. Choose a smaller -time_step%s%s; -energy_guard %g ends "
+          "runs that gain more than this part of their energy, 0 none",
+          (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, cap ? "" : ", or let -contact_energy_cap be true",
+          balance ? ", or -contact_balance false" : "", (double)controller->guard.part);
 }
 
 /* Ends the run where the energy of a body is no number: squares of its velocity or displacement are beyond all numbers */

@@ -190,7 +190,7 @@ static const KnownOption options[] = {
      "whether choices that are known to gain energy run all the same, default false"},
     {"contact", OPTION_OF_RUN, "contact_balance", "true|false|auto",
      "forces have the same sum along the normals of both sides, so that discs and balls without friction do not spin; default auto: where "
-     "all pairs are of bodies with smooth, round surfaces that suit it"},
+     "all pairs are of bodies with smooth, round surfaces, not both held, that suit it"},
     {"contact", OPTION_OF_RUN, "contact_shared_times", "true|false",
      "whether contact holds at all times that all bodies have in common, default true, or at the ends of controller steps alone"},
     {"contact", OPTION_OF_RUN, "contact_balanced_start", "true|false",

@@ -47,7 +47,7 @@ REASONS = {
     "step": "floor: one controller step, the resolution of the release time, relative to the time in contact",
     "spread": "where five times the spread among runs that differ by round-off only is more than the floor, that: chatter amplifies round-off",
 }
-SHIFTS = ((0, "1e-17"), (1, "-2e-17"))  # number of the body, displacement [m]
+SHIFTS = ((0, "1e-17"), (1, "-2e-17"), (0, "2e-17"), (1, "1e-17"), (0, "-3e-17"), (1, "3e-17"))  # number of the body, displacement [m]
 MOST = 0.3  # of the value: where the tolerance were larger, the figure says nothing, and is left out
 SLOW = 5.0  # s; such runs are made again with one shift only
 

@@ -37,7 +37,8 @@
 
   It means something for rows that follow the surfaces: frictionless pairs of bodies with inertia that are not both linear. It goes with
   Schwarz's method, massless contact nodes, Dirichlet-Neumann conditions and Newton's method as the outer iteration. For others it is an
-  error. A pair should touch in one place, and faces bend by 11.5 degrees at most.
+  error. A pair should touch in one place, and faces bend by 11.5 degrees at most. One of its bodies should be free: where both are led
+  moments are no measure of anything, and what turns of gaps bring or take is not limited.
 
 .seealso: `Contact`, `ContactSetAutomaticBalance()`, `ContactGetBalance()`, `ContactSetBounds()`
 @*/
@@ -66,8 +67,8 @@ PetscErrorCode ContactSetBalance(Contact contact, PetscBool balance)
   Level: intermediate
 
   Note:
-  They have where all pairs are of bodies whose surfaces are round without edges, by 11.5 degrees a face at most, and all the rest is as
-  `ContactSetBalance()` wants it.
+  They have where all pairs are of bodies whose surfaces are round without edges, by 11.5 degrees a face at most, one of which at least is
+  held nowhere, and all the rest is as `ContactSetBalance()` wants it.
 
 .seealso: `Contact`, `ContactSetBalance()`, `ContactGetBalance()`
 @*/
@@ -126,10 +127,24 @@ static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether gaps of a pair are to be turned unasked */
+/* Whether displacements of a body are prescribed, in part or wholly */
+static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
+{
+  const PetscInt *dofs;
+  PetscInt        n;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetHeldDofs(contact->bodies[b], &n, &dofs));
+  *held = n > 0;
+  PetscCall(ContactOr(contact, held));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether gaps of a pair are to be turned unasked. Where both bodies are held what holds them takes the moment: there is no spin to keep
+   away, and turns that nothing answers have brought energy. */
 static PetscErrorCode SuitsBalance(Contact contact, const ContactPair *pair, PetscBool *suits)
 {
-  PetscBool linear = PETSC_TRUE, axisymmetric;
+  PetscBool linear = PETSC_TRUE, both_held = PETSC_TRUE, axisymmetric;
 
   PetscFunctionBegin;
   *suits = PETSC_FALSE;
@@ -140,15 +155,18 @@ static PetscErrorCode SuitsBalance(Contact contact, const ContactPair *pair, Pet
     PetscReal bend;
     PetscBool is_static, is_linear;
     Material  material;
+    int       held;
 
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
     PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
     PetscCall(MaterialIsLinear(material, &is_linear));
     PetscCall(GetBend(contact, pair, side, PETSC_MAX_REAL, &bend));
     if (is_static || bend > COARSE || bend < FLAT) PetscFunctionReturn(PETSC_SUCCESS);
-    linear = (PetscBool)(linear && is_linear);
+    PetscCall(IsHeld(contact, pair->body[side], &held));
+    linear    = (PetscBool)(linear && is_linear);
+    both_held = (PetscBool)(both_held && held);
   }
-  *suits = (PetscBool)!linear;
+  *suits = (PetscBool)(!linear && !both_held);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
