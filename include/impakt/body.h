@@ -166,6 +166,12 @@ PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscRe
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputePlasticStrain(Body, PetscReal[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodySetBlockMaterial(Body, const char[], Material);
+PETSC_EXTERN PetscErrorCode BodyGetBlocks(Body, PetscInt *, const char *const *[], const Material *[]);
+PETSC_EXTERN PetscErrorCode BodyGetCellBlocks(Body, const PetscInt *[]);
+PETSC_EXTERN PetscErrorCode BodyComputeBlockMass(Body, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetSurfaceMaterial(Body, Material *);
+PETSC_EXTERN PetscErrorCode BodyIsLinear(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyHasHistory(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDouble *);

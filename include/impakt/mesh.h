@@ -4,5 +4,8 @@
 
 PETSC_EXTERN PetscErrorCode MeshCreate(MPI_Comm, const char[], const char[], DM *);
 PETSC_EXTERN PetscErrorCode MeshGetSurface(DM, const char[], PetscInt *, PetscInt **);
+PETSC_EXTERN PetscErrorCode MeshGetBlock(DM, const char[], PetscInt *, PetscInt **);
+PETSC_EXTERN PetscErrorCode MeshHasBlock(DM, const char[], PetscBool *);
+PETSC_EXTERN PetscErrorCode MeshListBlocks(DM, char[], size_t);
 PETSC_EXTERN PetscErrorCode MeshGetAxisTolerance(DM, PetscReal *);
 PETSC_EXTERN PetscErrorCode MeshGetNodeSet(DM, const char[], PetscInt *, PetscInt **);

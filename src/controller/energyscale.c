@@ -15,7 +15,7 @@ static PetscErrorCode StartsFromRest(Body body, const BodyMeasures *measures, Pe
   Vec       v;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
   PetscCall(MaterialGetWaveModulus(material, &modulus));
   PetscCall(BodyGetMass(body, &mass));

@@ -259,11 +259,33 @@ PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt conn
   PetscCheck(!element->plane_stress || element->dim == 2, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
              "Elements in %" PetscInt_FMT " dimensions are not in plane stress", element->dim);
   PetscCall(CheckAxisymmetric(element));
+  PetscCheck(!element->blocks || element->count == count, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "Blocks have been given for %" PetscInt_FMT " elements, not for %" PetscInt_FMT, element->count, count);
   element->count        = count;
   element->connectivity = connectivity;
-  PetscCall(ElementApplyFormulation(element));
-  PetscUseTypeMethod(element, setup, coordinates);
+  if (element->blocks) PetscCall(ElementSetUpBlocks(element, coordinates));
+  else {
+    PetscCall(ElementApplyFormulation(element));
+    PetscUseTypeMethod(element, setup, coordinates);
+  }
   element->setup = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ElementDuplicateOn - elements of the same shape and with the same settings, on some ranks, with one material */
+PetscErrorCode ElementDuplicateOn(Element element, MPI_Comm comm, Material material, Element *duplicate)
+{
+  PetscFunctionBegin;
+  PetscCall(ElementCreate(comm, duplicate));
+  PetscCall(ElementSetOptionsPrefix(*duplicate, ((PetscObject)element)->prefix));
+  PetscCall(ElementSetCellType(*duplicate, element->cell_type));
+  PetscCall(ElementSetMaterial(*duplicate, material));
+  (*duplicate)->cross_section     = element->cross_section;
+  (*duplicate)->cross_section_dim = element->cross_section_dim;
+  (*duplicate)->plane_stress      = element->plane_stress;
+  (*duplicate)->axisymmetric      = element->axisymmetric;
+  PetscCall(ElementSetFormulation(*duplicate, element->formulation));
+  PetscTryTypeMethod(element, copy, *duplicate);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -288,16 +310,8 @@ PetscErrorCode ElementDuplicate(Element element, Material material, Element *dup
   PetscFunctionBegin;
   PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
   PetscAssertPointer(duplicate, 3);
-  PetscCall(ElementCreate(PETSC_COMM_SELF, duplicate));
-  PetscCall(ElementSetOptionsPrefix(*duplicate, ((PetscObject)element)->prefix));
-  PetscCall(ElementSetCellType(*duplicate, element->cell_type));
-  PetscCall(ElementSetMaterial(*duplicate, material ? material : element->material));
-  (*duplicate)->cross_section     = element->cross_section;
-  (*duplicate)->cross_section_dim = element->cross_section_dim;
-  (*duplicate)->plane_stress      = element->plane_stress;
-  (*duplicate)->axisymmetric      = element->axisymmetric;
-  PetscCall(ElementSetFormulation(*duplicate, element->formulation));
-  PetscTryTypeMethod(element, copy, *duplicate);
+  PetscCheck(material || !element->blocks, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "The elements have several materials: give one");
+  PetscCall(ElementDuplicateOn(element, PETSC_COMM_SELF, material ? material : element->material, duplicate));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -382,6 +396,7 @@ PetscErrorCode ElementDestroy(Element *element)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscTryTypeMethod(*element, destroy);
+  PetscCall(ElementBlocksDestroy(&(*element)->blocks));
   PetscCall(PetscFree((*element)->formulation));
   PetscCall(MaterialDestroy(&(*element)->material));
   PetscCall(PetscHeaderDestroy(element));

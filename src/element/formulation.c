@@ -233,6 +233,10 @@ PetscErrorCode ElementWarnOfLocking(Element element)
   char      key[128], material[64];
 
   PetscFunctionBegin;
+  if (element->blocks) {
+    PetscCall(ElementWarnOfLockingBlocks(element));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_FULL, &full));
   PetscCall(GetPoissonsRatio(element, &ratio));
   PetscCall(HasHistory(element, &flows));

@@ -41,7 +41,7 @@ static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal nor
 static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar, BodyMeasures *measures)
 {
   Material  material;
-  PetscInt  dim;
+  PetscInt  dim, blocks;
   Vec       reference, displacement, positions;
   PetscReal lower, upper, poissons_ratio, drag;
   PetscBool linear, loaded, slender;
@@ -49,6 +49,11 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &bar->name));
   PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(BodyGetBlocks(body, &blocks, NULL, NULL));
+  PetscCheck(!blocks, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-exact: the exact solutions are those of bars of one material, and body '%s' has blocks with materials of their own; leave the "
+             "option out",
+             ((PetscObject)body)->name);
   PetscCall(MaterialIsLinear(material, &linear));
   PetscCheck(linear, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-exact: the exact solutions are those of linear elastic bars, and body '%s' is nonlinear; leave the option out, or choose "

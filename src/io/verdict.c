@@ -122,13 +122,11 @@ static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Ve
 {
   const char *name;
   PetscBool   linear;
-  Material    material;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
   PetscCall(LookAtMass(body, name, verdict));
-  PetscCall(BodyGetMaterial(body, &material));
-  PetscCall(MaterialIsLinear(material, &linear));
+  PetscCall(BodyIsLinear(body, &linear));
   if (linear && statistics->rotation_max > STATISTICS_FAR_TURN)
     PetscCall(Add(verdict, "linear body '%s' has turned by %.3g rad: set a nonlinear -%s_material_type", name,
                   (double)statistics->rotation_max, name));

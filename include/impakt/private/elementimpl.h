@@ -5,6 +5,8 @@
 
 #define ELEMENT_MAX_DOFS 24
 
+typedef struct _n_ElementBlocks *ElementBlocks;
+
 /* Cross-sections of bars [m^2] and thicknesses of plane bodies [m] */
 #define SECTION_SMALLEST 1e-60
 #define SECTION_LARGEST  1e60
@@ -41,10 +43,12 @@ struct _ElementOps {
 };
 
 /* History of the points of integration where the material has one, owned by the body: number c of point g of element e is at
-   [((e / 8 * points + g) * n + c) * 8 + e % 8]; aligned to 64 bytes, with room for a whole batch at the end */
+   [((s / 8 * points + g) * n + c) * 8 + s % 8] with s = ElementHistorySlot(), which is e unless there are several materials; aligned to 64
+   bytes, with room for a whole batch at the end */
 typedef struct {
   PetscInt         n;      /* numbers of a point; 0: the material has none */
   PetscInt         points; /* of integration, of an element */
+  PetscInt         padding; /* of several materials: elements that there has to be room for beside those that there are */
   const PetscReal *start;  /* at the start of the step; NULL: as if the material were virgin, and nothing irreversible happened */
   PetscReal       *end;    /* becomes that at the end of the step with each internal force; NULL: it is not wanted */
   PetscReal        step;   /* [s]; negative: nothing flows */
@@ -65,6 +69,7 @@ struct _p_Element {
   PetscInt         n_points;   /* load points of one element: a rule exact for quadratic functions at least */
   const PetscReal *shape;      /* shape functions there, n_points x nodes; owned by the element */
   void            *data;
+  ElementBlocks    blocks; /* of elements of several materials; NULL: they have one */
   /* set-up */
   PetscInt        count;        /* elements of this rank */
   PetscLogDouble  flops;        /* of the internal force of one element, about, for -log_view */
@@ -92,5 +97,13 @@ PETSC_INTERN PetscErrorCode ElementCreate_Tri3_Axisymmetric(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_AxisymmetricMeanDilatation(Element);
 PETSC_INTERN PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
+PETSC_INTERN PetscErrorCode ElementSetBlocks(Element, PetscInt, const Material[], PetscInt, const PetscInt[]);
+PETSC_INTERN PetscErrorCode ElementSetUpBlocks(Element, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ElementBlocksDestroy(ElementBlocks *);
+PETSC_INTERN PetscErrorCode ElementWarnOfLockingBlocks(Element);
+PETSC_INTERN PetscErrorCode ElementDuplicateOn(Element, MPI_Comm, Material, Element *);
+PETSC_INTERN PetscErrorCode ElementCreateSelection(Element, PetscBool, PetscInt, const PetscInt[], const PetscInt[], const PetscReal[],
+                                                   Element *);
+PETSC_INTERN PetscInt       ElementHistorySlot(Element, PetscInt);
 PETSC_INTERN PetscErrorCode ElementApplyFormulation(Element);
 PETSC_INTERN PetscErrorCode ElementWarnOfLocking(Element);

@@ -117,6 +117,7 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscCall(VecRestoreArrayRead(local, &all));
   if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
   PetscCall(VecDestroy(&marks));
+  PetscCall(BodyNoteSurfaceMaterial(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -242,7 +243,9 @@ PetscErrorCode BodySetUp(Body body)
   }
   if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &body->substep_start.damping));
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));
-  PetscCall(MaterialViewFromOptions(body->model.material, (PetscObject)body, "-material_view"));
+  if (!body->model.blocks.n) PetscCall(MaterialViewFromOptions(body->model.material, (PetscObject)body, "-material_view"));
+  for (PetscInt k = 0; k < body->model.blocks.n; k++)
+    PetscCall(MaterialViewFromOptions(body->model.blocks.materials[k], (PetscObject)body, "-material_view"));
   PetscCall(ElementViewFromOptions(body->model.element, (PetscObject)body, "-element_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
@@ -303,7 +306,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(ElementDestroy(&b->model.element));
   PetscCall(ElementDestroy(&b->model.linearized_element));
   PetscCall(MaterialDestroy(&b->model.material));
-  PetscCall(MaterialDestroy(&b->model.linearized_material));
+  PetscCall(BodyDestroyBlocks(b));
   PetscCall(PetscFree(b->mass.factor));
   PetscCall(PetscFree(b->layer.dofs));
   PetscCall(PetscFree(b->layer.contains));

@@ -26,6 +26,17 @@ static PetscErrorCode CreateMesh(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The material of the body; nothing where the program has set it */
+static PetscErrorCode ReadMaterial(Body body)
+{
+  PetscFunctionBegin;
+  if (body->model.material) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->model.material));
+  PetscCall(MaterialSetOptionsPrefix(body->model.material, ((PetscObject)body)->prefix));
+  PetscCall(MaterialSetFromOptions(body->model.material));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ReadMass(Body body)
 {
   BodyMassType    type;
@@ -112,6 +123,7 @@ static PetscErrorCode ReadStatic(Body body)
   Options Database Keys:
 + -<body>_dm_plex_...                                - the mesh: `DMPLEX`'s own options
 . -<body>_material_type, -<body>_density, ...        - the material, see `MaterialSetFromOptions()`
+. -<body>_<block>_material_type, ...                 - that of a block of the mesh, see `BodySetBlockMaterial()`
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
 . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
 . -<body>_mass_redistribute (true|false|near)        - moves the mass of contact nodes to their inner neighbours, default true
@@ -135,7 +147,8 @@ static PetscErrorCode ReadStatic(Body body)
 @*/
 PetscErrorCode BodySetFromOptions(Body body)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)body);
+  MPI_Comm  comm = PetscObjectComm((PetscObject)body);
+  PetscBool from_file;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -143,11 +156,16 @@ PetscErrorCode BodySetFromOptions(Body body)
              "Body '%s' has its options, or its loads, already: call BodySetFromOptions() once, and before functions that look at the mesh",
              body->hdr.name);
   if (!body->mesh.dm) PetscCall(CheckDescribed(body));
-  if (!body->model.material) {
-    PetscCall(MaterialCreate(comm, &body->model.material));
-    PetscCall(MaterialSetOptionsPrefix(body->model.material, ((PetscObject)body)->prefix));
-    PetscCall(MaterialSetFromOptions(body->model.material));
-  }
+  PetscCall(PetscOptionsHasName(NULL, ((PetscObject)body)->prefix, "-dm_plex_filename", &from_file));
+  if (!body->mesh.dm && from_file) PetscCall(CreateMesh(body));
+  if (body->mesh.dm) {
+    PetscBool own;
+
+    PetscCall(BodyReadBlocks(body));
+    PetscCall(BodySetUpBlocks(body, &own));
+    if (own) PetscCall(ReadMaterial(body));
+    PetscCall(BodySetUpBlocks(body, NULL));
+  } else PetscCall(ReadMaterial(body));
   if (!body->mesh.dm) PetscCall(CreateMesh(body));
   PetscCall(BodySetUpCells(body));
   PetscCall(ElementSetFromOptions(body->model.element));

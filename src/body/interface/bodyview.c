@@ -68,6 +68,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
           : "",
       type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
+  PetscCall(BodyViewBlocks(body, viewer));
   PetscCall(ViewLayer(body, viewer));
   PetscCall(BodyViewDamping(body, viewer));
   if (body->springs.n)

@@ -22,12 +22,21 @@ PetscErrorCode BodySetUpMesh(Body body)
   if (body->mesh.positions) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(body->mesh.dm, comm, PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has no mesh: call BodySetDM() or BodySetFromOptions() first",
              body->hdr.name);
+  PetscCall(BodySetUpBlocks(body, NULL));
   PetscCheck(body->model.material, comm, PETSC_ERR_ARG_WRONGSTATE,
              "Body '%s' has no material: call BodySetMaterial() or BodySetFromOptions() first", body->hdr.name);
   PetscCall(MaterialSetUp(body->model.material));
   PetscCall(MaterialIsLinear(body->model.material, &body->model.linear));
+  for (PetscInt k = 0; k < body->model.blocks.n; k++) {
+    PetscBool linear;
+
+    PetscCall(MaterialSetUp(body->model.blocks.materials[k]));
+    PetscCall(MaterialIsLinear(body->model.blocks.materials[k], &linear));
+    body->model.linear = k ? (PetscBool)(body->model.linear && linear) : linear;
+  }
   PetscCall(BodySetUpCells(body));
   PetscCall(BodySetUpLayout(body));
+  PetscCall(BodyNoteSurfaceMaterial(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -70,15 +70,16 @@ PetscErrorCode BodyPackHistory(Body body, Tables tables)
   if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(count * width, &packed));
   for (PetscInt e = 0; e < count; e++) {
-    PetscReal *row = packed + e * width;
+    const PetscInt slot = ElementHistorySlot(element, e);
+    PetscReal     *row  = packed + e * width;
 
     GetElementKey(body, e, row);
     row += TABLES_KEY;
     for (PetscInt a = 0; a < nodes; a++)
       for (PetscInt d = 0; d < dim; d++) *row++ = body->mesh.coordinates[body->mesh.connectivity[e * nodes + a] * dim + d];
-    for (PetscInt k = 0; k < of_element; k++) row[k] = saved[(e / 8 * of_element + k) * 8 + e % 8];
+    for (PetscInt k = 0; k < of_element; k++) row[k] = saved[(slot / 8 * of_element + k) * 8 + slot % 8];
   }
-  PetscCall(NameHistory(body, ((PetscObject)body->model.material)->type_name, name, sizeof(name)));
+  PetscCall(NameHistory(body, BodyGetMaterialName(body), name, sizeof(name)));
   PetscCall(TablesAdd(tables, name, count, width, packed));
   PetscCall(PetscFree(packed));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -98,9 +99,10 @@ PetscErrorCode BodyUnpackHistory(Body body, Tables tables)
   PetscFunctionBegin;
   saved = BodyHistoryGetSaved(body, &size);
   if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(NameHistory(body, ((PetscObject)body->model.material)->type_name, name, sizeof(name)));
+  PetscCall(NameHistory(body, BodyGetMaterialName(body), name, sizeof(name)));
   PetscCall(TablesGet(tables, name, HistoryWidth(body), &n, &packed));
   for (PetscInt e = 0; e < element->count; e++) {
+    const PetscInt   slot = ElementHistorySlot(element, e);
     const PetscReal *places;
     PetscReal        key[TABLES_KEY];
 
@@ -110,7 +112,7 @@ PetscErrorCode BodyUnpackHistory(Body body, Tables tables)
     for (PetscInt g = 0; g < points; g++) {
       const PetscReal *from = places + element->nodes * body->mesh.dim + FindPoint(body, e, g, places) * n_history;
 
-      for (PetscInt c = 0; c < n_history; c++) saved[(e / 8 * of_element + g * n_history + c) * 8 + e % 8] = from[c];
+      for (PetscInt c = 0; c < n_history; c++) saved[(slot / 8 * of_element + g * n_history + c) * 8 + slot % 8] = from[c];
     }
   }
   BodyHistoryRestore(body);
@@ -157,7 +159,7 @@ static PetscErrorCode FindHistory(Body body, Tables tables, const char *material
 */
 PetscErrorCode BodyTakeHistory(Body body, Tables tables)
 {
-  const char *before, *now = ((PetscObject)body->model.material)->type_name;
+  const char *before, *now = BodyGetMaterialName(body);
   PetscBool   same;
 
   PetscFunctionBegin;
@@ -165,8 +167,8 @@ PetscErrorCode BodyTakeHistory(Body body, Tables tables)
   if (!before) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscStrcmp(before, now, &same));
   PetscCheck(same, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-restart_state: the checkpoint has the history of body '%s' for the material %s, which means nothing for %s; set "
-             "-%s_material_type %s",
+             "-restart_state: the checkpoint has the history of body '%s' for the material %s, which means nothing for %s; give "
+             "-%s_material_type, or those of its blocks, as it was: %s",
              body->hdr.name, before, now, body->hdr.name, before);
   PetscCall(BodyUnpackHistory(body, tables));
   PetscFunctionReturn(PETSC_SUCCESS);

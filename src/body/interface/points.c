@@ -227,10 +227,10 @@ PetscErrorCode BodySetUpPoints(Body body)
                          &points->sums));
   for (PetscInt i = 0; i < points->n_places; i++)
     PetscCall(PetscArraycpy(points->connectivity + i * nodes, body->mesh.connectivity + points->places[i].element * nodes, nodes));
-  PetscCall(ElementDuplicate(body->model.element, NULL, &points->element));
-  PetscCall(ElementSetUp(points->element, points->n_places, points->connectivity, body->mesh.coordinates));
   PetscCall(PetscMalloc1(points->n_places, &points->of_body));
   for (PetscInt i = 0; i < points->n_places; i++) points->of_body[i] = points->places[i].element;
+  PetscCall(ElementCreateSelection(body->model.element, PETSC_FALSE, points->n_places, points->of_body, points->connectivity,
+                                   body->mesh.coordinates, &points->element));
   PetscCall(BodyHistoryCreateBuffer(body, points->n_places, &size, &points->memory, &points->history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -301,7 +301,7 @@ PetscErrorCode BodyGetProbes(Body body, PetscReal position[], PetscReal displace
   PetscCall(PetscArrayzero(points->sums, N_SUMS * points->n));
   PetscCall(BodyGetLocalRead(body, body->state.u, &u_local, &u));
   PetscCall(BodyGetLocalRead(body, body->state.v, &v_local, &v));
-  if (points->history) BodyHistoryGather(body, PETSC_TRUE, points->n_places, points->of_body, points->history);
+  if (points->history) BodyHistoryGather(body, PETSC_TRUE, points->element, points->of_body, points->history);
   points->element->history.start = points->history;
   points->element->history.step  = -1;
   PetscCall((*points->element->ops->stress)(points->element, u, points->stress));

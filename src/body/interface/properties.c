@@ -222,18 +222,23 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
 
   Level: intermediate
 
+  Note:
+  Of a body with several materials, that of `BodyGetSurfaceMaterial()`.
+
 .seealso: `Body`, `BodyComputeRowStiffness()`, `MaterialGetUniaxialModulus()`
 @*/
 PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
 {
   PetscReal density, modulus;
+  Material  material;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(impedance, 2);
-  PetscCall(MaterialGetDensity(body->model.material, &density));
-  if (body->mesh.dim == 1) PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
-  else PetscCall(MaterialGetWaveModulus(body->model.material, &modulus));
+  PetscCall(BodyGetSurfaceMaterial(body, &material));
+  PetscCall(MaterialGetDensity(material, &density));
+  if (body->mesh.dim == 1) PetscCall(MaterialGetUniaxialModulus(material, &modulus));
+  else PetscCall(MaterialGetWaveModulus(material, &modulus));
   *impedance = PetscSqrtReal(modulus * density) * body->model.element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -251,17 +256,22 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
 
   Level: developer
 
+  Note:
+  Of a body with several materials, with that of `BodyGetSurfaceMaterial()`.
+
 .seealso: `Body`, `BodyGetElementSize()`, `BodyGetImpedance()`
 @*/
 PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
 {
   PetscReal impedance, density, size, cross_section;
+  Material  material;
   PetscInt  dim;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(MaterialGetDensity(body->model.material, &density));
+  PetscCall(BodyGetSurfaceMaterial(body, &material));
+  PetscCall(MaterialGetDensity(material, &density));
   PetscCall(BodyGetElementSize(body, &size));
   PetscCall(BodyGetCrossSection(body, &cross_section));
   PetscCall(BodyGetDimension(body, &dim));

@@ -29,13 +29,23 @@ typedef struct {
   PetscBool      touches_axis;   /* there are such nodes on any rank */
 } BodyMesh;
 
+/* Blocks of the mesh with materials of their own, and last, where there are cells in none of them, one with the body's */
+typedef struct {
+  PetscInt  n, given;      /* all; those that have been named */
+  char    **names;         /* the last is empty where it is the body's own */
+  Material *materials;
+  PetscInt *of_cell;       /* the block of each cell of this rank; NULL until they have been looked for */
+  char     *material_name; /* of all together: what a history belongs to */
+} BodyBlocks;
+
 /* What internal forces come from */
 typedef struct {
   Element   element;
   Material  material;
+  Material  surface_material;    /* of the elements with contact nodes the stiffest, before they are known that of all; no reference; NULL: the body's */
+  BodyBlocks blocks;             /* n is 0 where the body has one material */
   PetscBool linear;              /* the stiffness is constant */
   Element   linearized_element;  /* NULL until BodyPrepareLinearized() */
-  Material  linearized_material; /* the same */
   PetscBool linearized;          /* forces are those of the linearized element at present */
   Mat       stiffness;           /* of the undeformed body; NULL until BodyGetStiffness() */
   PetscReal least_inverting;     /* energy of a linear body with an element inside out, at least; 0 until BodyGetInverted() [J] */
@@ -312,13 +322,19 @@ PETSC_INTERN void           BodyHistoryLookBack(Body, const ElementHistory *);
 PETSC_INTERN void           BodyHistoryUse(Body, const PetscReal[], PetscReal, ElementHistory *);
 PETSC_INTERN PetscErrorCode BodyHistoryCreateBuffer(Body, PetscInt, PetscInt *, char **, PetscReal **);
 PETSC_INTERN PetscErrorCode BodyHistoryCopyStart(Body, PetscReal[], PetscReal *);
-PETSC_INTERN void           BodyHistoryGather(Body, PetscBool, PetscInt, const PetscInt[], PetscReal[]);
+PETSC_INTERN void           BodyHistoryGather(Body, PetscBool, Element, const PetscInt[], PetscReal[]);
 PETSC_INTERN PetscInt       BodyHistoryGetEpoch(Body);
 PETSC_INTERN PetscReal     *BodyHistoryGetSaved(Body, size_t *);
 PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
 PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
-PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body, Material);
+PETSC_INTERN PetscErrorCode BodySetUpBlocks(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyReadBlocks(Body);
+PETSC_INTERN PetscErrorCode BodyDestroyBlocks(Body);
+PETSC_INTERN PetscErrorCode BodyNoteSurfaceMaterial(Body);
+PETSC_INTERN PetscErrorCode BodyViewBlocks(Body, PetscViewer);
+PETSC_INTERN const char    *BodyGetMaterialName(Body);
+PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body);
 PETSC_INTERN PetscErrorCode BodyCreateLayerVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodyGatherLayer(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySpreadLayer(Body, Vec, Vec);

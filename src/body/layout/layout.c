@@ -130,6 +130,9 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
                                body->mesh.connectivity +
                                    (c - cstart) * body->model.element->nodes)); /* from DMPLEX's order of vertices to the usual one */
   }
+  if (body->model.blocks.n)
+    PetscCall(ElementSetBlocks(body->model.element, body->model.blocks.n, body->model.blocks.materials, cend - cstart,
+                               body->model.blocks.of_cell));
   PetscCall(ElementSetUp(body->model.element, cend - cstart, body->mesh.connectivity, body->mesh.coordinates));
   PetscCall(ElementWarnOfLocking(body->model.element));
   PetscFunctionReturn(PETSC_SUCCESS);

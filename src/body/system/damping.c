@@ -18,7 +18,6 @@ struct _BodyDamping {
   PetscInt *numbers;      /* in the body, of the former on this rank */
   PetscInt *connectivity; /* theirs */
   Element   element;      /* these; linear */
-  Material  material;     /* of a nonlinear body: theirs */
   Vec       work;         /* M v */
 };
 
@@ -165,9 +164,8 @@ PetscErrorCode BodySetUpDamping(Body body)
       "-%sdamping_stiffness has no effect: all elements of body '%s' are at massless contact nodes, which have no dashpots; refine the "
       "mesh, or set -%smass_redistribute false, or near",
       ((PetscObject)body)->prefix, body->hdr.name, ((PetscObject)body)->prefix);
-  if (!body->model.linear) PetscCall(MaterialLinearize(body->model.material, &damping->material));
-  PetscCall(ElementDuplicate(body->model.element, damping->material, &damping->element));
-  PetscCall(ElementSetUp(damping->element, count, damping->connectivity, body->mesh.coordinates));
+  PetscCall(ElementCreateSelection(body->model.element, (PetscBool)!body->model.linear, count, damping->numbers, damping->connectivity,
+                                   body->mesh.coordinates, &damping->element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,7 +174,6 @@ PetscErrorCode BodyDestroyDamping(Body body)
   PetscFunctionBegin;
   if (!body->damping) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElementDestroy(&body->damping->element));
-  PetscCall(MaterialDestroy(&body->damping->material));
   PetscCall(PetscFree(body->damping->numbers));
   PetscCall(PetscFree(body->damping->connectivity));
   PetscCall(VecDestroy(&body->damping->work));

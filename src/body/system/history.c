@@ -25,7 +25,7 @@ struct _n_BodyHistory {
 /* Numbers of some elements' points, with room for a whole batch at the end */
 static size_t GetSize(const ElementHistory *history, PetscInt count)
 {
-  return (size_t)((count + 7) / 8) * 8 * (size_t)(history->points * history->n);
+  return (size_t)((count + history->padding + 7) / 8) * 8 * (size_t)(history->points * history->n);
 }
 
 static PetscBool HasHistory(Body body)
@@ -231,16 +231,18 @@ PetscErrorCode BodyHistoryCreateBuffer(Body body, PetscInt n, PetscInt *size, ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyHistoryGather - what elements of this rank, by their numbers, begin the substep with; `now`: what the present state has */
-void BodyHistoryGather(Body body, PetscBool now, PetscInt n, const PetscInt elements[], PetscReal buffer[])
+/* BodyHistoryGather - what some elements of this rank, by their numbers, begin the substep with; `now`: what the present state has */
+void BodyHistoryGather(Body body, PetscBool now, Element element, const PetscInt elements[], PetscReal buffer[])
 {
   const ElementHistory *history = &body->model.element->history;
   const PetscReal      *from    = now ? body->history->now : body->history->start;
   const PetscInt        width   = history->points * history->n;
 
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt k = 0; k < width; k++)
-      buffer[(i / 8 * width + k) * 8 + i % 8] = from[(elements[i] / 8 * width + k) * 8 + elements[i] % 8];
+  for (PetscInt i = 0; i < element->count; i++) {
+    const PetscInt to = ElementHistorySlot(element, i), at = ElementHistorySlot(body->model.element, elements[i]);
+
+    for (PetscInt k = 0; k < width; k++) buffer[(to / 8 * width + k) * 8 + to % 8] = from[(at / 8 * width + k) * 8 + at % 8];
+  }
 }
 
 /* BodyHistoryGetEpoch - a number that changes with the start of the substep */

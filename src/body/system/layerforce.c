@@ -14,6 +14,7 @@ struct _n_LayerElements {
   PetscInt  *of_body; /* the number of each element in the body */
   char      *memory;  /* of the history that these elements begin the substep with, NULL where the material has none */
   PetscReal *history;
+  PetscInt   history_size; /* numbers of that */
   PetscInt   epoch;  /* of the substep */
   PetscInt   n_near; /* of contact nodes and of the nodes of these elements, on whatever rank the elements are */
   PetscInt  *near;   /* owned ones, rank numbering */
@@ -168,7 +169,7 @@ static void PrepareHistory(Body body)
 
   if (!layer->history) return;
   if (layer->epoch != BodyHistoryGetEpoch(body))
-    BodyHistoryGather(body, PETSC_FALSE, layer->element->count, layer->of_body, layer->history);
+    BodyHistoryGather(body, PETSC_FALSE, layer->element, layer->of_body, layer->history);
   layer->epoch                  = BodyHistoryGetEpoch(body);
   layer->element->history.start = layer->history;
   layer->element->history.end   = NULL;
@@ -184,8 +185,7 @@ PetscErrorCode BodyLayerCopyHistory(Body body, PetscReal history[], PetscReal *s
   *step = body->time.step;
   if (!layer->history) PetscFunctionReturn(PETSC_SUCCESS);
   PrepareHistory(body);
-  PetscCall(PetscArraycpy(history, layer->history,
-                          (layer->element->count + 7) / 8 * 8 * layer->element->history.points * layer->element->history.n));
+  PetscCall(PetscArraycpy(history, layer->history, layer->history_size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,9 +207,9 @@ PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
     PetscCall(PetscArraycpy(layer->coordinates + k * dim, body->mesh.coordinates + nodes[k] * dim, dim));
     PetscCall(PetscArraycpy(layer->numbers + k * dim, number + nodes[k] * dim, dim));
   }
-  PetscCall(ElementDuplicate(body->model.element, NULL, &layer->element));
-  PetscCall(ElementSetUp(layer->element, count, layer->connectivity, layer->coordinates));
-  PetscCall(BodyLayerCreateHistory(body, NULL, &layer->memory, &layer->history));
+  PetscCall(ElementCreateSelection(body->model.element, PETSC_FALSE, count, layer->of_body, layer->connectivity, layer->coordinates,
+                                   &layer->element));
+  PetscCall(BodyLayerCreateHistory(body, &layer->history_size, &layer->memory, &layer->history));
   layer->epoch = -1;
   PetscCall(CreateScatters(body, layer, n_nodes, nodes, of_layer));
   PetscCall(FindNear(body, layer));
@@ -237,15 +237,15 @@ PetscErrorCode BodyLayerElementsDestroy(LayerElements *layer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The element of linearized forces; `material` is kept by reference */
-PetscErrorCode BodyLayerLinearize(Body body, Material material)
+/* The element of linearized forces */
+PetscErrorCode BodyLayerLinearize(Body body)
 {
   LayerElements layer = body->layer.elements;
 
   PetscFunctionBegin;
   if (!layer || layer->linearized) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElementDuplicate(layer->element, material, &layer->linearized));
-  PetscCall(ElementSetUp(layer->linearized, layer->element->count, layer->connectivity, layer->coordinates));
+  PetscCall(ElementCreateSelection(layer->element, PETSC_TRUE, layer->element->count, NULL, layer->connectivity, layer->coordinates,
+                                   &layer->linearized));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -25,10 +25,9 @@ PetscErrorCode BodyPrepareLinearized(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   if (body->model.linear || body->model.linearized_element) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MaterialLinearize(body->model.material, &body->model.linearized_material));
-  PetscCall(ElementDuplicate(body->model.element, body->model.linearized_material, &body->model.linearized_element));
-  PetscCall(ElementSetUp(body->model.linearized_element, body->model.element->count, body->mesh.connectivity, body->mesh.coordinates));
-  PetscCall(BodyLayerLinearize(body, body->model.linearized_material));
+  PetscCall(ElementCreateSelection(body->model.element, PETSC_TRUE, body->model.element->count, NULL, body->mesh.connectivity,
+                                   body->mesh.coordinates, &body->model.linearized_element));
+  PetscCall(BodyLayerLinearize(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -119,7 +119,7 @@ static PetscErrorCode Iterate(Body body, Element element, Chunk *chunk, PetscBoo
 
   PetscFunctionBegin;
   if (deformed) {
-    if (chunk->history) BodyHistoryGather(body, PETSC_TRUE, chunk->count, chunk->elements, chunk->history);
+    if (chunk->history) BodyHistoryGather(body, PETSC_TRUE, element, chunk->elements, chunk->history);
     element->history.start = chunk->history;
     element->history.end   = NULL;
     element->history.step  = -1;
@@ -172,8 +172,8 @@ static PetscErrorCode EstimateEigenvalues(Body body, const PetscScalar u[], Pets
   for (PetscInt begin = 0; begin < body->model.element->count; begin += CHUNK) {
     chunk.count = PetscMin(CHUNK, body->model.element->count - begin);
     PetscCall(FillChunk(body, begin, u, &chunk));
-    PetscCall(ElementDuplicate(body->model.element, NULL, &element));
-    PetscCall(ElementSetUp(element, chunk.count, chunk.connectivity, chunk.coordinates));
+    PetscCall(ElementCreateSelection(body->model.element, PETSC_FALSE, chunk.count, chunk.elements, chunk.connectivity, chunk.coordinates,
+                                     &element));
     PetscCall(Iterate(body, element, &chunk, deformed, eigenvalues + begin));
     PetscCall(ElementDestroy(&element));
   }

@@ -11,7 +11,7 @@ static PetscErrorCode GetTransit(Body body, PetscReal size, PetscReal *transit)
   Material  material;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
   PetscCall(BodyGetImpedance(body, &impedance));
   PetscCall(BodyGetCrossSection(body, &cross_section));

@@ -26,7 +26,7 @@ static PetscErrorCode GetSide(Body body, Side *side)
   PetscCall(BodyGetContactElementSize(body, &side->size));
   PetscCall(BodyGetImpedance(body, &impedance));
   PetscCall(BodyGetCrossSection(body, &cross_section));
-  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
   side->impedance = impedance / cross_section;
   side->transit   = side->size * density / side->impedance; /* h / c, c = Z / rho */

@@ -154,12 +154,10 @@ static PetscErrorCode SuitsBalance(Contact contact, const ContactPair *pair, Pet
   for (PetscInt side = 0; side < 2; side++) {
     PetscReal bend;
     PetscBool is_static, is_linear;
-    Material  material;
     int       held;
 
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
-    PetscCall(MaterialIsLinear(material, &is_linear));
+    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
     PetscCall(GetBend(contact, pair, side, PETSC_MAX_REAL, &bend));
     if (is_static || bend > COARSE || bend < FLAT) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(IsHeld(contact, pair->body[side], &held));
@@ -210,11 +208,9 @@ PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
     const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;
     PetscReal   edge, bend;
     PetscBool   is_static, is_linear;
-    Material    material;
 
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
-    PetscCall(MaterialIsLinear(material, &is_linear));
+    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
     PetscCheck(!is_static, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_balance: body '%s' of pair %s has no inertia", name, pair->name);
     PetscCall(GetBend(contact, pair, side, EDGE, &bend));

@@ -277,12 +277,10 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscBool is_static, is_linear;
-    Material  material;
 
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
     inertia = (PetscBool)(inertia && !is_static);
-    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
-    PetscCall(MaterialIsLinear(material, &is_linear));
+    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
     linear = (PetscBool)(linear && is_linear);
   }
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));

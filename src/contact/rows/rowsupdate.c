@@ -275,12 +275,10 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   if (pair->obstacle || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < 2; side++) {
     PetscBool is_static, is_linear;
-    Material  material;
 
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
     if (is_static) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(BodyGetMaterial(contact->bodies[pair->body[side]], &material));
-    PetscCall(MaterialIsLinear(material, &is_linear));
+    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
     linear = (PetscBool)(linear && is_linear);
   }
   PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,

@@ -365,11 +365,9 @@ PetscErrorCode ContactBalanceStart(Contact contact)
   PetscCall(IsNeeded(contact, &needed));
   if (!needed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Material  material;
     PetscBool is_linear;
 
-    PetscCall(BodyGetMaterial(contact->bodies[b], &material));
-    PetscCall(MaterialIsLinear(material, &is_linear));
+    PetscCall(BodyIsLinear(contact->bodies[b], &is_linear));
     linear = (PetscBool)(linear && is_linear);
   }
   PetscCall(Create(contact, &start));
