@@ -169,7 +169,7 @@ PETSC_EXTERN PetscErrorCode BodyComputePlasticStrain(Body, PetscReal[], PetscRea
 PETSC_EXTERN PetscErrorCode BodySetBlockMaterial(Body, const char[], Material);
 PETSC_EXTERN PetscErrorCode BodyGetBlocks(Body, PetscInt *, const char *const *[], const Material *[]);
 PETSC_EXTERN PetscErrorCode BodyGetCellBlocks(Body, const PetscInt *[]);
-PETSC_EXTERN PetscErrorCode BodyComputeBlockMass(Body, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetBlockMass(Body, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode BodyGetSurfaceMaterial(Body, Material *);
 PETSC_EXTERN PetscErrorCode BodyIsLinear(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyHasHistory(Body, PetscBool *);

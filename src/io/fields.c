@@ -96,7 +96,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   Contact     contact;
   PetscInt    steps, n_bodies, n_pairs;
   PetscMPIInt rank;
-  PetscBool   plastic = PETSC_FALSE;
+  PetscBool   plastic = PETSC_FALSE, blocks = PETSC_FALSE;
   ContactLaw  law;
   Fields      f;
 
@@ -126,6 +126,13 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   f->set = (1u << (!n_pairs ? FIELDS_FIRST_OF_CONTACT : law == CONTACT_LAW_FRICTION ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_FRICTION)) - 1;
   for (PetscInt i = 0; i < n_bodies && !plastic; i++) PetscCall(BodyHasHistory(bodies[i], &plastic));
   if (!plastic) f->set &= ~(1u << FIELDS_PLASTIC_STRAIN);
+  for (PetscInt i = 0; i < n_bodies && !blocks; i++) {
+    PetscInt n;
+
+    PetscCall(BodyGetBlocks(bodies[i], &n, NULL, NULL));
+    blocks = (PetscBool)(n > 0);
+  }
+  if (!blocks) f->set &= ~(1u << FIELDS_BLOCK);
   PetscCall(CheckSpace(f));
   if (n_pairs) PetscCall(ContactFieldsCreate(contact, &f->contact));
   PetscCall(CreateBuffers(f));

@@ -14,6 +14,7 @@ const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
     {"stress", "Pa", 9, "Tensor", PETSC_TRUE},
     {"von_mises", "Pa", 1, "Scalar", PETSC_TRUE},
     {"plastic_strain", "1", 1, "Scalar", PETSC_TRUE},
+    {"block", "1", 1, "Scalar", PETSC_TRUE},
     {"contact_force", "N", 3, "Vector", PETSC_FALSE},
     {"contact_pressure", "Pa", 1, "Scalar", PETSC_FALSE},
     {"contact_gap", "m", 1, "Scalar", PETSC_FALSE},

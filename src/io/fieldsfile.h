@@ -5,7 +5,7 @@
 
 /* The names of frames have four digits, and all datasets of a run are made before its first frame */
 #define FIELDS_MAX_FRAMES 10000
-#define FIELDS_PER_FRAME  13
+#define FIELDS_PER_FRAME  14
 
 /* The fields of contact begin with this one, and are the last */
 #define FIELDS_FIRST_OF_CONTACT  FIELDS_CONTACT_FORCE
@@ -21,6 +21,7 @@ typedef enum {
   FIELDS_STRESS,
   FIELDS_VON_MISES,
   FIELDS_PLASTIC_STRAIN, /* where some body's material flows */
+  FIELDS_BLOCK,          /* where some body has several materials */
   FIELDS_CONTACT_FORCE,
   FIELDS_CONTACT_PRESSURE,
   FIELDS_CONTACT_GAP,

@@ -125,6 +125,24 @@ static PetscErrorCode WritePlasticStrain(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The number of each cell's block within its body; 0 in bodies of one material */
+static PetscErrorCode WriteBlocks(Fields fields)
+{
+  const FieldsMesh *mesh  = &fields->mesh;
+  size_t            first = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < mesh->n_bodies; b++) {
+    const PetscInt *blocks;
+
+    PetscCall(BodyGetCellBlocks(mesh->bodies[b], &blocks));
+    for (size_t i = 0; i < (size_t)mesh->cells.count[b]; i++) Store(fields, first + i, blocks ? (PetscReal)blocks[i] : 0);
+    first += (size_t)mesh->cells.count[b];
+  }
+  PetscCall(WriteField(fields, FIELDS_BLOCK));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode WriteContact(Fields fields)
 {
   static const PetscInt begin[FIELDS_PER_FRAME] = {[FIELDS_CONTACT_FORCE]     = CONTACT_FIELDS_FORCE,
@@ -173,6 +191,7 @@ PetscErrorCode FieldsWriteFrame(Fields fields, PetscReal time)
   PetscCall(WriteNodes(fields, FIELDS_VELOCITY));
   PetscCall(WriteStress(fields));
   if (fields->plastic) PetscCall(WritePlasticStrain(fields));
+  if (FieldsSetHas(fields->set, FIELDS_BLOCK)) PetscCall(WriteBlocks(fields));
   if (fields->contact) PetscCall(WriteContact(fields));
   PetscCall(WriteTime(fields, time));
   PetscFunctionReturn(PETSC_SUCCESS);

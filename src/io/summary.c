@@ -192,6 +192,31 @@ static PetscErrorCode AddObstacles(json_t *root, const StatisticsResults *result
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Model and mass of the blocks with materials of their own, and of the rest */
+static PetscErrorCode AddBlocks(json_t *object, Body body)
+{
+  json_t            *blocks, *block;
+  const char *const *names;
+  const Material    *materials;
+  const PetscReal   *mass;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetBlocks(body, &n, &names, &materials));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetBlockMass(body, &mass));
+  PetscCall(SetObject(object, "blocks", &blocks));
+  for (PetscInt k = 0; k < n; k++) {
+    MaterialType type;
+
+    PetscCall(MaterialGetType(materials[k], &type));
+    PetscCall(SetObject(blocks, names[k][0] ? names[k] : "(rest)", &block));
+    PetscCall(SetMember(block, "material", json_string(type)));
+    PetscCall(SetReal(block, "mass", mass[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const StatisticsResults *results)
 {
   json_t     *objects, *object, *reactions;
@@ -212,6 +237,7 @@ static PetscErrorCode AddBodies(json_t *root, const Body bodies[], const Statist
     PetscCall(SetObject(objects, name, &object));
     PetscCall(SetInteger(object, "dofs", dofs));
     PetscCall(AddMass(object, bodies[i]));
+    PetscCall(AddBlocks(object, bodies[i]));
     PetscCall(SetReal(object, "kinetic", body->kinetic));
     PetscCall(SetReal(object, "potential", body->potential));
     PetscCall(SetReal(object, "peak_potential", body->peak_potential));

@@ -47,3 +47,14 @@ def write_box(path, shape, faces, size, distortion=0.0):
 
 def sides(shape):
     return [f"{axis}{end}" for axis in "xyz"[: dim_of(shape)] for end in ("min", "max")]
+
+
+def write_blocks(path, shape, faces, size, block_of, names, distortion=0.0):
+    """Gmsh 2.2 with physical groups `names`; block_of(centre of a cell) is the place of its group there."""
+    points, cells = box(shape, faces, size, distortion)
+    tags = np.array([block_of(centre) + 1 for centre in points[cells].mean(axis=1)])
+    groups = {name: np.array([k + 1, dim_of(shape)]) for k, name in enumerate(names)}
+    data = {"gmsh:physical": [tags], "gmsh:geometrical": [tags]}
+    mesh = meshio.Mesh(points, [(SHAPES[shape], cells)], cell_data=data, field_data=groups)
+    meshio.write(path, mesh, file_format="gmsh22", binary=False)
+    return path

@@ -79,6 +79,7 @@ PetscErrorCode BodyDestroyBlocks(Body body)
   PetscCall(PetscFree2(blocks->names, blocks->materials));
   PetscCall(PetscFree(blocks->of_cell));
   PetscCall(PetscFree(blocks->material_name));
+  PetscCall(PetscFree(blocks->mass));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -202,7 +203,7 @@ const char *BodyGetMaterialName(Body body)
 
   Level: intermediate
 
-.seealso: `Body`, `BodySetBlockMaterial()`, `BodyGetCellBlocks()`, `BodyComputeBlockMass()`
+.seealso: `Body`, `BodySetBlockMaterial()`, `BodyGetCellBlocks()`, `BodyGetBlockMass()`
 @*/
 PetscErrorCode BodyGetBlocks(Body body, PetscInt *n, const char *const *names[], const Material *materials[])
 {
@@ -240,42 +241,47 @@ PetscErrorCode BodyGetCellBlocks(Body body, const PetscInt *blocks[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyComputeBlockMass - the mass of each block
+/*@C
+  BodyGetBlockMass - the mass of each block
 
-  Collective
+  Not Collective
 
   Input Parameter:
 . body - the `Body`, set up
 
   Output Parameter:
-. mass - of each of `BodyGetBlocks()` [kg]
+. mass - of each of `BodyGetBlocks()` [kg]; owned by the body; `NULL` where there are none
 
   Level: intermediate
 
 .seealso: `Body`, `BodyGetBlocks()`, `BodyGetMass()`
 @*/
-PetscErrorCode BodyComputeBlockMass(Body body, PetscReal mass[])
+PetscErrorCode BodyGetBlockMass(Body body, const PetscReal *mass[])
 {
-  const BodyBlocks *blocks  = &body->model.blocks;
-  const Element     element = body->model.element;
-  const PetscInt    dim     = body->mesh.dim;
-  PetscScalar       M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->mesh.positions, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
-             "Call BodySetUp() or BodySetFromOptions() first");
-  if (!blocks->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscAssertPointer(mass, 2);
-  PetscCall(PetscArrayzero(mass, blocks->n));
+  *mass = body->model.blocks.mass;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyComputeBlockMass - finds what BodyGetBlockMass() tells, with the elements */
+PetscErrorCode BodyComputeBlockMass(Body body)
+{
+  BodyBlocks    *blocks  = &body->model.blocks;
+  const Element  element = body->model.element;
+  const PetscInt dim = body->mesh.dim, n = element->nodes;
+  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  PetscFunctionBegin;
+  if (!blocks->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(blocks->n, &blocks->mass));
   for (PetscInt e = 0; e < element->count; e++) {
     PetscCall((*element->ops->mass)(element, e, M));
-    for (PetscInt a = 0; a < element->nodes; a++)
-      for (PetscInt b = 0; b < element->nodes; b++)
-        mass[blocks->of_cell[e]] += PetscRealPart(M[a * dim * element->nodes * dim + b * dim]);
+    for (PetscInt a = 0; a < n; a++)
+      for (PetscInt b = 0; b < n; b++) blocks->mass[blocks->of_cell[e]] += PetscRealPart(M[a * dim * n * dim + b * dim]);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mass, (PetscMPIInt)blocks->n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, blocks->mass, (PetscMPIInt)blocks->n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -283,16 +289,11 @@ PetscErrorCode BodyComputeBlockMass(Body body, PetscReal mass[])
 PetscErrorCode BodyViewBlocks(Body body, PetscViewer viewer)
 {
   const BodyBlocks *blocks = &body->model.blocks;
-  PetscReal        *mass;
 
   PetscFunctionBegin;
-  if (!blocks->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(blocks->n, &mass));
-  PetscCall(BodyComputeBlockMass(body, mass));
   for (PetscInt k = 0; k < blocks->n; k++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %s%s: %s, mass %g kg\n", k < blocks->given ? "block " : "the rest", blocks->names[k],
-                                     ((PetscObject)blocks->materials[k])->type_name, (double)mass[k]));
-  PetscCall(PetscFree(mass));
+                                     ((PetscObject)blocks->materials[k])->type_name, (double)blocks->mass[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

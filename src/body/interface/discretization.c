@@ -36,6 +36,7 @@ PetscErrorCode BodySetUpMesh(Body body)
   }
   PetscCall(BodySetUpCells(body));
   PetscCall(BodySetUpLayout(body));
+  PetscCall(BodyComputeBlockMass(body));
   PetscCall(BodyNoteSurfaceMaterial(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -34,6 +34,7 @@ typedef struct {
   PetscInt  n, given;      /* all; those that have been named */
   char    **names;         /* the last is empty where it is the body's own */
   Material *materials;
+  PetscReal *mass;         /* of each, once there are elements [kg] */
   PetscInt *of_cell;       /* the block of each cell of this rank; NULL until they have been looked for */
   char     *material_name; /* of all together: what a history belongs to */
 } BodyBlocks;
@@ -332,6 +333,7 @@ PETSC_INTERN PetscErrorCode BodySetUpBlocks(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyReadBlocks(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyBlocks(Body);
 PETSC_INTERN PetscErrorCode BodyNoteSurfaceMaterial(Body);
+PETSC_INTERN PetscErrorCode BodyComputeBlockMass(Body);
 PETSC_INTERN PetscErrorCode BodyViewBlocks(Body, PetscViewer);
 PETSC_INTERN const char    *BodyGetMaterialName(Body);
 PETSC_INTERN PetscErrorCode BodyLayerLinearize(Body);

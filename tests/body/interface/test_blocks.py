@@ -1,0 +1,209 @@
+"""Bodies of several materials, by blocks of their mesh."""
+
+import h5py
+import numpy as np
+import pytest
+from cases import SAME, long
+from conftest import complaints
+from solidmeshes import write_blocks
+
+FACES = {"quad4": (12, 4), "tri3": (12, 4), "hex8": (8, 3, 4), "tet4": (6, 2, 4)}
+LOWER = {2: lambda x: int(x[1] > 0.1), 3: lambda x: int(x[2] > 0.1)}
+MOVING = {2: "20*y,-30*x", 3: "20*z,10*x*y,-30*x"}
+
+
+def layers(tmp_path, shape, faces=None, distortion=0.2, names=("core", "skin")):
+    """A box of 1 x 0.2 (x 0.2) m, its upper half in the second block."""
+    dim = len(FACES[shape])
+    return write_blocks(tmp_path / "layers.msh", shape, faces or FACES[shape], (1.0, 0.2, 0.2), LOWER[dim], names, distortion)
+
+
+def motion(path, shape, more=""):
+    """A free body that bends and turns."""
+    return (
+        f"-bodies b -b_dm_plex_filename {path} -time_step 1e-4 -time_end 2e-3 -b_density 1000 -b_youngs_modulus 1e7 -b_poissons_ratio 0.3 "
+        f"-b_initial_velocity {MOVING[len(FACES[shape])]} {more}"
+    )
+
+
+def energies(run):
+    body = run.history["body/b"]
+    return np.concatenate([body[name][:].ravel() for name in ("kinetic", "potential")])
+
+
+KINDS = [
+    ("quad4", "-b_material_type neo_hookean -b_ts_type centraldifference"),
+    ("quad4", "-b_plane_stress -b_element_formulation enhanced"),
+    ("quad4", "-b_axisymmetric -b_material_type saint_venant_kirchhoff"),
+    ("tri3", "-b_material_type neo_hookean"),
+    ("tet4", "-b_material_type saint_venant_kirchhoff -b_ts_type centraldifference"),
+    ("hex8", "-b_material_type neo_hookean -b_ts_type centraldifference -b_element_formulation reduced"),
+    ("hex8", "-b_material_type j2 -b_yield_stress 1e5 -b_ts_type centraldifference"),
+    ("quad4", "-b_material_type neo_hookean -b_damping_stiffness 1e-5"),
+]
+
+
+@pytest.mark.parametrize("shape, options", KINDS)
+def test_equal_blocks(impakt, tmp_path, shape, options):
+    """Blocks of one material are the body without blocks, but for the order in which its forces are summed: measured 2e-13 at most."""
+    if "axisymmetric" in options:
+        options += " -b_initial_velocity 0,-30*x"
+    base = motion(layers(tmp_path, shape), shape, options)
+    plain, blocks = (energies(impakt(base + more)) for more in ("", " -b_core_density 1000 -b_skin_youngs_modulus 1e7"))
+    assert np.abs(plain).max() > 0
+    np.testing.assert_allclose(blocks, plain, rtol=0, atol=1e-10 * np.abs(plain).max())
+
+
+def test_inheritance(impakt, tmp_path):
+    """What a block does not say it takes from the body; where all cells are in blocks, the body need not say anything."""
+    path = layers(tmp_path, "quad4")
+    said = impakt(motion(path, "quad4", "-b_skin_youngs_modulus 4e7"))
+    full = impakt(
+        f"-bodies b -b_dm_plex_filename {path} -time_step 1e-4 -time_end 2e-3 -b_initial_velocity {MOVING[2]} "
+        "-b_core_density 1000 -b_core_youngs_modulus 1e7 -b_core_poissons_ratio 0.3 "
+        "-b_2_density 1000 -b_2_youngs_modulus 4e7 -b_2_poissons_ratio 0.3"
+    )
+    np.testing.assert_allclose(energies(full), energies(said), rtol=0, atol=1e-10 * np.abs(energies(said)).max())
+
+
+def test_mass(impakt, tmp_path):
+    """0.1 m^2 of each: 700 and 100 kg; momentum is that of the true density."""
+    path = layers(tmp_path, "quad4", distortion=0)
+    run = impakt(motion(path, "quad4", "-b_core_density 7000 -b_initial_velocity 3,0 -b_body_view"))
+    assert run.history["body/b/kinetic"][0].item() == pytest.approx(0.5 * 800 * 9, rel=1e-12)
+    assert "block core: linear_elastic, mass 700. kg" in run.stdout
+    assert "the rest: linear_elastic, mass 100. kg" in run.stdout
+
+
+def halves(tmp_path, n):
+    return write_blocks(tmp_path / "bar.msh", "quad4", (n, 1), (1.0, 0.01), lambda x: int(x[0] > 0.5), ["near", "far"])
+
+
+@pytest.mark.parametrize("ts", ["centraldifference", "alpha2"])
+def test_wave_between_blocks(impakt, tmp_path, ts):
+    """A pulse from impedance 1 to 4 kg/(m^2 s), c = 1 m/s and 2 m/s: particle velocities 2 Z1 / (Z1 + Z2) = 0.4 go on and (Z1 - Z2) / (Z1 + Z2) = -0.6
+    come back. The pulse is 30 elements of 1/400 m wide; measured 0.3 % off by dispersion."""
+    pulse = "exp(-((x-0.25)/0.04)^2)"
+    run = impakt(
+        f"-bodies b -b_dm_plex_filename {halves(tmp_path, 400)} -time_step 5e-4 -time_end 0.5 -b_ts_type {ts} -b_density 1 -b_youngs_modulus 1 "
+        "-b_far_density 2 -b_far_youngs_modulus 8 -b_poissons_ratio 0 -b_probe 0.35,0.005;0.7,0.005 "
+        f"-b_initial_displacement 1e-3*{pulse},0 -b_initial_velocity 2e-3*(x-0.25)/0.04^2*{pulse},0"
+    )
+    near, far = (run.history[f"body/b/probe/{k}/velocity"][:].reshape(len(run.history["time"]), -1)[:, 0] for k in (0, 1))
+    time = run.history["time"][:]
+    incident, reflected = np.abs(near[time < 0.2]).max(), near[time > 0.3]
+    assert np.abs(far).max() / incident == pytest.approx(0.4, rel=0.02)
+    assert np.abs(reflected).max() / incident == pytest.approx(0.6, rel=0.02)
+
+
+@pytest.mark.parametrize("shape", ["quad4", "hex8"])
+def test_layered_cantilever(impakt, tmp_path, shape):
+    """Skins ten times as stiff as the core: the deflection under an end load is F L^3 / (3 sum E I), with sum E I of the layers about the middle, and
+    of shear F L / (k G A), 1 % of it at length/height 20, which the bound leaves for the profile of shear in layers."""
+    three = len(FACES[shape]) - 2
+    faces = (80, 2, 8) if three else (80, 8)
+    across = 2 if three else 1
+    path = write_blocks(tmp_path / "beam.msh", shape, faces, (1.0, 0.05, 0.05), lambda x: int(abs(x[across] - 0.025) > 0.0125), ["core", "skin"])
+    if three:
+        load = "0,0,1"
+    else:
+        load = "0,1"
+    run = impakt(
+        f"-bodies b -b_dm_plex_filename {path} -time_step 1 -time_end 1 -b_ts_type static -b_density 1 -b_element_formulation enhanced "
+        f"-b_core_youngs_modulus 1e6 -b_skin_youngs_modulus 1e7 -b_poissons_ratio 0 -b_boundary_displacement xmin "
+        f"-b_boundary_displacement_xmin 0,0{',0' * three} -b_boundary_traction xmax -b_boundary_traction_xmax {load} "
+        f"-b_probe 1,0.025{',0.025' * three}" + ("" if three else " -b_plane_stress")
+    )
+    tip = run.history["body/b/probe/0/displacement"][-1].ravel()[across]
+    inertia = 1e6 * 0.025**3 / 12 + 1e7 * (0.05**3 - 0.025**3) / 12
+    assert tip == pytest.approx(0.05 / (3 * inertia), rel=0.02)
+
+
+def test_first_period(impakt, tmp_path):
+    """A bar clamped at the near end: Z1 cot(omega l / c1) = Z2 tan(omega l / c2). With Z1 = 1, Z2 = 4, c1 = 1, c2 = 2: the lowest root by bisection."""
+    low, high = 0.01, np.pi - 0.01
+    for _ in range(80):
+        middle = (low + high) / 2
+        low, high = (middle, high) if 1 / np.tan(middle / 2) - 4 * np.tan(middle / 4) > 0 else (low, middle)
+    run = impakt(
+        f"-bodies b -b_dm_plex_filename {halves(tmp_path, 40)} -time_step 0.01 -time_end 40 -b_density 1 -b_youngs_modulus 1 -b_far_density 2 "
+        "-b_far_youngs_modulus 8 -b_poissons_ratio 0 -b_boundary_displacement xmin -b_boundary_displacement_xmin 0,0 -b_initial_velocity 1e-4*x,0 "
+        "-b_probe 1,0.005"
+    )
+    motion = run.history["body/b/probe/0/displacement"][:].reshape(len(run.history["time"]), -1)[:, 0]
+    spectrum = np.abs(np.fft.rfft(motion * np.hanning(len(motion)), 16 * len(motion)))
+    omega = 2 * np.pi * spectrum.argmax() / (16 * len(motion) * 0.01)
+    assert omega == pytest.approx(low, rel=0.01)  # of a bin of the padded spectrum, 0.01 of 40 s
+
+
+PLASTIC = "-b_skin_material_type j2 -b_skin_yield_stress 2e5 -b_skin_hardening_modulus 1e6 -b_core_material_type neo_hookean"
+
+
+@pytest.mark.parametrize("ts", ["centraldifference", "alpha2"])
+@pytest.mark.parametrize("ranks", [2, *long(3)])
+def test_ranks(impakt, tmp_path, ts, ranks):
+    """One block flows, the other does not."""
+    options = motion(layers(tmp_path, "hex8"), "hex8", f"{PLASTIC} -b_ts_type {ts} -b_skin_density 3000")
+    one, more = impakt(options), impakt(options, ranks=ranks)
+    assert one.history["body/b/plastic_work"][-1] > 0
+    np.testing.assert_allclose(energies(more), energies(one), rtol=0, atol=SAME * energies(one).max())
+
+
+def test_fields(impakt, tmp_path):
+    """The number of each cell's block, and plastic strain in one of them alone."""
+    options = motion(layers(tmp_path, "quad4"), "quad4", f"{PLASTIC} -output_fields f.h5")
+    run = impakt(options)
+    with h5py.File(run.folder / "f.h5") as file:
+        found = {}
+        file.visititems(lambda name, item: found.update({name.split("/")[-1]: item[()]}) if isinstance(item, h5py.Dataset) else None)
+    assert sorted(np.unique(found["block"])) == [0, 1]
+    strain = found["plastic_strain"].ravel()
+    block = found["block"].ravel()
+    assert strain[block == 1].max() > 0
+    assert np.all(strain[block == 0] == 0)
+
+
+@pytest.mark.parametrize("ts", ["centraldifference", "alpha2"])
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart(impakt, tmp_path, ts, ranks):
+    """To the last bit, on as many ranks."""
+    path = layers(tmp_path, "hex8")
+    base = motion(path, "hex8", f"{PLASTIC} -b_ts_type {ts}")
+    whole = impakt(base, ranks=ranks)
+    impakt(f"{base} -time_end 1e-3 -checkpoint {tmp_path}/c.h5", ranks=ranks)
+    rest = impakt(f"{base} -restart {tmp_path}/c.h5", ranks=ranks)
+    for name in ("kinetic", "potential", "plastic_work"):
+        np.testing.assert_array_equal(rest.history[f"body/b/{name}"][-1], whole.history[f"body/b/{name}"][-1])
+    other = impakt(f"{base.replace('-b_skin_yield_stress 2e5', '-b_skin_yield_stress 3e5')} -restart {tmp_path}/c.h5", expect_failure=True)
+    assert "-b_skin_yield_stress" in complaints(other.stderr)[0]
+
+
+def test_stable_step(impakt, tmp_path):
+    """The least of those of the materials, each alone in the whole body."""
+    path = layers(tmp_path, "quad4")
+    steps = {}
+    for name, more in {"soft": "", "stiff": "-b_youngs_modulus 9e7", "both": "-b_skin_youngs_modulus 9e7"}.items():
+        run = impakt(motion(path, "quad4", f"-b_ts_type centraldifference -b_body_view {more}"))
+        steps[name] = float(next(line for line in run.stdout.splitlines() if "stable step" in line).split()[2])
+    assert steps["stiff"] == pytest.approx(steps["soft"] / 3, rel=1e-4)
+    assert steps["stiff"] <= steps["both"] * (1 + 1e-6)
+    assert steps["both"] < 1.4 * steps["stiff"]
+
+
+ERRORS = {
+    "-b_sikn_density 3": "has no block 'sikn'; it has: core, skin, 1, 2",
+    "-b_skin_yield_stress 3": "-b_skin_yield_stress 3 (",
+    "-b_skin_thickness 3": "-b_skin_thickness 3 (",
+    "-b_skin_density -3": "-b_skin_density is -3 kg/m^3; a density must be positive",
+    "-b_skin_material_type rubber": "-b_skin_material_type",
+    "-b_skin_material_type mooney_rivlin -b_element_formulation enhanced": "enhanced with mooney_rivlin",
+    "-b_skin_material_type j2 -b_skin_yield_stress 1 -b_element_formulation reduced": "it keeps no history of plastic flow",
+    "-b_skin_density 3 -b_2_density 4": "in block '2' and in block 'skin' at once",
+}
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+@pytest.mark.parametrize("options", ERRORS)
+def test_errors(impakt, tmp_path, options, ranks):
+    run = impakt(motion(layers(tmp_path, "quad4"), "quad4", options), ranks=ranks, expect_failure=True)
+    assert ERRORS[options] in complaints(run.stderr)[0]
