@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 from cases import SAME, long
-from conftest import complaints
+from messages import check_message
 from solidmeshes import write_blocks
 
 FACES = {"quad4": (12, 4), "tri3": (12, 4), "hex8": (8, 3, 4), "tet4": (6, 2, 4)}
@@ -136,7 +136,7 @@ def test_first_period(impakt, tmp_path):
     assert omega == pytest.approx(low, rel=0.01)  # of a bin of the padded spectrum, 0.01 of 40 s
 
 
-PLASTIC = "-b_skin_material_type j2 -b_skin_yield_stress 2e5 -b_skin_hardening_modulus 1e6 -b_core_material_type neo_hookean"
+PLASTIC = "-b_skin_material_type j2 -b_skin_yield_stress 2e4 -b_skin_hardening_modulus 1e6 -b_core_material_type neo_hookean"
 
 
 @pytest.mark.parametrize("ts", ["centraldifference", "alpha2"])
@@ -154,11 +154,9 @@ def test_fields(impakt, tmp_path):
     options = motion(layers(tmp_path, "quad4"), "quad4", f"{PLASTIC} -output_fields f.h5")
     run = impakt(options)
     with h5py.File(run.folder / "f.h5") as file:
-        found = {}
-        file.visititems(lambda name, item: found.update({name.split("/")[-1]: item[()]}) if isinstance(item, h5py.Dataset) else None)
+        found = {name: file[name]["0020"][()].ravel() for name in ("block", "plastic_strain")}
     assert sorted(np.unique(found["block"])) == [0, 1]
-    strain = found["plastic_strain"].ravel()
-    block = found["block"].ravel()
+    block, strain = found["block"], found["plastic_strain"]
     assert strain[block == 1].max() > 0
     assert np.all(strain[block == 0] == 0)
 
@@ -170,12 +168,12 @@ def test_restart(impakt, tmp_path, ts, ranks):
     path = layers(tmp_path, "hex8")
     base = motion(path, "hex8", f"{PLASTIC} -b_ts_type {ts}")
     whole = impakt(base, ranks=ranks)
-    impakt(f"{base} -time_end 1e-3 -checkpoint {tmp_path}/c.h5", ranks=ranks)
+    impakt(f"{base} -time_end 1e-3 -checkpoint {tmp_path}/c.h5 -checkpoint_interval 10", ranks=ranks)
     rest = impakt(f"{base} -restart {tmp_path}/c.h5", ranks=ranks)
     for name in ("kinetic", "potential", "plastic_work"):
         np.testing.assert_array_equal(rest.history[f"body/b/{name}"][-1], whole.history[f"body/b/{name}"][-1])
-    other = impakt(f"{base.replace('-b_skin_yield_stress 2e5', '-b_skin_yield_stress 3e5')} -restart {tmp_path}/c.h5", expect_failure=True)
-    assert "-b_skin_yield_stress" in complaints(other.stderr)[0]
+    other = impakt(f"{base.replace('-b_skin_yield_stress 2e4', '-b_skin_yield_stress 3e4')} -restart {tmp_path}/c.h5", expect_failure=True)
+    check_message(other, ["-b_skin_yield_stress"])
 
 
 def test_stable_step(impakt, tmp_path):
@@ -194,7 +192,7 @@ ERRORS = {
     "-b_sikn_density 3": "has no block 'sikn'; it has: core, skin, 1, 2",
     "-b_skin_yield_stress 3": "-b_skin_yield_stress 3 (",
     "-b_skin_thickness 3": "-b_skin_thickness 3 (",
-    "-b_skin_density -3": "-b_skin_density is -3 kg/m^3; a density must be positive",
+    "-b_skin_density -3": "-b_skin_density is -3. kg/m^3; a density must be positive",
     "-b_skin_material_type rubber": "-b_skin_material_type",
     "-b_skin_material_type mooney_rivlin -b_element_formulation enhanced": "enhanced with mooney_rivlin",
     "-b_skin_material_type j2 -b_skin_yield_stress 1 -b_element_formulation reduced": "it keeps no history of plastic flow",
@@ -206,4 +204,4 @@ ERRORS = {
 @pytest.mark.parametrize("options", ERRORS)
 def test_errors(impakt, tmp_path, options, ranks):
     run = impakt(motion(layers(tmp_path, "quad4"), "quad4", options), ranks=ranks, expect_failure=True)
-    assert ERRORS[options] in complaints(run.stderr)[0]
+    check_message(run, [ERRORS[options]])
