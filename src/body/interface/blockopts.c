@@ -39,6 +39,7 @@ static PetscBool IsOfMaterial(const KnownOption *option)
   const char *const others[] = {"cross_section", "thickness", "plane_stress", "axisymmetric", "element_formulation"};
 
   if (option->owner != OPTION_OF_BODY || strcmp(option->topic, "materials")) return PETSC_FALSE;
+  if (option->name[0] == '<') return PETSC_FALSE; /* this kind of options itself */
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++)
     if (!strcmp(option->name, others[i])) return PETSC_FALSE;
   return PETSC_TRUE;
@@ -165,7 +166,7 @@ static int CompareNames(const void *a, const void *b)
 PetscErrorCode BodyReadBlocks(Body body)
 {
   BodyOption *options;
-  PetscInt    n, n_blocks = 0;
+  PetscInt    n = 0, n_blocks = 0;
   char       *text, **blocks;
 
   PetscFunctionBegin;

@@ -3,7 +3,8 @@
 import h5py
 import numpy as np
 import pytest
-from cases import SAME, long
+from cases import SAME, long, worst_energy_error
+from conftest import ROOT
 from messages import check_message
 from solidmeshes import write_blocks
 
@@ -45,13 +46,15 @@ KINDS = [
 
 @pytest.mark.parametrize("shape, options", KINDS)
 def test_equal_blocks(impakt, tmp_path, shape, options):
-    """Blocks of one material are the body without blocks, but for the order in which its forces are summed: measured 2e-13 at most."""
+    """Blocks of one material are the body without blocks, but for the order in which its forces are summed: round-off, which steps add up."""
     if "axisymmetric" in options:
         options += " -b_initial_velocity 0,-30*x"
     base = motion(layers(tmp_path, shape), shape, options)
-    plain, blocks = (energies(impakt(base + more)) for more in ("", " -b_core_density 1000 -b_skin_youngs_modulus 1e7"))
-    assert np.abs(plain).max() > 0
-    np.testing.assert_allclose(blocks, plain, rtol=0, atol=1e-10 * np.abs(plain).max())
+    plain, blocks = (impakt(base + more) for more in ("", " -b_core_density 1000 -b_skin_youngs_modulus 1e7"))
+    for name in ("kinetic", "potential"):
+        values = [run.history[f"body/b/{name}"][:] for run in (plain, blocks)]
+        assert values[0].max() > 0
+        np.testing.assert_allclose(values[1], values[0], rtol=0, atol=1e-11 * values[0].max())
 
 
 def test_inheritance(impakt, tmp_path):
@@ -82,7 +85,7 @@ def halves(tmp_path, n):
 @pytest.mark.parametrize("ts", ["centraldifference", "alpha2"])
 def test_wave_between_blocks(impakt, tmp_path, ts):
     """A pulse from impedance 1 to 4 kg/(m^2 s), c = 1 m/s and 2 m/s: particle velocities 2 Z1 / (Z1 + Z2) = 0.4 go on and (Z1 - Z2) / (Z1 + Z2) = -0.6
-    come back. The pulse is 30 elements of 1/400 m wide; measured 0.3 % off by dispersion."""
+    come back. The pulse is 30 elements of 1/400 m wide; measured 0.7 % off at most."""
     pulse = "exp(-((x-0.25)/0.04)^2)"
     run = impakt(
         f"-bodies b -b_dm_plex_filename {halves(tmp_path, 400)} -time_step 5e-4 -time_end 0.5 -b_ts_type {ts} -b_density 1 -b_youngs_modulus 1 "
@@ -99,7 +102,7 @@ def test_wave_between_blocks(impakt, tmp_path, ts):
 @pytest.mark.parametrize("shape", ["quad4", "hex8"])
 def test_layered_cantilever(impakt, tmp_path, shape):
     """Skins ten times as stiff as the core: the deflection under an end load is F L^3 / (3 sum E I), with sum E I of the layers about the middle, and
-    of shear F L / (k G A), 1 % of it at length/height 20, which the bound leaves for the profile of shear in layers."""
+    of shear some F L / (k G A), about 1 % of it at length/height 20: measured 1.0095 times that of bending alone."""
     three = len(FACES[shape]) - 2
     faces = (80, 2, 8) if three else (80, 8)
     across = 2 if three else 1
@@ -205,3 +208,44 @@ ERRORS = {
 def test_errors(impakt, tmp_path, options, ranks):
     run = impakt(motion(layers(tmp_path, "quad4"), "quad4", options), ranks=ranks, expect_failure=True)
     check_message(run, [ERRORS[options]])
+
+
+def test_plate_mesh(tmp_path):
+    """The file that the options name is what write_blocks() writes."""
+    skin = write_blocks(tmp_path / "plate.msh", "quad4", (40, 6), (0.4, 0.03), lambda x: int(abs(x[1] - 0.015) > 0.01), ["core", "skin"])
+    assert skin.read_text() == (ROOT / "tests/meshes/layered/plate.msh").read_text()
+
+
+def test_layered_plate(impakt):
+    """The case of the options file: the skin flows and the energy with plastic work is kept; measured 0.041 % worst. On 3 ranks the same."""
+    case = "-options_file options/layered-plate.opts -time_end 2e-4"
+    one, three = impakt(case), impakt(case, ranks=3)
+    plate = one.summary["bodies"]["plate"]
+    assert plate["blocks"]["skin"]["material"] == "j2"
+    assert plate["blocks"]["skin"]["mass"] == pytest.approx(0.4 * 0.01 * 2700, rel=1e-12)
+    assert plate["blocks"]["(rest)"]["mass"] == pytest.approx(0.4 * 0.02 * 200, rel=1e-12)
+    assert plate["plastic_work"] > 100
+    assert worst_energy_error(one.summary) < 1e-3
+    for name in ("kinetic", "potential", "plastic_work"):
+        values = [run.history[f"body/plate/{name}"][:] for run in (one, three)]
+        np.testing.assert_allclose(values[1], values[0], rtol=0, atol=1e-6 * np.abs(values[0]).max())
+
+
+@pytest.mark.parametrize("contact", ["schwarz", "penalty"])
+def test_equal_blocks_in_contact(impakt, tmp_path, contact):
+    """Blocks of one material in contact are the body without blocks: impedances and penalty parameters are its own."""
+    lines = (ROOT / "options/layered-plate.opts").read_text().splitlines()
+    plain = tmp_path / "plain.opts"
+    plain.write_text("\n".join(line for line in lines if not line.strip().startswith("-skin_")))
+    base = f"-options_file {plain} -time_end 4e-5 -contact_type {contact}"
+    runs = [impakt(f"{base}{more}") for more in ("", " -plate_skin_density 200")]
+    for body in ("block", "plate"):
+        for name in ("kinetic", "potential"):
+            values = [run.history[f"body/{body}/{name}"][:] for run in runs]
+            np.testing.assert_allclose(values[1], values[0], rtol=0, atol=SAME * np.abs(values[0]).max())
+
+
+def test_exact_wants_one_material(impakt, tmp_path):
+    options = motion(layers(tmp_path, "quad4"), "quad4", "-b_skin_density 7 -exact characteristics")
+    run = impakt(options, expect_failure=True)
+    check_message(run, ["-exact"])
