@@ -72,7 +72,7 @@ static PetscErrorCode FindMeaning(const char line[], OptionOwner owner, const Kn
     const char  *end = owner == OPTION_OF_RUN && known[i].owner != OPTION_OF_RUN && at > whole ? name + 1 + at - whole : name + 1;
     PetscBool    same;
 
-    if (owner != OPTION_OF_RUN && known[i].owner == OPTION_OF_RUN) continue;
+    if (!fixed || (owner != OPTION_OF_RUN && known[i].owner == OPTION_OF_RUN)) continue; /* not those of blocks, whose names come first */
     if (owner == OPTION_OF_RUN && known[i].owner != OPTION_OF_RUN && (end == name + 1 || end[-1] != '_')) continue;
     same = fixed < whole ? (PetscBool)(at > fixed && !strncmp(name + 1, known[i].name, fixed))
                          : (PetscBool)((size_t)(name + length - end) == whole && !strncmp(end, known[i].name, whole));

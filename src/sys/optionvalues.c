@@ -17,7 +17,7 @@
 static PetscErrorCode Matches(const char option[], const KnownOption *known, PetscBool *matches)
 {
   char        middle[128];
-  const char *part = strchr(known->name, '<'); /* what follows is the name of a surface */
+  const char *part = strchr(known->name, '<'); /* what follows is the name of a surface, or of a block */
   size_t      length, end;
 
   PetscFunctionBegin;
@@ -25,6 +25,8 @@ static PetscErrorCode Matches(const char option[], const KnownOption *known, Pet
     PetscCall(PetscStrcasecmp(option, known->name, matches));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  *matches = PETSC_FALSE;
+  if (part == known->name) PetscFunctionReturn(PETSC_SUCCESS); /* of a block: it ends as an option of the body does, which is found instead */
   PetscCall(PetscSNPrintf(middle, sizeof(middle), "_%s", known->name));
   if (part) middle[part - known->name + 1] = 0;
   PetscCall(PetscStrlen(middle, &length));
