@@ -73,6 +73,7 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
   PetscCall(PetscArraycpy(penalty->multiplier, contact->end.force, contact->rows.n));
   PetscCall(PetscArrayzero(augmentation.last, contact->rows.n));
   for (PetscInt k = 0; k < penalty->augmentation_max_it; k++) {
+    penalty->again = (PetscBool)(k > 0);
     if (k) PetscCall(AugmentationTakeForces(contact, &augmentation, penalty->multiplier));
     PetscCall(PenaltySolve(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);

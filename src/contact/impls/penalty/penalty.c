@@ -136,13 +136,12 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 
   PetscFunctionBegin;
   (void)snes;
-  (void)it;
   (void)xnorm;
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude ||
-           penalty->residual <= penalty->round_off)
+  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->round_off ||
+           (penalty->residual <= penalty->rtol * penalty->magnitude && (it || !penalty->again)))
     *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

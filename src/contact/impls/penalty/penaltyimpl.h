@@ -29,6 +29,7 @@ typedef struct {
   /* augmented Lagrangian */
   PetscReal augmentation_tolerance; /* [m] */
   PetscInt  augmentation_max_it;
+  PetscBool again; /* a round that is to make gaps smaller than the last has: forces that are as they were will not do */
 } Penalty;
 
 PETSC_INTERN PetscErrorCode PenaltyReadParameter(Contact);
