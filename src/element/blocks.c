@@ -7,10 +7,10 @@
 #include <impakt/private/elementimpl.h>
 
 struct _n_ElementBlocks {
-  PetscInt   n;
-  Material  *materials;
-  char     **formulations; /* NULL: the default of the material */
-  PetscInt  *block;        /* of each element */
+  PetscInt  n;
+  Material *materials;
+  char    **formulations; /* NULL: the default of the material */
+  PetscInt *block;        /* of each element */
   /* set-up */
   Element   *parts;        /* the elements of each block */
   PetscInt **numbers;      /* of the elements of each, ascending */
@@ -55,8 +55,8 @@ PetscErrorCode ElementSetBlocks(Element element, PetscInt n, const Material mate
   element->blocks = blocks;
   blocks->n       = n;
   element->count  = count;
-  PetscCall(PetscCalloc6(n, &blocks->materials, n, &blocks->formulations, n, &blocks->parts, n, &blocks->numbers, n, &blocks->connectivity, n,
-                         &blocks->first_slot));
+  PetscCall(PetscCalloc6(n, &blocks->materials, n, &blocks->formulations, n, &blocks->parts, n, &blocks->numbers, n, &blocks->connectivity,
+                         n, &blocks->first_slot));
   PetscCall(PetscMalloc2(count, &blocks->block, count, &blocks->local));
   PetscCall(PetscArraycpy(blocks->block, block, count));
   for (PetscInt k = 0; k < n; k++) {
@@ -316,7 +316,7 @@ static PetscErrorCode SetUpHistory(Element element)
 /* ElementSetUpBlocks - the part of ElementSetUp() that makes the elements of each block */
 PetscErrorCode ElementSetUpBlocks(Element element, const PetscReal coordinates[])
 {
-  const ElementBlocks blocks  = element->blocks;
+  const ElementBlocks blocks = element->blocks;
   PetscInt           *counts, largest = 0;
   PetscBool           same = PETSC_TRUE;
 

@@ -50,10 +50,11 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
   PetscCall(PetscObjectGetName((PetscObject)body, &bar->name));
   PetscCall(BodyGetMaterial(body, &material));
   PetscCall(BodyGetBlocks(body, &blocks, NULL, NULL));
-  PetscCheck(!blocks, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-exact: the exact solutions are those of bars of one material, and body '%s' has blocks with materials of their own; leave the "
-             "option out",
-             ((PetscObject)body)->name);
+  PetscCheck(
+      !blocks, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "-exact: the exact solutions are those of bars of one material, and body '%s' has blocks with materials of their own; leave the "
+      "option out",
+      ((PetscObject)body)->name);
   PetscCall(MaterialIsLinear(material, &linear));
   PetscCheck(linear, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-exact: the exact solutions are those of linear elastic bars, and body '%s' is nonlinear; leave the option out, or choose "

@@ -86,7 +86,8 @@ static const KnownOption options[] = {
      "linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook",
      "constitutive model, default linear_elastic"},
     {"materials", OPTION_OF_BODY, "<block>_material_type", "type",
-     "of a block of the mesh, by its name in a Gmsh or Exodus II file or its number: a model of its own; so with density and all constants below, "
+     "of a block of the mesh, by its name in a Gmsh or Exodus II file or its number: a model of its own; so with density and all constants "
+     "below, "
      "but for those of sections and elements. What a block does not say is as the body says"},
     {"materials", OPTION_OF_BODY, "density", "rho", "mass density [kg/m^3]"},
     {"materials", OPTION_OF_BODY, "youngs_modulus", "E", "Young's modulus [Pa]"},

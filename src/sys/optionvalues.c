@@ -26,7 +26,8 @@ static PetscErrorCode Matches(const char option[], const KnownOption *known, Pet
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   *matches = PETSC_FALSE;
-  if (part == known->name) PetscFunctionReturn(PETSC_SUCCESS); /* of a block: it ends as an option of the body does, which is found instead */
+  if (part == known->name)
+    PetscFunctionReturn(PETSC_SUCCESS); /* of a block: it ends as an option of the body does, which is found instead */
   PetscCall(PetscSNPrintf(middle, sizeof(middle), "_%s", known->name));
   if (part) middle[part - known->name + 1] = 0;
   PetscCall(PetscStrlen(middle, &length));

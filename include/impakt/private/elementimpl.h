@@ -46,12 +46,12 @@ struct _ElementOps {
    [((s / 8 * points + g) * n + c) * 8 + s % 8] with s = ElementHistorySlot(), which is e unless there are several materials; aligned to 64
    bytes, with room for a whole batch at the end */
 typedef struct {
-  PetscInt         n;      /* numbers of a point; 0: the material has none */
-  PetscInt         points; /* of integration, of an element */
+  PetscInt         n;       /* numbers of a point; 0: the material has none */
+  PetscInt         points;  /* of integration, of an element */
   PetscInt         padding; /* of several materials: elements that there has to be room for beside those that there are */
-  const PetscReal *start;  /* at the start of the step; NULL: as if the material were virgin, and nothing irreversible happened */
-  PetscReal       *end;    /* becomes that at the end of the step with each internal force; NULL: it is not wanted */
-  PetscReal        step;   /* [s]; negative: nothing flows */
+  const PetscReal *start;   /* at the start of the step; NULL: as if the material were virgin, and nothing irreversible happened */
+  PetscReal       *end;     /* becomes that at the end of the step with each internal force; NULL: it is not wanted */
+  PetscReal        step;    /* [s]; negative: nothing flows */
 } ElementHistory;
 
 struct _p_Element {

@@ -26,8 +26,8 @@ static PetscErrorCode CollectOptions(const char prefix[], char text[], PetscInt 
   *n = 0;
   while (OptionsTextNext(&text, &name, &value)) {
     if (strncasecmp(name + 1, prefix, length) || !name[1 + length]) continue;
-    (*options)[*n].full    = name;
-    (*options)[*n].name    = name + 1 + length;
+    (*options)[*n].full      = name;
+    (*options)[*n].name      = name + 1 + length;
     (*options)[(*n)++].value = value;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -104,7 +104,8 @@ static PetscErrorCode CheckBlock(Body body, const BodyOption *option, const char
 
 /* What the material of a block read counts as read among the options of the run: its own options, and those of the body that it took
    their place for. What it did not read is left, for the check of unread options. */
-static PetscErrorCode NoteUsed(PetscOptions options, const char prefix[], const char of_block[], PetscInt n, const BodyOption body_options[])
+static PetscErrorCode NoteUsed(PetscOptions options, const char prefix[], const char of_block[], PetscInt n,
+                               const BodyOption body_options[])
 {
   const size_t length = strlen(of_block) - strlen(prefix);
 
@@ -162,7 +163,8 @@ static int CompareNames(const void *a, const void *b)
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* BodyReadBlocks - the materials of blocks of the mesh that have options, in the order of their names; with the mesh, before its elements */
+/* BodyReadBlocks - the materials of blocks of the mesh that have options, in the order of their names; with the mesh, before its elements
+ */
 PetscErrorCode BodyReadBlocks(Body body)
 {
   BodyOption *options;

@@ -40,9 +40,10 @@ PetscErrorCode BodySetBlockMaterial(Body body, const char block[], Material mate
   PetscAssertPointer(block, 2);
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 3);
   blocks = &body->model.blocks;
-  PetscCheck(!body->mesh.positions && !blocks->of_cell, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
-             "Body '%s' has its elements already: call BodySetBlockMaterial() before BodySetFromOptions() and functions that look at the mesh",
-             body->hdr.name);
+  PetscCheck(
+      !body->mesh.positions && !blocks->of_cell, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+      "Body '%s' has its elements already: call BodySetBlockMaterial() before BodySetFromOptions() and functions that look at the mesh",
+      body->hdr.name);
   for (PetscInt k = 0; k < blocks->n; k++) {
     PetscBool same;
 
@@ -120,7 +121,7 @@ static PetscErrorCode MarkCells(Body body)
 /* What the history of the body belongs to */
 static PetscErrorCode NameMaterials(Body body)
 {
-  BodyBlocks *blocks = &body->model.blocks;
+  BodyBlocks *blocks     = &body->model.blocks;
   char        text[1024] = "";
 
   PetscFunctionBegin;
@@ -164,9 +165,10 @@ PetscErrorCode BodySetUpBlocks(Body body, PetscBool *own)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (others) {
-    PetscCheck(body->model.material, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
-               "Body '%s' has cells in no block that has a material, and no material itself: call BodySetMaterial() or BodySetFromOptions()",
-               body->hdr.name);
+    PetscCheck(
+        body->model.material, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+        "Body '%s' has cells in no block that has a material, and no material itself: call BodySetMaterial() or BodySetFromOptions()",
+        body->hdr.name);
     for (PetscInt c = 0; c < cend - cstart; c++)
       if (blocks->of_cell[c] < 0) blocks->of_cell[c] = blocks->given;
     PetscCall(PetscStrallocpy("", &blocks->names[blocks->given]));

@@ -31,25 +31,26 @@ typedef struct {
 
 /* Blocks of the mesh with materials of their own, and last, where there are cells in none of them, one with the body's */
 typedef struct {
-  PetscInt  n, given;      /* all; those that have been named */
-  char    **names;         /* the last is empty where it is the body's own */
-  Material *materials;
-  PetscReal *mass;         /* of each, once there are elements [kg] */
-  PetscInt *of_cell;       /* the block of each cell of this rank; NULL until they have been looked for */
-  char     *material_name; /* of all together: what a history belongs to */
+  PetscInt   n, given; /* all; those that have been named */
+  char     **names;    /* the last is empty where it is the body's own */
+  Material  *materials;
+  PetscReal *mass;          /* of each, once there are elements [kg] */
+  PetscInt  *of_cell;       /* the block of each cell of this rank; NULL until they have been looked for */
+  char      *material_name; /* of all together: what a history belongs to */
 } BodyBlocks;
 
 /* What internal forces come from */
 typedef struct {
-  Element   element;
-  Material  material;
-  Material  surface_material;    /* of the elements with contact nodes the stiffest, before they are known that of all; no reference; NULL: the body's */
-  BodyBlocks blocks;             /* n is 0 where the body has one material */
-  PetscBool linear;              /* the stiffness is constant */
-  Element   linearized_element;  /* NULL until BodyPrepareLinearized() */
-  PetscBool linearized;          /* forces are those of the linearized element at present */
-  Mat       stiffness;           /* of the undeformed body; NULL until BodyGetStiffness() */
-  PetscReal least_inverting;     /* energy of a linear body with an element inside out, at least; 0 until BodyGetInverted() [J] */
+  Element  element;
+  Material material;
+  Material surface_material; /* of the elements with contact nodes the stiffest, before they are known that of all; no reference; NULL: the
+                                body's */
+  BodyBlocks blocks;         /* n is 0 where the body has one material */
+  PetscBool  linear;         /* the stiffness is constant */
+  Element    linearized_element; /* NULL until BodyPrepareLinearized() */
+  PetscBool  linearized;         /* forces are those of the linearized element at present */
+  Mat        stiffness;          /* of the undeformed body; NULL until BodyGetStiffness() */
+  PetscReal  least_inverting;    /* energy of a linear body with an element inside out, at least; 0 until BodyGetInverted() [J] */
 } BodyModel;
 
 typedef struct {

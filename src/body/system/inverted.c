@@ -48,12 +48,13 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscR
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
   PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
   PetscCall(MaterialGetDensity(body->model.material, &density));
-  /* nothing is known of other formulations and of several materials, and volumes of rings grow with their radius: their elements are looked at as soon as they store
-   * something */
+  /* nothing is known of other formulations and of several materials, and volumes of rings grow with their radius: their elements are looked
+   * at as soon as they store something */
   PetscCall(ElementGetFormulation(body->model.element, &formulation));
   PetscCall(PetscStrcmp(formulation, ELEMENT_FULL, &full)); /* NULL where blocks differ in it */
-  *energy = !full || body->model.element->blocks || body->model.element->axisymmetric ? PETSC_REAL_MIN
-                                                       : 0.5 * modulus * shape->part * least / sum * body->mass.total / density;
+  *energy = !full || body->model.element->blocks || body->model.element->axisymmetric
+                ? PETSC_REAL_MIN
+                : 0.5 * modulus * shape->part * least / sum * body->mass.total / density;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

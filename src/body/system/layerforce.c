@@ -15,9 +15,9 @@ struct _n_LayerElements {
   char      *memory;  /* of the history that these elements begin the substep with, NULL where the material has none */
   PetscReal *history;
   PetscInt   history_size; /* numbers of that */
-  PetscInt   epoch;  /* of the substep */
-  PetscInt   n_near; /* of contact nodes and of the nodes of these elements, on whatever rank the elements are */
-  PetscInt  *near;   /* owned ones, rank numbering */
+  PetscInt   epoch;        /* of the substep */
+  PetscInt   n_near;       /* of contact nodes and of the nodes of these elements, on whatever rank the elements are */
+  PetscInt  *near;         /* owned ones, rank numbering */
 };
 
 /* The number of each dof of this rank's nodes, ghosts too, within the layer; -1 for others */
@@ -168,8 +168,7 @@ static void PrepareHistory(Body body)
   LayerElements layer = body->layer.elements;
 
   if (!layer->history) return;
-  if (layer->epoch != BodyHistoryGetEpoch(body))
-    BodyHistoryGather(body, PETSC_FALSE, layer->element, layer->of_body, layer->history);
+  if (layer->epoch != BodyHistoryGetEpoch(body)) BodyHistoryGather(body, PETSC_FALSE, layer->element, layer->of_body, layer->history);
   layer->epoch                  = BodyHistoryGetEpoch(body);
   layer->element->history.start = layer->history;
   layer->element->history.end   = NULL;
