@@ -1,6 +1,6 @@
 /*
-   Elements of several materials: each block of the mesh has elements of its own, with one material, whose loops are those of a body with that
-   material alone. What is asked of all elements goes to each of them in turn, and what is asked of one to the block that it belongs to.
+   Elements of several materials: each block of the mesh has elements of its own, with one material, whose loops are those of a body with
+   that material alone. What is asked of all elements goes to each of them in turn, and what is asked of one to the block that it is in.
 
    Elements keep their numbers. Their history lies block by block, each from a whole batch on: see ElementHistorySlot().
 */
