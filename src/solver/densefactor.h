@@ -3,9 +3,11 @@
 #include <petscsys.h>
 #include <checkpoint/checkpoint.h>
 
-/* A matrix of order `n` by columns, without gaps between them; from DenseFactorCompute() on, its factors */
+/* A matrix of order `n` by columns, without gaps between them; from DenseFactorCompute() on, its factors. It may have diagonal blocks,
+   outside which its entries are zero: each is factored by itself. */
 typedef struct {
-  PetscInt      n, room; /* order; the largest order that there is room for */
+  PetscInt      n, room;          /* order; the largest order that there is room for */
+  PetscInt      n_blocks, *begin; /* where each diagonal block begins, and where the last ends */
   PetscBool     factored;
   PetscScalar  *values;
   PetscBLASInt *pivots;
@@ -13,6 +15,7 @@ typedef struct {
 } DenseFactor;
 
 PETSC_INTERN PetscErrorCode DenseFactorResize(DenseFactor *, PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode DenseFactorSetBlocks(DenseFactor *, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode DenseFactorCompute(DenseFactor *, PetscBool *);
 PETSC_INTERN PetscErrorCode DenseFactorSolve(const DenseFactor *, PetscScalar[]);
 PETSC_INTERN PetscErrorCode DenseFactorVisit(DenseFactor *, PetscInt, Checkpoint);

@@ -91,6 +91,45 @@ static void tells_a_matrix_that_is_singular_but_for_round_off(void **state)
   ok(DenseFactorDestroy(&factor));
 }
 
+/* Blocks of 3, 0, 1 and 5 rows are solved for as matrices by themselves, and what lies outside does not count; one singular block is told
+ */
+static void diagonal_blocks_are_factored_by_themselves(void **state)
+{
+  static const PetscInt orders[] = {3, 0, 1, 5};
+  DenseFactor           factor   = {0};
+  PetscBool             singular;
+
+  (void)state;
+  for (PetscInt bad = 0; bad < 2; bad++) {
+    PetscScalar solution[9], x[9];
+    PetscInt    begin = 0;
+
+    ok(DenseFactorResize(&factor, 9, MOST));
+    ok(DenseFactorSetBlocks(&factor, 4, orders));
+    for (PetscInt e = 0; e < 81; e++) factor.values[e] = 1e30;
+    for (PetscInt j = 0; j < 9; j++) solution[j] = 1 - 0.3 * j;
+    for (PetscInt k = 0; k < 4; begin += orders[k++])
+      for (PetscInt i = 0; i < orders[k]; i++) {
+        x[begin + i] = 0;
+        for (PetscInt j = 0; j < orders[k]; j++) {
+          const PetscScalar value = bad && k == 3 ? 1 : entry(orders[k], i, j);
+
+          factor.values[(begin + j) * 9 + begin + i] = value;
+          x[begin + i] += value * solution[begin + j];
+        }
+      }
+    ok(DenseFactorCompute(&factor, &singular));
+    assert_int_equal(singular, bad);
+    if (bad) continue;
+    ok(DenseFactorSolve(&factor, x));
+    for (PetscInt j = 0; j < 9; j++) near(x[j], solution[j], 1e-13); /* round-off of numbers up to 6 */
+  }
+  ok(DenseFactorResize(&factor, 8, MOST));
+  refused(PETSC_ERR_ARG_SIZ, "9 rows in all do not make a matrix of order 8", DenseFactorSetBlocks(&factor, 4, orders));
+  solve(&factor, 4);
+  ok(DenseFactorDestroy(&factor));
+}
+
 static void a_part_of_a_larger_matrix_is_multiplied_with(void **state)
 {
   const PetscScalar A[] = {1, 2, 100, 3, 4, 100}, x[] = {10, -1};
@@ -109,6 +148,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(solves_whatever_its_order),
       cmocka_unit_test(tells_a_singular_matrix),
       cmocka_unit_test(tells_a_matrix_that_is_singular_but_for_round_off),
+      cmocka_unit_test(diagonal_blocks_are_factored_by_themselves),
       cmocka_unit_test(a_part_of_a_larger_matrix_is_multiplied_with),
   };
 

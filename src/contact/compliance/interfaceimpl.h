@@ -18,6 +18,10 @@ struct _n_InterfaceOperator {
   PetscInt  n, n_known, room;
   PetscInt *rows;
   PetscInt *body_rows, *body_places; /* work space: those that concern a body, by its own numbers; their places in the list */
+  /* groups of the rows that are solved for, between which S is zero: each row's, and how many rows each has */
+  PetscInt   n_groups, *group, *group_rows;
+  PetscInt  *body_group; /* work space, per body */
+  PetscBool *has_rows;   /* per body: it answers to forces on some of the listed rows */
   /* dense: each map's matrices, n x n by columns for each level, where they have been assembled */
   PetscBool    dense;
   PetscScalar *matrices[INTERFACE_MAPS];
@@ -25,8 +29,9 @@ struct _n_InterfaceOperator {
   PetscBool    assembled[INTERFACE_MAPS];
   DenseFactor  factor; /* of S at the first level with the diagonal, on the rows that are `in` */
   PetscBool    factored;
-  PetscInt     n_in, *places; /* which of the listed rows these are */
+  PetscInt     n_in, *places; /* which of the listed rows these are, group by group */
   PetscScalar *listed[2];     /* work space */
+  PetscScalar *grouped;       /* work space, in the order of places */
   /* rows of this rank */
   InterfaceMark  *marks;
   PetscScalar    *diagonal; /* added to that of S, less than 0 on rows that are not solved for at present */
@@ -41,6 +46,7 @@ struct _n_InterfaceOperator {
 
 PETSC_INTERN PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator, PetscInt);
 PETSC_INTERN PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator, PetscInt, PetscInt, PetscInt, PetscInt *);
+PETSC_INTERN PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);

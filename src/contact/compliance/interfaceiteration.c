@@ -61,13 +61,13 @@ static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = M x on the rows that are solved for, zero on the others; x counts on the former alone */
+/* y = M x on the rows that are solved for, zero on the others; x counts on the former alone. Bodies without such rows add nothing. */
 PetscErrorCode InterfaceOperatorApply(InterfaceOperator op, InterfaceMap map, Vec x, Vec y)
 {
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(y));
   for (PetscInt b = 0; b < op->contact->n_bodies; b++)
-    if (op->feels[b]) PetscCall(ApplyBody(op, map, b, x, y));
+    if (op->has_rows[b]) PetscCall(ApplyBody(op, map, b, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,7 +11,8 @@ PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings 
   op->contact  = contact;
   op->settings = *settings;
   op->levels   = 1;
-  PetscCall(PetscCalloc3(contact->rows.n, &op->marks, contact->rows.n, &op->diagonal, contact->n_bodies, &op->feels));
+  PetscCall(PetscCalloc5(contact->rows.n, &op->marks, contact->rows.n, &op->diagonal, contact->n_bodies, &op->feels, contact->n_bodies,
+                         &op->body_group, contact->n_bodies, &op->has_rows));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
   if (settings->direct) PetscCall(InterfaceDirectCreate(op, &op->direct));
   if (contact->rows.n_all > PetscMin(settings->few, settings->dense_limit)) PetscCall(InterfaceOperatorCreateIterative(op));
@@ -26,8 +27,9 @@ PetscErrorCode InterfaceOperatorDestroy(InterfaceOperator *operator)
   PetscFunctionBegin;
   if (!op) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&op->matrix));
-  PetscCall(PetscFree3(op->marks, op->diagonal, op->feels));
+  PetscCall(PetscFree5(op->marks, op->diagonal, op->feels, op->body_group, op->has_rows));
   PetscCall(PetscFree6(op->rows, op->body_rows, op->body_places, op->places, op->listed[0], op->listed[1]));
+  PetscCall(PetscFree3(op->group, op->group_rows, op->grouped));
   for (PetscInt m = 0; m < INTERFACE_MAPS; m++) PetscCall(PetscFree(op->matrices[m]));
   PetscCall(DenseFactorDestroy(&op->factor));
   PetscCall(InterfaceOperatorDestroyIterative(op));
@@ -46,6 +48,7 @@ PetscErrorCode InterfaceOperatorSetMatrix(InterfaceOperator op, Mat matrix)
   op->matrix   = matrix;
   op->factored = PETSC_FALSE;
   for (PetscInt m = 0; m < INTERFACE_MAPS; m++) op->assembled[m] = PETSC_FALSE;
+  PetscCall(InterfaceOperatorFindGroups(op));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,7 +124,7 @@ PetscErrorCode InterfaceOperatorAssemble(InterfaceOperator op, InterfaceMap map,
   PetscCall(PetscArrayzero(matrix, op->n * op->n));
   if (op->matrix) PetscCall(AssembleFromMatrix(op, matrix));
   for (PetscInt b = 0; b < op->contact->n_bodies && !op->matrix; b++)
-    if (op->feels[b]) PetscCall(AddBody(op, map, b, level, matrix));
+    if (op->has_rows[b]) PetscCall(AddBody(op, map, b, level, matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -167,6 +170,27 @@ PetscErrorCode InterfaceOperatorGather(InterfaceOperator op, const PetscScalar m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lists the places of the rows that are in, those with a diagonal of 0 or more, group by group, and tells the factor how many each has */
+static PetscErrorCode ListPlaces(InterfaceOperator op, const PetscScalar diagonal[])
+{
+  PetscInt *next = op->body_rows, *in = op->body_places; /* work space that is free here */
+  PetscInt  begin = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt g = 0; g < op->n_groups; g++) in[g] = 0;
+  for (PetscInt i = 0; i < op->n; i++) in[op->group[i]] += PetscRealPart(diagonal[i]) >= 0;
+  for (PetscInt g = 0; g < op->n_groups; g++) {
+    next[g] = begin;
+    begin += in[g];
+  }
+  op->n_in = begin;
+  for (PetscInt i = 0; i < op->n; i++)
+    if (PetscRealPart(diagonal[i]) >= 0) op->places[next[op->group[i]]++] = i;
+  PetscCall(DenseFactorResize(&op->factor, op->n_in, op->contact->rows.n_all));
+  PetscCall(DenseFactorSetBlocks(&op->factor, op->n_groups, in));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* From now on S is solved on the rows of this rank that are `in` (NULL: all that are to be solved for), with `diagonal` (NULL: zero) added
    to its own: the compliance of springs between both sides */
 static PetscErrorCode Factor(InterfaceOperator op, const PetscBool in[], const PetscReal diagonal[])
@@ -183,10 +207,7 @@ static PetscErrorCode Factor(InterfaceOperator op, const PetscBool in[], const P
   PetscCall(MakeMatrices(op, INTERFACE_GAP));
   S = op->matrices[INTERFACE_GAP];
   PetscCall(InterfaceOperatorGather(op, op->diagonal, listed));
-  op->n_in = 0;
-  for (PetscInt i = 0; i < op->n; i++)
-    if (PetscRealPart(listed[i]) >= 0) op->places[op->n_in++] = i;
-  PetscCall(DenseFactorResize(&op->factor, op->n_in, op->contact->rows.n_all));
+  PetscCall(ListPlaces(op, listed));
   for (PetscInt j = 0; j < op->n_in; j++)
     for (PetscInt i = 0; i < op->n_in; i++)
       op->factor.values[j * op->n_in + i] = S[op->places[j] * op->n + op->places[i]] + (i == j ? listed[op->places[i]] : 0);
@@ -213,14 +234,10 @@ PetscErrorCode InterfaceOperatorSolveListed(InterfaceOperator op, PetscScalar x[
 {
   PetscFunctionBegin;
   if (!op->factored) PetscCall(InterfaceOperatorFactor(op, NULL, NULL));
-  if (op->n_in == op->n) {
-    PetscCall(DenseFactorSolve(&op->factor, x));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  /* places ascend */
-  for (PetscInt k = 0; k < op->n_in; k++) x[k] = x[op->places[k]];
-  PetscCall(DenseFactorSolve(&op->factor, x));
-  for (PetscInt i = op->n - 1, k = op->n_in - 1; i >= 0; i--) x[i] = k >= 0 && op->places[k] == i ? x[k--] : 0;
+  for (PetscInt k = 0; k < op->n_in; k++) op->grouped[k] = x[op->places[k]];
+  PetscCall(DenseFactorSolve(&op->factor, op->grouped));
+  PetscCall(PetscArrayzero(x, op->n));
+  for (PetscInt k = 0; k < op->n_in; k++) x[op->places[k]] = op->grouped[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -325,6 +342,7 @@ PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoin
     op->dense_flops   = flops[2];
   }
   PetscCall(CheckpointVisitInts(checkpoint, "rows", op->n_known, op->rows));
+  if (loads) PetscCall(InterfaceOperatorFindGroups(op));
   PetscCall(CheckpointVisitInts(checkpoint, "places", op->n_in, op->places));
   PetscCall(CheckpointVisitBytes(checkpoint, "marks", (size_t)mine * sizeof(*op->marks), op->marks));
   PetscCall(CheckpointVisitReals(checkpoint, "diagonal", mine, op->diagonal));

@@ -1,15 +1,20 @@
 /* The rows of S, and whether its matrices are dense on them. */
 #include "interfaceimpl.h"
 
+/* Groups from which on small dense blocks are preferred to sparse factors of all, which rows that come and go would have made again */
+#define MANY_GROUPS 8
+
 /* Room for n listed rows */
 PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
 {
   PetscFunctionBegin;
   if (n <= op->room) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree6(op->rows, op->body_rows, op->body_places, op->places, op->listed[0], op->listed[1]));
+  PetscCall(PetscFree3(op->group, op->group_rows, op->grouped));
   op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->rows.n_all));
   PetscCall(PetscMalloc6(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->body_places, op->room, &op->places, op->room,
                          &op->listed[0], op->room, &op->listed[1]));
+  PetscCall(PetscMalloc3(op->room, &op->group, op->room, &op->group_rows, op->room, &op->grouped));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,7 +41,7 @@ static PetscErrorCode ListKnownRows(InterfaceOperator op, PetscInt b, PetscInt *
 {
   PetscFunctionBegin;
   *n = 0;
-  if (!op->feels[b]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!op->has_rows[b]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(InterfaceOperatorListBodyRows(op, b, 0, op->n, n));
   PetscCall(InterfaceOperatorListBodyRows(op, b, op->n, op->n_known, n));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -47,12 +52,14 @@ static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, 
 {
   PetscFunctionBegin;
   *product = 0;
-  *dense   = DenseFactorFlops(op->n);
+  *dense   = 0;
+  for (PetscInt g = 0; g < op->n_groups; g++) *dense += DenseFactorFlops(op->group_rows[g]);
   for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
     PetscLogDouble apply, extend;
     PetscInt       n;
 
     PetscCall(ListKnownRows(op, b, &n));
+    if (!n) continue;
     PetscCall(BodyGetComplianceFlops(op->contact->bodies[b], n, op->body_rows, &apply, &extend));
     if (op->feels[b]) *product += apply;
     *dense += extend;
@@ -72,7 +79,7 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
   op->dense_flops = 0;
   op->dense       = (PetscBool)(size <= op->settings.dense_limit);
   if (!op->dense || size <= op->settings.few || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
-  if (InterfaceIsDirect(op)) {
+  if (InterfaceIsDirect(op) && op->n_groups < MANY_GROUPS) {
     op->dense = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -85,6 +92,7 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
   if (substeps) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CountFlops(op, &op->product_flops, &op->dense_flops));
   op->dense = (PetscBool)(op->dense_flops <= op->settings.at_once * op->product_flops || op->spent >= op->dense_flops);
+  if (InterfaceIsDirect(op) && !op->dense) op->dense_flops = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,13 +121,14 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   next[INTERFACE_KNOWN]  = op->n;
   for (PetscInt i = 0; i < contact->rows.n_all; i++)
     if (contact->ranks.all_active[i]) op->rows[next[contact->ranks.all_active[i]]++] = i;
+  PetscCall(InterfaceOperatorFindGroups(op));
   PetscCall(ChooseDense(op));
   if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt n;
 
     PetscCall(ListKnownRows(op, b, &n));
-    PetscCall(BodyExtendCompliance(contact->bodies[b], n, op->body_rows));
+    if (n) PetscCall(BodyExtendCompliance(contact->bodies[b], n, op->body_rows));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

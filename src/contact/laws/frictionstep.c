@@ -5,6 +5,7 @@
    is not exact, and both are repeated until what rows open by is what S has told.
 */
 #include "friction.h"
+#include <contact/compliance/augmentation.h>
 #include <contact/compliance/forces.h>
 #include <contact/compliance/interfaceoperator.h>
 #include <checkpoint/checkpoint.h>
@@ -33,6 +34,7 @@ typedef struct {
   PetscBool              has_springs;
   PetscReal             *flexibility; /* [m/N] */
   PetscReal             *multiplier;  /* [N] */
+  PetscReal             *change;      /* work space of augmentations, a number for each row */
 } FrictionStep;
 
 /* Stiffness of springs from the areas of the rows as they are */
@@ -379,17 +381,19 @@ static PetscErrorCode Settle(Contact contact)
 /* The forces that have been found become multipliers, until springs hardly give any more */
 static PetscErrorCode Augment(Contact contact)
 {
-  FrictionStep *step = (FrictionStep *)contact->data;
+  FrictionStep *step         = (FrictionStep *)contact->data;
+  Augmentation  augmentation = {.last = step->change};
   PetscReal     worst, time;
 
   PetscFunctionBegin;
+  PetscCall(PetscArrayzero(augmentation.last, contact->rows.n));
   for (PetscInt k = 0; k < step->springs.max_it; k++) {
     worst = 0;
     for (PetscInt i = 0; i < contact->rows.n; i++) worst = PetscMax(worst, PetscAbsReal(Give(contact, i)));
     if (contact->ranks.size > 1)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
     if (worst <= step->springs.tolerance) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(PetscArraycpy(step->multiplier, contact->end.force, contact->rows.n));
+    PetscCall(AugmentationTakeForces(contact, &augmentation, step->multiplier));
     PetscCall(ComputeSlips(contact));
     PetscCall(Settle(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -505,7 +509,7 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(InterfaceOperatorDestroy(&step->S));
   PetscCall(FrictionSolverDestroy(&step->solver));
   PetscCall(FreeProblem(&step->problem));
-  PetscCall(PetscFree4(step->marks, step->mine, step->flexibility, step->multiplier));
+  PetscCall(PetscFree5(step->marks, step->mine, step->flexibility, step->multiplier, step->change));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -561,8 +565,8 @@ PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprin
   PetscCall(ForcesCreate(contact, &step->forces));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
   PetscCall(FrictionSolverCreate(&step->solver));
-  PetscCall(PetscCalloc4(contact->rows.n, &step->marks, contact->rows.n, &step->mine, contact->rows.n, &step->flexibility, contact->rows.n,
-                         &step->multiplier));
+  PetscCall(PetscCalloc5(contact->rows.n, &step->marks, contact->rows.n, &step->mine, contact->rows.n, &step->flexibility, contact->rows.n,
+                         &step->multiplier, contact->rows.n, &step->change));
   step->springs     = given;
   step->has_springs = (PetscBool)(springs != NULL);
   if (step->has_springs) contact->ops->rowschanged = RowsChanged;

@@ -1,9 +1,11 @@
 /*
    Augmented Lagrangian by Uzawa's iteration. With the multipliers as they are, the penalty method gives forces
    lambda = <multiplier - tau A gap>; these are the next multipliers, until the gap is closed where there is a force and open where
-   there is none. Each round makes the gap smaller by 1 / (1 + tau A W), with the interface compliance W.
+   there is none. Each round makes the gap smaller by 1 / (1 + tau A W), with the interface compliance W; slow ones are extrapolated
+   (contact/compliance/augmentation.c).
 */
 #include "penaltyimpl.h"
+#include <contact/compliance/augmentation.h>
 
 /* Each augmentation makes the gap smaller by 1 / (1 + tau A W): where a soft spring has tau A W = 1/10, 200 of them do by 2e8 */
 #define AUGMENTATION_MAX_IT 200
@@ -59,16 +61,20 @@ static PetscErrorCode GetMismatch(Contact contact, PetscReal *mismatch)
 
 static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
 {
-  Penalty  *penalty = (Penalty *)contact->data;
-  PetscBool in_contact;
-  PetscReal mismatch, time;
+  Penalty     *penalty      = (Penalty *)contact->data;
+  Augmentation augmentation = {.last = penalty->work};
+  PetscBool    in_contact;
+  PetscReal    mismatch, time;
 
   PetscFunctionBegin;
   PetscCall(ForcesBeginStep(contact, &penalty->forces, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(contact->end.force, contact->start.force, contact->rows.n));
+  PetscCall(PetscArraycpy(penalty->multiplier, contact->end.force, contact->rows.n));
+  PetscCall(PetscArrayzero(augmentation.last, contact->rows.n));
   for (PetscInt k = 0; k < penalty->augmentation_max_it; k++) {
-    PetscCall(PetscArraycpy(penalty->multiplier, contact->end.force, contact->rows.n));
+    penalty->again = (PetscBool)(k > 0);
+    if (k) PetscCall(AugmentationTakeForces(contact, &augmentation, penalty->multiplier));
     PetscCall(PenaltySolve(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(GetMismatch(contact, &mismatch));

@@ -136,13 +136,12 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 
   PetscFunctionBegin;
   (void)snes;
-  (void)it;
   (void)xnorm;
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->rtol * penalty->magnitude ||
-           penalty->residual <= penalty->round_off)
+  else if (penalty->residual <= penalty->atol || penalty->residual <= penalty->round_off ||
+           (penalty->residual <= penalty->rtol * penalty->magnitude && (it || !penalty->again)))
     *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,6 +165,7 @@ PetscErrorCode PenaltySetUp(Contact contact)
 {
   Penalty       *penalty = (Penalty *)contact->data;
   const PetscInt n       = contact->rows.n;
+  PetscBool      line_search;
 
   PetscFunctionBegin;
   if (contact->options.law == CONTACT_LAW_FRICTION) {
@@ -187,6 +187,9 @@ PetscErrorCode PenaltySetUp(Contact contact)
   PetscCall(OuterSolverSetFromOptions(contact, &penalty->outer, CONTACT_FORCE_TOLERANCE * contact->scale.force, FORCE_RTOL,
                                       OUTER_MAX_ITERATIONS));
   PetscCall(SNESGetTolerances(penalty->outer.snes, &penalty->atol, &penalty->rtol, NULL, NULL, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)penalty->outer.snes, SNESNEWTONLS, &penalty->may_damp));
+  PetscCall(PetscOptionsHasName(NULL, "penalty_", "-snes_linesearch_type", &line_search));
+  if (line_search) penalty->may_damp = PETSC_FALSE;
   PetscCall(SNESSetConvergenceTest(penalty->outer.snes, TestConvergence, contact, NULL));
   PetscCall(ForcesCreate(contact, &penalty->forces));
   PetscCall(PetscMalloc1(contact->n_bodies, &penalty->start));
@@ -262,20 +265,50 @@ static PetscErrorCode CheckConverged(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces of springs and dampers, from the forces as they are as first iterate */
-PetscErrorCode PenaltySolve(Contact contact)
+/* The forces as they are become the first iterate */
+static PetscErrorCode TakeForces(Contact contact)
 {
-  Penalty           *penalty = (Penalty *)contact->data;
-  PetscBool          changed = PETSC_TRUE;
-  PetscScalar       *x;
-  const PetscScalar *force;
+  Penalty     *penalty = (Penalty *)contact->data;
+  PetscScalar *x;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(penalty->outer.x, &x));
   PetscCall(PetscArraycpy(x, contact->end.force, contact->rows.n));
   PetscCall(VecRestoreArrayWrite(penalty->outer.x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The outer iteration from the forces as they are. Newton's full steps may go round between the same sets of rows that push where a long
+   step opens and closes many; from the same start, steps that make the residual least along them do not. */
+static PetscErrorCode Iterate(Contact contact)
+{
+  Penalty            *penalty = (Penalty *)contact->data;
+  SNESConvergedReason reason;
+  SNESLineSearch      line_search;
+
+  PetscFunctionBegin;
+  PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
+  PetscCall(SNESGetConvergedReason(penalty->outer.snes, &reason));
+  if (reason != SNES_DIVERGED_MAX_IT || !penalty->may_damp || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TakeForces(contact));
+  PetscCall(SNESGetLineSearch(penalty->outer.snes, &line_search));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_LEAST_RESIDUAL));
+  PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces of springs and dampers, from the forces as they are as first iterate */
+PetscErrorCode PenaltySolve(Contact contact)
+{
+  Penalty           *penalty = (Penalty *)contact->data;
+  PetscBool          changed = PETSC_TRUE;
+  const PetscScalar *force;
+
+  PetscFunctionBegin;
+  PetscCall(TakeForces(contact));
   while (changed) {
-    PetscCall(SNESSolve(penalty->outer.snes, NULL, penalty->outer.x));
+    PetscCall(Iterate(contact));
     PetscCall(CheckConverged(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(VecGetArrayRead(penalty->outer.x, &force));

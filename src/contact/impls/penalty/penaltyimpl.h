@@ -7,6 +7,7 @@
 
 typedef struct {
   OuterSolver   outer;
+  PetscBool     may_damp;   /* Newton's method, whose line search is not the user's */
   PetscBool     springs;    /* there are any */
   PetscReal     penalty;    /* N/m for each unit of area [N/m in one dimension]; 0: from materials and elements */
   PetscReal     scale;      /* of the latter; 0: by the mass of the contact nodes */
@@ -28,6 +29,7 @@ typedef struct {
   /* augmented Lagrangian */
   PetscReal augmentation_tolerance; /* [m] */
   PetscInt  augmentation_max_it;
+  PetscBool again; /* a round that is to make gaps smaller than the last has: forces that are as they were will not do */
 } Penalty;
 
 PETSC_INTERN PetscErrorCode PenaltyReadParameter(Contact);

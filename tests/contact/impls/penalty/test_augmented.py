@@ -30,10 +30,10 @@ def test_stiff(pairing, shared_run):
     assert never_tensile(run)
 
 
-@pytest.mark.parametrize(("penalty", "most"), [("7.5e4", 150), ("1e7", 10), ("1e12", 3)])
+@pytest.mark.parametrize(("penalty", "most"), [("7.5e4", 10), ("1e7", 10), ("1e12", 3)])
 def test_any_penalty(penalty, most, shared_run):
-    """The same forces with the paper's parameter, by many rounds, and with one that is far too stiff for the penalty method; within
-    the tolerance of 1e-10 m over a compliance of 2.5e-6 m/N, times two for both runs."""
+    """The same forces with the paper's parameter, whose rounds are extrapolated (they were 70 else, each of two sweeps), and with one that is far too stiff for
+    the penalty method; within the tolerance of 1e-10 m over a compliance of 2.5e-6 m/N, times two for both runs."""
     run = shared_run(f"{AUGMENTED} -contact_penalty {penalty}")
     stiff = shared_run(f"{AUGMENTED} -contact_penalty 1e9")
     assert most / 2 < run.summary["schwarz"]["max"] <= most
@@ -51,8 +51,9 @@ def test_tolerance(shared_run):
 
 
 def test_unconverged(impakt):
-    """With mass on the contact nodes the paper's parameter is far too soft: tau W = 6e-4 (W = dt^2/4 over half of 6.25e-7 kg)."""
+    """With mass on the contact nodes a hundredth of the paper's parameter is far too soft: tau W = 6e-6 (W = dt^2/4 over half of 6.25e-7 kg), so that what would
+    follow is 2e5 times what a round changes, more than round-off lets extrapolate."""
     massive = "-left_mass_type lumped -right_mass_type lumped -left_mass_redistribute false -right_mass_redistribute false"
-    run = impakt(f"{AUGMENTED} -contact_penalty 7.5e4 {massive} -controller_step_cuts 0", expect_failure=True)
+    run = impakt(f"{AUGMENTED} -contact_penalty 7.5e2 {massive} -controller_step_cuts 0", expect_failure=True)
     for words in ("augmented Lagrangian did not converge", "time 1e-07 s", "200 augmentations", "-contact_penalty"):
         assert words in run.stderr

@@ -1,0 +1,75 @@
+/*
+   Groups of rows between which S is zero: those of bodies that touch each other, directly or by others, when forces on these move them.
+   Among many bodies there are many small groups, whose blocks of S are factored one by one: that costs in proportion to the number of
+   bodies.
+*/
+#include "interfaceimpl.h"
+
+/* The body that stands for the group of body b */
+static PetscInt Root(const PetscInt group[], PetscInt b)
+{
+  while (group[b] != b) b = group[b];
+  return b;
+}
+
+/* The bodies of a pair that answer to forces on its rows; returns how many */
+static PetscInt GetBodies(InterfaceOperator op, const ContactPair *pair, PetscInt bodies[2])
+{
+  PetscInt n = 0;
+
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+    if (op->feels[pair->body[side]]) bodies[n++] = pair->body[side];
+  return n;
+}
+
+/* Finds the groups of the rows that are listed to be solved for, in the order of their first rows, and the bodies of all that are listed;
+   all rows are one group where S is given as a matrix. The same on all ranks. */
+PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator op)
+{
+  const Contact contact = op->contact;
+  PetscInt     *root    = op->body_group, bodies[2];
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    root[b]         = b;
+    op->has_rows[b] = PETSC_FALSE;
+  }
+  for (PetscInt i = 0; i < op->n_known; i++) {
+    const PetscInt n = GetBodies(op, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], bodies);
+
+    for (PetscInt k = 0; k < n; k++) op->has_rows[bodies[k]] = PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < op->n && !op->matrix; i++)
+    if (GetBodies(op, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], bodies) == 2) {
+      const PetscInt first = Root(root, bodies[0]), second = Root(root, bodies[1]);
+
+      root[PetscMax(first, second)] = PetscMin(first, second);
+    }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) root[b] = Root(root, b);
+  op->n_groups = 0;
+  if (op->matrix) {
+    for (PetscInt i = 0; i < op->n; i++) op->group[i] = 0;
+    if (op->n) op->group_rows[op->n_groups++] = op->n;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /* from here on the group of a root is below 0: -1 less its number */
+  for (PetscInt i = 0; i < op->n; i++) {
+    const PetscInt n = GetBodies(op, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], bodies);
+    PetscInt       at;
+
+    /* a row that moves nothing is a group by itself, and has no pivot */
+    if (!n) {
+      op->group_rows[op->n_groups] = 1;
+      op->group[i]                 = op->n_groups++;
+      continue;
+    }
+    at = root[bodies[0]] < 0 ? bodies[0] : root[bodies[0]];
+    if (root[at] >= 0) {
+      op->group_rows[op->n_groups] = 0;
+      root[at]                     = -1 - op->n_groups++;
+    }
+    op->group[i] = -1 - root[at];
+    op->group_rows[op->group[i]]++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
