@@ -56,7 +56,7 @@ def test_balance_of_a_coarse_ball(impakt):
 @pytest.mark.long
 def test_rolls(shared_run):
     run = shared_run(BALL)
-    time, x, v, spin = motion(run)
+    time, _, v, spin = motion(run)
     a = rate(time, v[:, 1])
     assert a == pytest.approx(5 / 7 * G * np.sin(TILT), rel=1e-2)  # measured: -6.6e-3
     assert R * rate(time, spin) == pytest.approx(a, rel=1e-2)  # measured: -4.1e-3
