@@ -187,8 +187,7 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
   hid_t       file;
 
   PetscFunctionBegin;
-  file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  PetscCall(HDF5Check(file, "create a file", path));
+  PetscCall(HDF5Create(path, &file));
   PetscCall(HDF5WriteRun(file, options, path));
   PetscCall(CreateMesh(file, mesh, path));
   PetscCall(CreateTimes(file, n_frames, path));

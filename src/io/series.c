@@ -52,8 +52,7 @@ PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Seri
   hid_t file;
 
   PetscFunctionBegin;
-  file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  PetscCall(HDF5Check(file, "create a file", path));
+  PetscCall(HDF5Create(path, &file));
   PetscCall(HDF5WriteRun(file, options, path));
   for (PetscInt i = 0; i < n_series; i++) PetscCall(CreateDataset(file, &series[i], path));
   PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
