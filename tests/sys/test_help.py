@@ -15,6 +15,7 @@ OF_PETSC = {"options_file_yaml", "prefix_push", "prefix_pop",
     "snes_anderson_m",
     "snes_anderson_beta",
     "snes_linesearch_damping",
+    "snes_linesearch_type",
     "snes_vi_zero_tolerance",
     "snes_lag_jacobian_persists",  # which is refused
     "snes_lag_preconditioner_persists",
