@@ -52,6 +52,15 @@ def test_mesh_is_the_one_written_here(tmp_path):
     assert kept.field_data.keys() == written.field_data.keys() == {"left", "right", "block"}
 
 
+@pytest.mark.parametrize("step", [0.1, 0.02])
+def test_steps_in_which_nothing_changes(impakt, step):
+    """Under a load that stays nodes are at the brink of other states: the forces that hold are those of the first step, to round-off."""
+    run = impakt(f"{ARCH} -time_step {step}")
+    force = run.history["contact/b10.right:b11.left/force_vector"][()]
+    assert len(force) == round(1 / step) + 1
+    assert np.abs(force[2:] - force[1]).max() <= 1e-9 * np.abs(force[1]).max()
+
+
 def test_limit_analysis():
     """Of many blocks. The thickness 0.107426 has weights on the centre line, blocks at whose centroids they act come to 0.107478 (400 of them)."""
     assert least_thickness(64, 0.6) == pytest.approx(0.107426, rel=1e-3)  # measured: -4e-4

@@ -25,7 +25,7 @@ static PetscErrorCode CollectOptions(const char prefix[], char text[], PetscInt 
   PetscCall(PetscMalloc1(room, options));
   *n = 0;
   while (OptionsTextNext(&text, &name, &value)) {
-    if (strncasecmp(name + 1, prefix, length) || !name[1 + length]) continue;
+    if (strncasecmp(name + 1, prefix, length) != 0 || !name[1 + length]) continue;
     (*options)[*n].full      = name;
     (*options)[*n].name      = name + 1 + length;
     (*options)[(*n)++].value = value;
@@ -38,7 +38,7 @@ static PetscBool IsOfMaterial(const KnownOption *option)
 {
   const char *const others[] = {"cross_section", "thickness", "plane_stress", "axisymmetric", "element_formulation"};
 
-  if (option->owner != OPTION_OF_BODY || strcmp(option->topic, "materials")) return PETSC_FALSE;
+  if (option->owner != OPTION_OF_BODY || strcmp(option->topic, "materials") != 0) return PETSC_FALSE;
   if (option->name[0] == '<') return PETSC_FALSE; /* this kind of options itself */
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(others); i++)
     if (!strcmp(option->name, others[i])) return PETSC_FALSE;
@@ -60,7 +60,7 @@ static void GetBlockName(const char name[], size_t size, char block[])
     const size_t of_option = strlen(known[i].name);
 
     if (!IsOfMaterial(&known[i]) || length < of_option + 2 || length - of_option > size) continue;
-    if (name[length - of_option - 1] != '_' || strcasecmp(name + length - of_option, known[i].name)) continue;
+    if (name[length - of_option - 1] != '_' || strcasecmp(name + length - of_option, known[i].name) != 0) continue;
     memcpy(block, name, length - of_option - 1);
     block[length - of_option - 1] = 0;
     return;
@@ -113,7 +113,7 @@ static PetscErrorCode NoteUsed(PetscOptions options, const char prefix[], const 
   for (PetscInt i = 0; i < n; i++) {
     const char *name = body_options[i].name;
     char        full[1024];
-    PetscBool   own = (PetscBool)!strncasecmp(name, of_block + strlen(prefix), length), used, given;
+    PetscBool   own = (PetscBool)!strncasecmp(name, of_block + strlen(prefix), length), used, given = PETSC_FALSE;
 
     PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", of_block, own ? name + length : name));
     PetscCall(PetscOptionsUsed(options, full + 1, &used));

@@ -313,6 +313,27 @@ static PetscBool IsAmbiguous(const FrictionProblem *problem)
   return PETSC_FALSE;
 }
 
+/* Keeps the forces as they were where the law holds for them: with nothing that changes any more all nodes are at the brink of another
+   state, and their states go round */
+static PetscErrorCode KeepForces(FrictionStep *step, PetscBool *kept)
+{
+  const FrictionProblem *problem = &step->problem;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
+  *kept = (PetscBool)(GetResidual(problem) <= step->atol);
+  for (PetscInt first = 0; first < problem->n && *kept; first += problem->dim) {
+    const PetscReal bound  = PetscRealPart(problem->limit[first] + problem->limit[first + 1] * problem->force[first]);
+    PetscReal       square = 0;
+
+    for (PetscInt k = 1; k < problem->dim; k++) square += PetscSqr(PetscRealPart(problem->force[first + k]));
+    problem->state[first / problem->dim] = PetscRealPart(problem->force[first]) <= 0 ? FRICTION_OPEN
+                                           : square < PetscSqr(bound)                ? FRICTION_STICKS
+                                                                                     : FRICTION_SLIDES;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Forces of the listed rows for which the law holds, as far as S tells */
 static PetscErrorCode Solve(Contact contact)
 {
@@ -322,6 +343,7 @@ static PetscErrorCode Solve(Contact contact)
   PetscFunctionBegin;
   PetscCall(FrictionSolverSolve(step->solver, &step->problem, &solved, &by_nodes));
   if (by_nodes) contact->counts.set_cycles++;
+  if (!solved) PetscCall(KeepForces(step, &solved));
   if (!solved) PetscCall(Fail(contact, PETSC_FALSE, 0));
   PetscCall(TakeForces(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
