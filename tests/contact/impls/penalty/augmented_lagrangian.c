@@ -36,19 +36,21 @@ static void agrees_with_lagrange(void **state)
   }
 }
 
-/* A softer spring needs more rounds; each closes the gap by 1 / (1 + tau W) */
+/* A softer spring needs more rounds, each of which closes the gap by 1 / (1 + tau W); but of one node that is known after a few, and what
+   would follow is taken at once: 4 sweeps, 8, and 8 with a spring that is a hundred times softer again */
 static void rounds(void **state)
 {
-  Simulation   *simulation = (Simulation *)*state;
-  PetscInt      sweeps     = 0;
-  ContactCounts counts;
+  static const char *const penalties[] = {"-contact_penalty 1e6", "-contact_penalty 50", "-contact_penalty 0.5"};
+  Simulation              *simulation  = (Simulation *)*state;
+  PetscInt                 sweeps      = 0;
+  ContactCounts            counts;
 
   AddAugmented("");
-  for (PetscInt k = 0; k < 2; k++) {
-    SimulationRepeat(simulation, k ? "-contact_penalty 50" : "-contact_penalty 1e6");
+  for (PetscInt k = 0; k < 3; k++) {
+    SimulationRepeat(simulation, penalties[k]);
     Step(simulation);
     ok(ContactGetCounts(simulation->contact, &counts));
-    assert_true(counts.sweeps > 2 * sweeps);
+    between(counts.sweeps, k == 1 ? sweeps + 1 : sweeps, 12);
     sweeps = counts.sweeps;
   }
 }
