@@ -4,11 +4,14 @@
 
 #define TSCENTRALDIFFERENCE "centraldifference"
 #define TSSTATIC            "static"
+#define TSRIGID             "rigid"
 
 typedef PetscErrorCode TSCentralDifferenceFn(TS, PetscReal, Vec, Vec, Vec, void *);
+typedef PetscErrorCode TSRigidFn(TS, PetscReal, PetscReal, Vec, Vec, void *);
 
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, void *);
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS, Vec);
+PETSC_EXTERN PetscErrorCode TSRigidSetAdvance(TS, TSRigidFn *, void *);
 PETSC_EXTERN PetscErrorCode TSSecondOrderInitializePackage(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderRegisterAll(void);

@@ -13,7 +13,7 @@
 
 /* What decides which of two bodies takes displacements */
 typedef struct ContactPreference {
-  PetscBool is_explicit;
+  PetscBool is_rigid, is_explicit;
   PetscInt  substeps; /* of explicit bodies, about */
   PetscReal size;     /* edge of its mean element, or of the largest that is alike [m] */
 } ContactPreference;
@@ -119,6 +119,8 @@ PETSC_INTERN PetscErrorCode ContactMoveSurfaces(Contact);
 PETSC_INTERN PetscErrorCode ContactFindFarPairs(Contact, PetscReal);
 PETSC_INTERN PetscErrorCode ContactCreateSurfaces(Contact, ContactPair *, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactChooseRowSide(Contact, ContactPair *);
+PETSC_INTERN PetscErrorCode ContactTurnRigid(Contact, ContactPair *);
+PETSC_INTERN PetscErrorCode ContactHasRigid(Contact, PetscBool *);
 PETSC_INTERN void           ContactTurnPair(ContactPair *);
 PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);

@@ -4,6 +4,7 @@
      v_{n+1/2} = v_n + dt/2 a_n,   u_{n+1} = u_n + dt v_{n+1/2},   a_{n+1} = a(t_{n+1}, u_{n+1}),   v_{n+1} = v_{n+1/2} + dt/2 a_{n+1}
 */
 #include <impakt/tssecondorder.h>
+#include "tsrigid.h"
 #include <petsc/private/tsimpl.h>
 
 typedef struct {
@@ -217,6 +218,7 @@ PetscErrorCode TSSecondOrderRegisterAll(void)
   PetscFunctionBegin;
   PetscCall(TSRegister(TSCENTRALDIFFERENCE, TSCreate_CentralDifference));
   PetscCall(TSRegister(TSSTATIC, TSCreate_Static));
+  PetscCall(TSRegister(TSRIGID, TSCreate_Rigid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

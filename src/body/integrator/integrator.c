@@ -8,6 +8,7 @@ static const struct {
     {TSALPHA2, "implicit", BodyIntegratorCreate_Implicit},
     {TSCENTRALDIFFERENCE, "explicit", BodyIntegratorCreate_Explicit},
     {TSSTATIC, "without inertia", BodyIntegratorCreate_Static},
+    {TSRIGID, "rigid", BodyIntegratorCreate_Rigid},
 };
 #define N_KNOWN ((PetscInt)(sizeof(known) / sizeof(known[0])))
 
@@ -39,7 +40,8 @@ PetscErrorCode BodyIntegratorCreate(Body body, const char type[])
     if (!same) continue;
     PetscCall(BodyIntegratorDestroy(body));
     PetscCall(PetscNew(&body->integrator));
-    body->integrator->type = known[i].type;
+    body->integrator->type    = known[i].type;
+    body->integrator->deforms = PETSC_TRUE;
     PetscCall((*known[i].create)(body->integrator));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

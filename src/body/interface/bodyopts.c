@@ -72,7 +72,7 @@ static PetscErrorCode ReadMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads what only bodies with inertia have, so that it is an unused option of others */
+/* Reads what only bodies with inertia have that deform, so that it is an unused option of others */
 static PetscErrorCode ReadDamping(Body body)
 {
   const char *prefix = ((PetscObject)body)->prefix;
@@ -80,7 +80,7 @@ static PetscErrorCode ReadDamping(Body body)
   PetscBool   set[2];
 
   PetscFunctionBegin;
-  if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->integrator->has_inertia || !body->integrator->deforms) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetDamping(body, &mass, &stiffness));
   PetscObjectOptionsBegin((PetscObject)body);
   PetscCall(PetscOptionsReal("-damping_mass", "Rayleigh damping: forces against the velocity in parts of the mass [1/s]", "BodySetDamping",
@@ -129,6 +129,7 @@ static PetscErrorCode ReadStatic(Body body)
 . -<body>_mass_redistribute (true|false|near)        - moves the mass of contact nodes to their inner neighbours, default true
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
+. -<body>_rigid (true|false)                         - it does not deform, see `BodySetRigid()`
 . -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step, or auto where that is unstable
 . -<body>_damping_mass alpha                         - Rayleigh damping by the mass [1/s], default 0
 . -<body>_damping_stiffness beta                     - Rayleigh damping by the stiffness [s], default 0
@@ -216,6 +217,7 @@ PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscIn
     PetscCall(VecRestoreArray(body->state.u, &u));
   }
   PetscCall(BodyPrescribeHeld(body, body->state.time, body->state.u, body->state.v, NULL));
+  if (body->integrator->ops.start) PetscCall((*body->integrator->ops.start)(body));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(VecNorm(body->state.internal_force, NORM_2, &norm));
   StepFailureClear(&body->failure);

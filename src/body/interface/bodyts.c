@@ -250,10 +250,12 @@ PetscErrorCode BodySetTimeFromOptions(Body body)
 {
   const char *prefix = ((PetscObject)body)->prefix;
   char        type[64], full[160];
-  PetscBool   hidden, set;
+  PetscBool   hidden, set, rigid;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), &set));
+  PetscCall(BodyReadRigid(body, set ? type : NULL, &rigid));
+  if (rigid) set = PETSC_FALSE;
   if (set || !body->time.ts) PetscCall(BodySetTSType(body, set ? type : TSALPHA2));
   PetscCall(TSSetDM(body->time.ts, body->mesh.dm));
   PetscCall(ReadTimeStep(body, &hidden));
@@ -283,5 +285,6 @@ PetscErrorCode BodySetUpIntegrator(Body body)
   PetscCall(TSGetDM(ts, &dm));
   if (dm != body->mesh.dm) PetscCall(TSSetDM(ts, body->mesh.dm));
   if (body->integrator->ops.getparameters) PetscCall((*body->integrator->ops.getparameters)(body));
+  if (body->model.material) PetscCall(BodyNoteLinear(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,9 +7,35 @@
 PetscErrorCode BodySetUpMassType(Body body)
 {
   PetscFunctionBegin;
+  if (!body->integrator->deforms) { /* lumped masses have other moments of inertia than the body */
+    PetscCheck((int)body->mass.type == PETSC_DECIDE || body->mass.type == BODY_MASS_CONSISTENT, PetscObjectComm((PetscObject)body),
+               PETSC_ERR_USER_INPUT, "-%smass_type %s: the mass of a rigid body is that of its mesh; leave the option out",
+               ((PetscObject)body)->prefix, BodyMassTypes[body->mass.type]);
+    body->mass.type         = BODY_MASS_CONSISTENT;
+    body->mass.redistribute = PETSC_FALSE;
+    body->mass.near         = PETSC_FALSE;
+  }
   if ((int)body->mass.type == PETSC_DECIDE)
     body->mass.type = body->integrator->divides_by_mass && body->mesh.dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;
   if (!body->integrator->has_inertia) body->mass.redistribute = PETSC_FALSE; /* there is none to move */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether displacements depend linearly on forces, by the material, or because a rigid body cannot turn */
+PetscErrorCode BodyNoteLinear(Body body)
+{
+  PetscFunctionBegin;
+  if (body->integrator && !body->integrator->deforms) {
+    body->model.linear = (PetscBool)(body->mesh.dim == 1 || body->model.element->axisymmetric);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MaterialIsLinear(body->model.material, &body->model.linear));
+  for (PetscInt k = 0; k < body->model.blocks.n; k++) {
+    PetscBool linear;
+
+    PetscCall(MaterialIsLinear(body->model.blocks.materials[k], &linear));
+    body->model.linear = k ? (PetscBool)(body->model.linear && linear) : linear;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -26,14 +52,8 @@ PetscErrorCode BodySetUpMesh(Body body)
   PetscCheck(body->model.material, comm, PETSC_ERR_ARG_WRONGSTATE,
              "Body '%s' has no material: call BodySetMaterial() or BodySetFromOptions() first", body->hdr.name);
   PetscCall(MaterialSetUp(body->model.material));
-  PetscCall(MaterialIsLinear(body->model.material, &body->model.linear));
-  for (PetscInt k = 0; k < body->model.blocks.n; k++) {
-    PetscBool linear;
-
-    PetscCall(MaterialSetUp(body->model.blocks.materials[k]));
-    PetscCall(MaterialIsLinear(body->model.blocks.materials[k], &linear));
-    body->model.linear = k ? (PetscBool)(body->model.linear && linear) : linear;
-  }
+  for (PetscInt k = 0; k < body->model.blocks.n; k++) PetscCall(MaterialSetUp(body->model.blocks.materials[k]));
+  PetscCall(BodyNoteLinear(body));
   PetscCall(BodySetUpCells(body));
   PetscCall(BodySetUpLayout(body));
   PetscCall(BodyComputeBlockMass(body));

@@ -22,6 +22,8 @@ static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
   ElementHistory     before;
 
   PetscFunctionBegin;
+  *potential = 0;
+  if (!body->integrator->deforms) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->model.linear) {
     PetscCall(VecGetArrayRead(body->state.u, &u));
     PetscCall(VecGetArrayRead(body->state.internal_force, &force));
@@ -46,7 +48,7 @@ static PetscErrorCode ComputeHourglassEnergy(Body body, PetscReal *energy)
 
   PetscFunctionBegin;
   *energy = 0;
-  if (!body->model.element->ops->hourglass) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->model.element->ops->hourglass || !body->integrator->deforms) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   PetscCall((*body->model.element->ops->hourglass)(body->model.element, u, energy));
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
@@ -74,7 +76,7 @@ PetscErrorCode BodyHasHourglasses(Body body, PetscBool *hourglasses)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(hourglasses, 2);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
-  *hourglasses = (PetscBool)(body->model.element->ops->hourglass != NULL);
+  *hourglasses = (PetscBool)(body->model.element->ops->hourglass != NULL && body->integrator->deforms);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

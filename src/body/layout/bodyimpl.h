@@ -401,6 +401,8 @@ PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[
 PETSC_INTERN PetscErrorCode BodyLoadsHaveForce(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyLoadsHoldAxis(Body);
 PETSC_INTERN PetscBool      BodyIsLoaded(Body);
+PETSC_INTERN PetscBool      BodyIsLed(Body);
+PETSC_INTERN PetscBool      BodyLeads(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyLoadsAddForce(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyLoadsPrescribe(Body, PetscReal, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyLoadsInitialState(Body, Vec, Vec);

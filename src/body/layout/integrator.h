@@ -50,6 +50,13 @@ typedef struct {
                                                                         substeps x rows, after a hat of force on one row of any rank: 1 N at
                                                                         the end of the first substep, 0 at its start and at the end of the
                                                                         second [m]; may be set in setup() */
+  /* (NULL) where body->solver does not have them: displacement of the rows at the end of a substep for forces on them at its end [m], to a
+     vector from one [N] */
+  PetscErrorCode (*applycompliance)(Body, Vec, Vec);
+  PetscErrorCode (*solvemass)(Body, Vec, Vec); /* (NULL) the acceleration [m/s^2] that forces on the nodes bring [N] */
+  PetscErrorCode (*start)(Body);               /* (NULL) checks, and corrects, displacement and velocity of the first state */
+  PetscErrorCode (*startacceleration)(Body);   /* (NULL) makes that of the first state, which solvemass() has found, complete */
+  PetscErrorCode (*view)(Body, PetscViewer);   /* (NULL) what there is to tell of such a body */
   PetscErrorCode (*rates)(Body, PetscReal[3], PetscReal[3]);         /* (NULL) of rows: velocity and acceleration at the end of a substep as
                                                                         multiples of u1 - u0, v0 and a0 */
   PetscErrorCode (*destroy)(Body);                                   /* frees `data`; the body may not have been set up */
@@ -60,6 +67,7 @@ struct _n_BodyIntegrator {
   BodyIntegratorOps ops;
   void             *data;
   /* known from creation on */
+  PetscBool deforms;           /* false: a rigid body, without strain, stress and internal force */
   PetscBool has_inertia;       /* false: neither mass nor acceleration means anything, and the state has no kinetic energy */
   PetscBool needs_stable_step; /* substeps are bounded by 2 / omega_max */
   PetscBool divides_by_mass;   /* each substep divides by the mass, so that factoring it has to be paid for */
@@ -79,3 +87,4 @@ PETSC_INTERN PetscErrorCode BodyIntegratorDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyIntegratorCreate_Implicit(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator);
+PETSC_INTERN PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator);

@@ -24,7 +24,8 @@ static PetscErrorCode ComputeContactForce(Body body, Vec contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces from outside and the reactions that hold held dofs, at the current state: what does work on the body, beside contact */
+/* Forces from outside and the reactions that hold held dofs, at the current state: what does work on the body, beside contact. Where a
+   rigid body is led, what leads it is spread over all its nodes, as M a less the forces from outside and of contact. */
 static PetscErrorCode ComputeApplied(Body body, Vec applied)
 {
   const PetscScalar *force;
@@ -33,7 +34,7 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(applied));
   PetscCall(BodyAddExternalForce(body, body->state.time, 1, applied));
-  if (!body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->held.any && !BodyIsLed(body)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->integrator->has_inertia) PetscCall(VecCopy(body->state.internal_force, body->work.nodes[0]));
   else {
     PetscCall(BodyMultiplyMass(body, body->state.a, body->work.nodes[0]));
@@ -47,7 +48,9 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
   }
   PetscCall(VecGetArrayRead(body->work.nodes[0], &force));
   PetscCall(VecGetArray(applied, &values));
-  for (PetscInt i = 0; i < body->held.n; i++) values[body->held.dofs[i]] = force[body->held.dofs[i]];
+  if (BodyIsLed(body)) PetscCall(PetscArraycpy(values, force, body->mesh.owned_nodes * body->mesh.dim));
+  else
+    for (PetscInt i = 0; i < body->held.n; i++) values[body->held.dofs[i]] = force[body->held.dofs[i]];
   PetscCall(VecRestoreArray(applied, &values));
   PetscCall(VecRestoreArrayRead(body->work.nodes[0], &force));
   PetscFunctionReturn(PETSC_SUCCESS);

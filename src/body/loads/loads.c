@@ -120,7 +120,9 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
 . -<body>_gravity gx,gy,gz                           - constant acceleration of all mass [m/s^2]
 . -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the reference configuration
 . -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
-- -<body>_initial_velocity vx,vy,vz                  - expressions in x, y, z [m/s], default 0
+. -<body>_initial_velocity vx,vy,vz                  - expressions in x, y, z [m/s], default 0
+. -<body>_rigid_displacement ux,uy,uz                - leads a rigid body: see `BodySetRigidDisplacement()`
+- -<body>_rigid_rotation r                           - leads a rigid body: see `BodySetRigidRotation()`
 
   Level: intermediate
 
@@ -143,7 +145,7 @@ PetscErrorCode BodyLoadsSetFromOptions(Body body)
 {
   PetscInt       n_displacements = 0, n_tractions = 0;
   char         **displacements = NULL, **tractions = NULL;
-  const char    *gravity, *body_force;
+  const char    *gravity, *body_force, *lead[2] = {NULL, NULL};
   PetscErrorCode error;
 
   PetscFunctionBegin;
@@ -151,10 +153,15 @@ PetscErrorCode BodyLoadsSetFromOptions(Body body)
   PetscCall(BodyLoadsReadInitialState(body));
   PetscCall(BodyLoadsGetText(body, "gravity", &gravity));
   PetscCall(BodyLoadsGetText(body, "body_force", &body_force));
+  if (!body->integrator->deforms) { /* else unused options */
+    PetscCall(BodyLoadsGetText(body, "rigid_displacement", &lead[0]));
+    PetscCall(BodyLoadsGetText(body, "rigid_rotation", &lead[1]));
+  }
   PetscCall(GetNames(body, "boundary_displacement", &n_displacements, &displacements));
   error = GetNames(body, "boundary_traction", &n_tractions, &tractions);
-  if (!error && (gravity || body_force || n_displacements || n_tractions)) {
+  if (!error && (gravity || body_force || n_displacements || n_tractions || lead[0] || lead[1])) {
     error = PetscNew(&body->loads);
+    if (!error) error = BodyLoadsReadLead(body, lead[0], lead[1]);
     if (!error) error = ReadDisplacements(body, n_displacements, displacements);
     if (!error) error = ReadForces(body, n_tractions, tractions, body_force);
     if (!error) error = ReadGravity(body, gravity);
@@ -171,6 +178,7 @@ PetscErrorCode BodyLoadsDestroy(Body body)
   PetscFunctionBegin;
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyLoadsDestroyHeld(body->loads));
+  PetscCall(BodyLoadsDestroyLead(body->loads));
   PetscCall(BodyLoadsDestroyForces(body->loads));
   PetscCall(PetscFree(body->loads));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -151,6 +151,9 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body)
   PetscErrorCode     error;
 
   PetscFunctionBegin;
+  PetscCheck(!n || body->integrator->deforms, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%sboundary_displacement: body '%s' is rigid, and moves as a whole; lead it by -%srigid_displacement and -%srigid_rotation",
+             ((PetscObject)body)->prefix, body->hdr.name, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
   if (!n && !body->mesh.touches_axis) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->mesh.touches_axis) PetscCall(CheckAxis(body));
   if (body->mesh.touches_axis && !loads->axis) PetscCall(ExpressionCreate(PETSC_COMM_SELF, "", "0", &loads->axis));
@@ -185,7 +188,7 @@ PetscErrorCode BodyLoadsSetUpHeld(Body body)
 /* Whether the program or the options have anything act on the body from outside, or hold it; its axis does neither */
 PetscBool BodyIsLoaded(Body body)
 {
-  return (PetscBool)(body->loads && (body->loads->n_prescribed || body->loads->n_loads || body->loads->has_gravity));
+  return (PetscBool)(body->loads && (body->loads->n_prescribed || body->loads->n_loads || body->loads->has_gravity || body->loads->led));
 }
 
 /* Holds the axis of an axisymmetric body, before other prescriptions come */

@@ -50,6 +50,8 @@ struct _BodyLoads {
   HeldDofs               *groups;
   PetscInt               *held_dofs; /* all of them, ascending */
   PetscReal              *reactions; /* work space of BodyGetReactions() */
+  Expression              lead[6];   /* of a rigid body: displacement of its centre, components of its rotation vector; NULL: free, or 0 */
+  PetscBool               led, turned; /* there are any of these; of the rotation */
   Expression              axis;      /* 0: the distance from the axis of its nodes, the last prescription of all; NULL: there is no axis */
   /* forces; what comes below `ready` is made when they are first asked for */
   PetscInt         n_loads, n_uniform;
@@ -74,6 +76,11 @@ PETSC_INTERN PetscErrorCode BodyLoadsCheckGravity(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsSetInitial(Body, PetscBool, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyLoadsSetUpHeld(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsSetUpReactions(Body);
+PETSC_INTERN PetscErrorCode BodyLoadsSetRigidDisplacement(Body, const char[]);
+PETSC_INTERN PetscErrorCode BodyLoadsSetRigidRotation(Body, const char[]);
+PETSC_INTERN PetscErrorCode BodyLoadsReadLead(Body, const char[], const char[]);
+PETSC_INTERN PetscErrorCode BodyLoadsDestroyLead(struct _BodyLoads *);
+PETSC_INTERN PetscErrorCode BodyLoadsGetLeadName(const char *[]);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyHeld(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroyForces(struct _BodyLoads *);
 PETSC_INTERN PetscErrorCode BodyLoadsReadInitialState(Body);

@@ -8,15 +8,17 @@
 PetscErrorCode BodyLoadsSetUpReactions(Body body)
 {
   struct _BodyLoads *loads = body->loads;
+  PetscInt           n;
 
   PetscFunctionBegin;
   PetscCall(PetscFree(loads->reactions));
-  PetscCall(PetscCalloc1(N_SUMS * loads->n_prescribed, &loads->reactions));
+  PetscCall(BodyGetNumReactions(body, &n));
+  PetscCall(PetscCalloc1(N_SUMS * n, &loads->reactions));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  BodyGetNumReactions - how many surfaces of a body have prescribed displacements
+  BodyGetNumReactions - how many surfaces of a body have prescribed displacements; of a rigid body, 1 where it is led
 
   Not Collective
 
@@ -35,7 +37,7 @@ PetscErrorCode BodyGetNumReactions(Body body, PetscInt *n)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(n, 2);
-  *n = body->loads ? body->loads->n_prescribed : 0;
+  *n = body->loads ? body->loads->n_prescribed + (body->loads->led ? 1 : 0) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -49,7 +51,7 @@ PetscErrorCode BodyGetNumReactions(Body body, PetscInt *n)
 - i    - 0 to the number of `BodyGetNumReactions()` - 1, in the order in which they were given
 
   Output Parameter:
-. name - of surface or node set, owned by the body
+. name - of surface or node set, owned by the body; `rigid` for what leads a rigid body as a whole
 
   Level: intermediate
 
@@ -60,21 +62,25 @@ PetscErrorCode BodyGetReactionSurface(Body body, PetscInt i, const char *name[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(name, 3);
+  if (BodyIsLed(body) && i == body->loads->n_prescribed) {
+    PetscCall(BodyLoadsGetLeadName(name));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCheck(body->loads && i >= 0 && i < body->loads->n_prescribed, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "Body '%s' has no surface %" PetscInt_FMT " with prescribed displacements", body->hdr.name, i);
   *name = body->loads->prescribed[i].surface;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what holds the dofs of a group to the sums of its surface; `applied`: forces from outside and reactions on all dofs, `outside`:
-   forces from outside alone [N] */
-static void AddGroup(const HeldDofs *group, PetscInt dim, const PetscScalar x[], const PetscScalar u[], const PetscScalar applied[],
-                     const PetscScalar outside[], PetscReal sums[])
+/* Adds what holds some dofs, or all where there is no list, to the sums of their surface; `applied`: forces from outside and reactions on
+   all dofs, `outside`: forces from outside alone [N] */
+static void AddDofs(PetscInt n, const PetscInt dofs[], PetscInt dim, const PetscScalar x[], const PetscScalar u[],
+                    const PetscScalar applied[], const PetscScalar outside[], PetscReal sums[])
 {
   PetscReal *force = sums, *moment = sums + 3;
 
-  for (PetscInt i = 0; i < group->held.n; i++) {
-    const PetscInt  dof = group->held.dofs[i], d = dof % dim, first = dof - d;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt  dof = dofs ? dofs[i] : i, d = dof % dim, first = dof - d;
     const PetscReal f      = PetscRealPart(applied[dof] - outside[dof]);
     PetscReal       arm[3] = {0};
 
@@ -117,31 +123,38 @@ PetscErrorCode BodyGetReactions(Body body, PetscReal force[], PetscReal moment[]
 {
   struct _BodyLoads *loads   = body->loads;
   Vec                outside = body->work.nodes[0];
+  const PetscInt     dim     = body->mesh.dim;
   const PetscScalar *x, *u, *applied, *external;
+  PetscInt           n;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
-  if (!loads || !loads->n_prescribed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetNumReactions(body, &n));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscAssertPointer(force, 2);
   PetscAssertPointer(moment, 3);
   PetscCall(VecZeroEntries(outside));
   if (body->integrator->has_inertia || body->state.step) PetscCall(BodyAddExternalForce(body, body->state.time, 1, outside));
-  PetscCall(PetscArrayzero(loads->reactions, N_SUMS * loads->n_prescribed));
+  if (!loads->reactions) PetscCall(BodyLoadsSetUpReactions(body));
+  PetscCall(PetscArrayzero(loads->reactions, N_SUMS * n));
   PetscCall(VecGetArrayRead(body->mesh.positions, &x));
   PetscCall(VecGetArrayRead(body->state.u, &u));
   PetscCall(VecGetArrayRead(body->state.applied, &applied));
   PetscCall(VecGetArrayRead(outside, &external));
   for (PetscInt g = 0; g < loads->n_groups && loads->groups[g].prescription < loads->n_prescribed; g++)
-    AddGroup(&loads->groups[g], body->mesh.dim, x, u, applied, external, loads->reactions + N_SUMS * loads->groups[g].prescription);
+    AddDofs(loads->groups[g].held.n, loads->groups[g].held.dofs, dim, x, u, applied, external,
+            loads->reactions + N_SUMS * loads->groups[g].prescription);
+  if (loads->led)
+    AddDofs(body->mesh.owned_nodes * dim, NULL, dim, x, u, applied, external, loads->reactions + N_SUMS * loads->n_prescribed);
   PetscCall(VecRestoreArrayRead(outside, &external));
   PetscCall(VecRestoreArrayRead(body->state.applied, &applied));
   PetscCall(VecRestoreArrayRead(body->state.u, &u));
   PetscCall(VecRestoreArrayRead(body->mesh.positions, &x));
   if (body->rows.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, loads->reactions, (PetscMPIInt)(N_SUMS * loads->n_prescribed), MPIU_REAL, MPIU_SUM,
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, loads->reactions, (PetscMPIInt)(N_SUMS * n), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)body)));
-  for (PetscInt i = 0; i < loads->n_prescribed; i++)
+  for (PetscInt i = 0; i < n; i++)
     for (PetscInt d = 0; d < 3; d++) {
       force[3 * i + d]  = loads->reactions[N_SUMS * i + d];
       moment[3 * i + d] = body->model.element->axisymmetric ? 0 : loads->reactions[N_SUMS * i + 3 + d];

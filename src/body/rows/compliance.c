@@ -220,7 +220,8 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
-  if (body->solver) PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
+  if (body->integrator->ops.applycompliance) PetscCall((*body->integrator->ops.applycompliance)(body, force, displacement));
+  else if (body->solver) PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
   else PetscCall(VecZeroEntries(displacement));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   PetscCall(StageEnd(logged));

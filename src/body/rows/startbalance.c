@@ -46,6 +46,7 @@ PetscErrorCode BodyComputeStartAcceleration(Body body, PetscBool pushed, const P
   PetscCall(BodySubtractHeldInertia(body, body->state.time, f, body->state.a));
   if (norm > 0 || body->held.any) PetscCall(BodySolveMass(body, f, body->state.a));
   if (body->integrator->has_inertia) PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, NULL, body->state.a));
+  if (body->integrator->ops.startacceleration) PetscCall((*body->integrator->ops.startacceleration)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,12 +296,12 @@ static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[]
   PetscScalar       *row, *applied;
 
   PetscFunctionBegin;
-  if (!body->loads || (body->integrator->has_inertia && !body->held.any)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->loads || (body->integrator->has_inertia && !body->held.any && !BodyIsLed(body))) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   PetscCall(PetscArraycpy(row, force, body->rows.local));
   PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
   PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], on_nodes));
-  if (!body->integrator->has_inertia) {
+  if (!body->integrator->has_inertia || BodyIsLed(body)) {
     PetscCall(VecAXPY(body->state.applied, -1, on_nodes));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -274,6 +274,7 @@ PetscErrorCode BodySolveMass(Body body, Vec f, Vec a)
 
   PetscFunctionBegin;
   if (!body->integrator->has_inertia) PetscCall(VecZeroEntries(a));
+  else if (body->integrator->ops.solvemass) PetscCall((*body->integrator->ops.solvemass)(body, f, a));
   else if (body->mass.inverse) PetscCall(VecPointwiseMult(a, body->mass.inverse, f));
   else {
     if (!body->mass.solver) PetscCall(BodySetUpMassSolver(body));

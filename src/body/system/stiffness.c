@@ -10,6 +10,10 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   Element            element;
 
   PetscFunctionBegin;
+  if (!body->integrator->deforms) {
+    PetscCall(VecZeroEntries(f));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodyGetElement(body, &element));
   PetscCall(PetscLogEventBegin(BODY_InternalForce, body, 0, 0, 0));
   PetscCall(BodyGetLocalRead(body, u, &u_local, &u_array));
@@ -204,7 +208,7 @@ PetscErrorCode BodyGetStiffness(Body body, Mat *K)
 . body - the `Body`, set up
 
   Output Parameter:
-. stress - xx, yy, zz, xy, yz, xz for each cell of this rank, in the order of `BodyGetCells()` [Pa]
+. stress - xx, yy, zz, xy, yz, xz for each cell of this rank, in the order of `BodyGetCells()` [Pa]; zero in a rigid body
 
   Level: intermediate
 
@@ -219,6 +223,10 @@ PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  if (!body->integrator->deforms) {
+    PetscCall(PetscArrayzero(stress, 6 * body->model.element->count));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   BodyHistoryLook(body, &before);
   PetscCall((*body->model.element->ops->stress)(body->model.element, u, stress));

@@ -260,15 +260,14 @@ PetscErrorCode ContactGetEnergyCap(Contact contact, PetscBool *cap, PetscReal *e
    others */
 static PetscErrorCode GetStage(Body body, PetscReal stage[2])
 {
-  PetscBool is_static, is_explicit;
+  PetscBool newmark;
   TS        ts;
 
   PetscFunctionBegin;
   stage[0] = stage[1] = 1;
-  PetscCall(BodyIsStatic(body, &is_static));
-  PetscCall(BodyIsExplicit(body, &is_explicit));
-  if (is_static || is_explicit) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetTS(body, &ts));
+  PetscCall(PetscObjectTypeCompare((PetscObject)ts, TSALPHA2, &newmark));
+  if (!newmark) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TSAlpha2GetParams(ts, &stage[0], &stage[1], NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -51,6 +51,7 @@ PetscErrorCode ContactGetPreferences(Contact contact, ContactPreference preferen
   PetscCall(PetscMalloc1(contact->n_bodies, &size));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
+    PetscCall(BodyIsRigid(contact->bodies[b], &preferences[b].is_rigid));
     PetscCall(BodyGetElementSize(contact->bodies[b], &size[b]));
     preferences[b].size = -1;
   }
@@ -67,13 +68,17 @@ PetscErrorCode ContactGetPreferences(Contact contact, ContactPreference preferen
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the second of two bodies is to take displacements. An implicit body does rather than an explicit one. Of two explicit bodies the
+/* Whether the second of two bodies is to take displacements. A rigid body never does. An implicit body does rather than an explicit one. Of two explicit bodies the
    one with fewer substeps does: the compliance of rows on a body with substeps is found by integrating that body under a unit force on
    each, so that the fewer such rows the better. If both are alike in that, the one with the finer mesh: of two discs without friction that
    hit each other off-centre the coarser one as the first side has 1.5 to 5 times the spin. If both are alike in that too, the one that is
    named first does. */
 PetscBool ContactChooseSides(const ContactPreference *a, const ContactPreference *b, const char **why)
 {
+  if (a->is_rigid != b->is_rigid) {
+    *why = "the rigid body takes forces";
+    return a->is_rigid;
+  }
   if (a->is_explicit != b->is_explicit) {
     *why = "implicit body first";
     return a->is_explicit;

@@ -15,6 +15,7 @@ typedef struct {
   PetscReal transit;   /* of a plane wave through one [s] */
   PetscReal impedance; /* [N s/m^3] */
   PetscReal velocity[3];
+  PetscBool rigid; /* it has no waves */
 } Side;
 
 static PetscErrorCode GetSide(Body body, Side *side)
@@ -23,6 +24,7 @@ static PetscErrorCode GetSide(Body body, Side *side)
   Material  material;
 
   PetscFunctionBegin;
+  PetscCall(BodyIsRigid(body, &side->rigid));
   PetscCall(BodyGetContactElementSize(body, &side->size));
   PetscCall(BodyGetImpedance(body, &impedance));
   PetscCall(BodyGetCrossSection(body, &cross_section));
@@ -39,21 +41,27 @@ static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, Pets
 {
   Side      sides[2];
   PetscReal flexibility = 0, mobility = 0, speed = 0, smallest = PETSC_MAX_REAL;
+  PetscInt  deforms = -1;
 
   PetscFunctionBegin;
-  sides[1].size = 0;
+  *step          = PETSC_INFINITY;
+  sides[1].size  = 0;
+  sides[1].rigid = PETSC_FALSE;
   for (PetscInt d = 0; d < 3; d++) sides[1].velocity[d] = 0; /* of an obstacle */
   for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++) {
     PetscCall(GetSide(contact->bodies[pair->body[s]], &sides[s]));
+    smallest = PetscMin(smallest, sides[s].size);
+    if (sides[s].rigid) continue;
     flexibility += sides[s].transit / sides[s].impedance;    /* h / M */
     mobility += 1 / (sides[s].transit * sides[s].impedance); /* 1 / (rho h) */
-    smallest = PetscMin(smallest, sides[s].size);
+    deforms = s;
   }
+  if (deforms < 0) PetscFunctionReturn(PETSC_SUCCESS); /* between rigid bodies springs alone have a period */
   for (PetscInt d = 0; d < 3; d++) speed += PetscSqr(sides[0].velocity[d] - sides[1].velocity[d]);
   speed = PetscSqrtReal(speed);
   *step = PetscSqrtReal(flexibility / mobility);
-  if (pair->obstacle)
-    PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g s", pair->name, (double)sides[0].transit));
+  if (pair->obstacle || sides[0].rigid || sides[1].rigid)
+    PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g s", pair->name, (double)sides[deforms].transit));
   else
     PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g and %.3g s", pair->name, (double)sides[0].transit,
                             (double)sides[1].transit));
@@ -81,7 +89,7 @@ static PetscErrorCode GetNeighboursStep(Contact contact, PetscReal *step, size_t
     second   = PetscMax(second, PetscMin(first, speed));
     first    = PetscMax(first, speed);
     smallest = PetscMin(smallest, side.size);
-    if (side.transit >= *step) continue;
+    if (side.rigid || side.transit >= *step) continue;
     *step = side.transit;
     name  = ((PetscObject)contact->bodies[b])->name;
   }

@@ -67,10 +67,12 @@ PetscErrorCode ContactSetUpScales(Contact contact)
   PetscFunctionBegin;
   contact->scale.length = contact->scale.force = PETSC_MAX_REAL;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal extent = 0, force = 0;
+    PetscReal extent = 0, force = PETSC_MAX_REAL;
+    PetscBool rigid;
 
     PetscCall(GetExtent(contact->bodies[b], &extent));
-    PetscCall(GetElementForce(contact->bodies[b], &force));
+    PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
+    if (!rigid || contact->n_bodies == 1) PetscCall(GetElementForce(contact->bodies[b], &force));
     if (extent < contact->scale.length) small = ((PetscObject)contact->bodies[b])->name;
     if (extent > largest) large = ((PetscObject)contact->bodies[b])->name;
     largest               = PetscMax(largest, extent);

@@ -8,7 +8,7 @@ const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilize
 PetscErrorCode ContactSetUpStabilization(Contact contact)
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)contact);
-  PetscBool lagrange, all_massless = PETSC_TRUE;
+  PetscBool lagrange, rigid, all_massless = PETSC_TRUE;
 
   PetscFunctionBegin;
   if (contact->options.stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
@@ -29,6 +29,10 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
                "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose "
                "these, or -contact_stabilization naive",
                ((PetscObject)contact)->type_name);
+  PetscCall(ContactHasRigid(contact, &rigid));
+  PetscCheck(!rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_stabilization changes accelerations of contact nodes, and those of a rigid body have none of their own; leave it at "
+             "none");
   contact->energy.unlimited = "a stabilization changes accelerations or forces between steps";
   if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(ImpaktCite(CITE_CONTACT_STABILIZED));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -43,7 +47,8 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes */
+/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes. Those of a rigid body
+   are no nodes that could move by themselves. */
 PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *has)
 {
   PetscFunctionBegin;
@@ -53,11 +58,12 @@ PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *h
     PetscInt       with  = 0;
 
     for (PetscInt side = 0; side < sides; side++) {
-      PetscBool massless, without_inertia;
+      PetscBool massless, without_inertia, rigid;
 
+      PetscCall(BodyIsRigid(contact->bodies[contact->pairs[p].body[side]], &rigid));
       PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[side]], &massless));
       PetscCall(BodyIsStatic(contact->bodies[contact->pairs[p].body[side]], &without_inertia));
-      with += !massless && !without_inertia;
+      with += !massless && !without_inertia && !rigid;
     }
     *has = (PetscBool)(*has || (all_sides ? with == sides : with > 0));
   }

@@ -132,10 +132,12 @@ static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
 {
   const PetscInt *dofs;
   PetscInt        n;
+  PetscBool       led;
 
   PetscFunctionBegin;
   PetscCall(BodyGetHeldDofs(contact->bodies[b], &n, &dofs));
-  *held = n > 0;
+  PetscCall(BodyGetLed(contact->bodies[b], &led));
+  *held = n > 0 || led;
   PetscCall(ContactOr(contact, held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -236,12 +238,14 @@ static PetscErrorCode GetStiffness(Contact contact, const ContactPair *pair, Pet
   PetscFunctionBegin;
   for (PetscInt side = 0; side < 2; side++) {
     PetscReal of_element, size, thickness;
+    PetscBool rigid;
 
+    PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
     PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &of_element));
     PetscCall(BodyGetElementSize(contact->bodies[pair->body[side]], &size));
     PetscCall(BodyGetCrossSection(contact->bodies[pair->body[side]], &thickness));
     *edge = PetscMax(*edge, size);
-    softness += 1 / (of_element * size * (contact->dim == 2 ? thickness : size));
+    if (!rigid) softness += 1 / (of_element * size * (contact->dim == 2 ? thickness : size));
   }
   *stiffness = 1 / softness;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -244,9 +244,13 @@ PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
 
   PetscFunctionBegin;
   if (!pair->own_side) pair->row_side = contact->options.row_side;
-  if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->obstacle) {
+    PetscCall(ContactTurnRigid(contact, pair));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (pair->row_side == CONTACT_ROW_SIDE_SECOND) second = PETSC_TRUE;
   if (pair->row_side == CONTACT_ROW_SIDE_FINER && contact->dim > 1) PetscCall(SecondIsFiner(contact, pair, &second));
   if (second) ContactTurnPair(pair);
+  PetscCall(ContactTurnRigid(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

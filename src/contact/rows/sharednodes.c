@@ -159,9 +159,11 @@ static PetscErrorCode GetUnit(Contact contact, const ContactPair *pair, PetscRea
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal stiffness;
+    PetscBool rigid;
 
+    PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
     PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
-    flexibility += 1 / stiffness;
+    if (!rigid) flexibility += 1 / stiffness;
   }
   *unit = 1 / flexibility;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -34,7 +34,7 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
 PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair, PetscReal given, PetscReal wanted, PetscReal *parameter,
                                        PetscReal *scale)
 {
-  PetscReal flexibility  = 0;
+  PetscReal flexibility = 0, of_rigid = 0;
   PetscBool all_massless = PETSC_TRUE;
 
   PetscFunctionBegin;
@@ -43,13 +43,16 @@ PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair,
   if (given > 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal stiffness = 0;
-    PetscBool massless;
+    PetscBool massless, rigid;
 
     PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
     PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
-    if (!massless) all_massless = PETSC_FALSE;
-    flexibility += 1 / stiffness;
+    PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
+    if (!massless && !rigid) all_massless = PETSC_FALSE;
+    if (rigid) of_rigid += 1 / stiffness;
+    else flexibility += 1 / stiffness;
   }
+  if (!(flexibility > 0)) flexibility = of_rigid; /* nothing deforms but the springs */
   if (!(*scale > 0)) *scale = all_massless ? MASSLESS_SCALE : MASS_SCALE;
   *parameter = *scale / flexibility;
   PetscFunctionReturn(PETSC_SUCCESS);

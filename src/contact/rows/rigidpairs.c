@@ -1,0 +1,69 @@
+/* Pairs with a rigid body: it takes forces, and its partner has to give. */
+#include <contact/parts.h>
+
+/* The number of rigid bodies in a pair, and whether its first one is */
+static PetscErrorCode CountRigid(Contact contact, const ContactPair *pair, PetscInt *n, PetscBool *first)
+{
+  PetscBool second = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsRigid(contact->bodies[pair->body[0]], first));
+  if (!pair->obstacle) PetscCall(BodyIsRigid(contact->bodies[pair->body[1]], &second));
+  *n = *first + second;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, of no length that a step could resolve */
+static PetscErrorCode CheckGives(Contact contact, const ContactPair *pair)
+{
+  PetscBool springs;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &springs));
+  if (pair->obstacle)
+    PetscCheck(springs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: let the body deform, put a body "
+               "that deforms in place of the obstacle, or choose -contact_type penalty",
+               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  else
+    PetscCheck(springs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: let one of them deform, or choose -contact_type "
+               "penalty; where pairs were chosen by 'auto' or 'all', name those of bodies that deform",
+               pair->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Turns a pair round whose first body is rigid: rows lie on the side that takes displacements, and a rigid body takes forces */
+PetscErrorCode ContactTurnRigid(Contact contact, ContactPair *pair)
+{
+  PetscInt  n     = 0;
+  PetscBool first = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(CountRigid(contact, pair, &n, &first));
+  if (n == 2 || (n && pair->obstacle)) PetscCall(CheckGives(contact, pair));
+  else if (first) {
+    PetscCheck(pair->row_side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "
+               "out for this pair",
+               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+    ContactTurnPair(pair);
+    pair->why = "the rigid body takes forces";
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether any body in a pair is rigid */
+PetscErrorCode ContactHasRigid(Contact contact, PetscBool *has)
+{
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscInt  n     = 0;
+    PetscBool first = PETSC_FALSE;
+
+    PetscCall(CountRigid(contact, &contact->pairs[p], &n, &first));
+    *has = (PetscBool)(*has || n);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

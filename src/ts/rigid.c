@@ -1,0 +1,101 @@
+/* Rigid motions: a step is a function of the caller, who knows what moves as one. */
+#include <impakt/tssecondorder.h>
+#include "tsrigid.h"
+#include <petsc/private/tsimpl.h>
+
+typedef struct {
+  TSRigidFn *advance;
+  void      *ctx;
+} TS_Rigid;
+
+static PetscErrorCode TSStep_Rigid(TS ts)
+{
+  TS_Rigid *rigid = (TS_Rigid *)ts->data;
+  PetscReal next  = ts->time_step;
+  PetscBool accept;
+
+  PetscFunctionBegin;
+  PetscCall((*rigid->advance)(ts, ts->ptime, ts->time_step, ts->vec_sol, ts->vec_dot, rigid->ctx));
+  PetscCall(TSAdaptChoose(ts->adapt, ts, ts->time_step, NULL, &next, &accept));
+  ts->ptime += ts->time_step;
+  ts->time_step = next;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSSetUp_Rigid(TS ts)
+{
+  TS_Rigid *rigid = (TS_Rigid *)ts->data;
+
+  PetscFunctionBegin;
+  PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TS2SetSolution() first");
+  PetscCheck(rigid->advance, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSRigidSetAdvance() first");
+  PetscCall(TSGetAdapt(ts, &ts->adapt));
+  PetscCall(TSAdaptCandidatesClear(ts->adapt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSDestroy_Rigid(TS ts)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSRigidSetAdvance_C", NULL));
+  PetscCall(PetscFree(ts->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSRigidSetAdvance_Rigid(TS ts, TSRigidFn *advance, void *ctx)
+{
+  TS_Rigid *rigid = (TS_Rigid *)ts->data;
+
+  PetscFunctionBegin;
+  rigid->advance = advance;
+  rigid->ctx     = ctx;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  TSRigidSetAdvance - sets the function that makes a step
+
+  Logically Collective
+
+  Input Parameters:
++ ts      - the `TSRIGID`
+. advance - function (ts, t, dt, U, V, ctx): takes displacement U [m] and velocity V [m/s] at time t to those at t + dt
+- ctx     - its context
+
+  Level: developer
+
+.seealso: `TSRIGID`, `TS2SetSolution()`
+@*/
+PetscErrorCode TSRigidSetAdvance(TS ts, TSRigidFn *advance, void *ctx)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  PetscTryMethod(ts, "TSRigidSetAdvance_C", (TS, TSRigidFn *, void *), (ts, advance, ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*MC
+   TSRIGID - steps of bodies that do not deform: displacements and velocities of many nodes that follow from the few numbers of a rigid
+   motion, which the function of `TSRigidSetAdvance()` knows
+
+   Level: beginner
+
+   Note:
+   There is no `TSRollBack()`: whoever wants to undo a step keeps displacement and velocity, and calls `TSSecondOrderSetState()`.
+
+.seealso: `TSALPHA2`, `TSRigidSetAdvance()`, `BodySetRigid()`
+M*/
+PetscErrorCode TSCreate_Rigid(TS ts)
+{
+  TS_Rigid *rigid;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&rigid));
+  ts->data               = rigid;
+  ts->ops->setup         = TSSetUp_Rigid;
+  ts->ops->step          = TSStep_Rigid;
+  ts->ops->destroy       = TSDestroy_Rigid;
+  ts->default_adapt_type = TSADAPTNONE;
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSRigidSetAdvance_C", TSRigidSetAdvance_Rigid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
