@@ -1,5 +1,6 @@
 /* What changes of the energy of all bodies are relative to. */
 #include "energyscale.h"
+#include <impakt/private/bodyrows.h>
 
 /* A body starts at rest if no node is faster than this part of its wave speed, and without strain if its energy is below that of this
    strain everywhere: both are round-off of what the user gave, of velocities by formulas and of displacements that move the body as a whole
@@ -7,7 +8,7 @@
 #define NO_SPEED  1e-14
 #define NO_STRAIN 1e-10
 
-/* Whether a body starts at rest and without strain */
+/* Whether a body starts at rest and without strain, or with a motion that is given to it for good */
 static PetscErrorCode StartsFromRest(Body body, const BodyMeasures *measures, PetscBool *rest)
 {
   PetscReal density, modulus, mass, speed;
@@ -15,6 +16,8 @@ static PetscErrorCode StartsFromRest(Body body, const BodyMeasures *measures, Pe
   Vec       v;
 
   PetscFunctionBegin;
+  PetscCall(BodyGetLed(body, NULL, rest));
+  if (*rest) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
   PetscCall(MaterialGetWaveModulus(material, &modulus));
@@ -40,6 +43,7 @@ PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, const C
 {
   const Body *bodies;
   PetscReal   size = 0;
+  PetscBool   rest;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, NULL, &bodies));
@@ -47,10 +51,13 @@ PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, const C
   for (PetscInt b = 0; b < frame->n_bodies; b++) {
     const BodyMeasures *body = &frame->bodies[b];
 
-    size += body->kinetic + body->potential + PetscAbsReal(body->external_work);
+    PetscCall(BodyGetLed(bodies[b], NULL, &rest));
+    size += (rest ? 0 : body->kinetic) + body->potential + PetscAbsReal(body->external_work);
     if (frame->step) continue;
     scale->start += BodyMeasuresGetBalance(body);
-    if (scale->from_rest) PetscCall(StartsFromRest(bodies[b], body, &scale->from_rest));
+    PetscCall(StartsFromRest(bodies[b], body, &rest));
+    scale->from_rest = (PetscBool)(scale->from_rest && rest);
+    if (rest) scale->given += body->kinetic;
   }
   scale->largest = PetscMax(scale->largest, size + PetscAbsReal(frame->obstacle_work));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,7 +67,9 @@ PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, const C
    not raise what it is compared with. */
 PetscReal EnergyScaleGet(const EnergyScale *scale)
 {
-  return scale->from_rest || scale->start <= 0 ? scale->largest : scale->start;
+  const PetscReal start = scale->start - scale->given;
+
+  return scale->from_rest || start <= 0 ? scale->largest : start;
 }
 
 /* By how much there is more energy in a frame than at the start, with what friction has taken since, and without the work of moving

@@ -4,6 +4,7 @@
 
 typedef struct {
   PetscReal start;     /* energy of all bodies at the start [J] */
+  PetscReal given;     /* of that, kinetic energy of rigid bodies that are led: no measure of what contact may change [J] */
   PetscReal largest;   /* energies and work of all bodies, so far [J] */
   PetscBool from_rest; /* all bodies start at rest without strain: then the largest is what changes are relative to */
 } EnergyScale;

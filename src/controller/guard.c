@@ -1,5 +1,6 @@
 /* The energy guard: a run that gains energy ends. */
 #include "controllerimpl.h"
+#include <impakt/private/bodyrows.h>
 
 /* Energy at the start that is below this part of the largest since then is round-off: all starts at rest without strain */
 #define NOTHING_AT_START 1e-9
@@ -132,25 +133,27 @@ static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *
 /* Ends the run where energies have grown beyond the guard; collective, with the same frame on every rank */
 PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFrame *frame)
 {
-  PetscReal now = frame->penalty_energy + frame->friction_loss - frame->obstacle_work, start = 0, size = 0, scale;
+  PetscReal now = frame->penalty_energy + frame->friction_loss - frame->obstacle_work, start = 0, size = 0, own, scale;
   PetscReal work = PetscAbsReal(frame->obstacle_work), unresolved;
 
   PetscFunctionBegin;
   PetscCall(CheckFinite(controller, frame));
   if (controller->guard.part == 0 || !frame->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < frame->n_bodies; b++) {
-    PetscBool without_inertia;
+    PetscBool without_inertia, given;
 
     PetscCall(BodyIsStatic(controller->bodies[b], &without_inertia));
+    PetscCall(BodyGetLed(controller->bodies[b], NULL, &given));
     if (without_inertia) PetscFunctionReturn(PETSC_SUCCESS);
     if (frame->step == 0) controller->guard.start[b] = BodyMeasuresGetBalance(&frame->bodies[b]);
     now += BodyMeasuresGetBalance(&frame->bodies[b]);
     start += controller->guard.start[b];
     work += PetscAbsReal(frame->bodies[b].external_work);
-    size += frame->bodies[b].kinetic + frame->bodies[b].potential;
+    size += (given ? 0 : frame->bodies[b].kinetic) + frame->bodies[b].potential;
   }
   controller->guard.largest = PetscMax(controller->guard.largest, size);
-  scale                     = (start > NOTHING_AT_START * controller->guard.largest ? start : controller->guard.largest) + work;
+  own                       = start - controller->scale.given;
+  scale                     = (own > NOTHING_AT_START * controller->guard.largest ? own : controller->guard.largest) + work;
   PetscCall(ContactGetUnresolvedEnergy(controller->contact, &unresolved));
   if (now - start > controller->guard.part * scale + unresolved) PetscCall(EndRun(controller, frame, (now - start) / scale));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -64,7 +64,7 @@ PETSC_EXTERN PetscErrorCode BodyGetElementStiffness(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetImpedance(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetCrossSection(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetHeldDofs(Body, PetscInt *, const PetscInt *[]);
-PETSC_EXTERN PetscErrorCode BodyGetLed(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyGetLed(Body, PetscBool *, PetscBool *);
 
 /* Rows, set up once and given new entries later */
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);

@@ -75,19 +75,24 @@ PetscErrorCode BodyIsRigid(Body body, PetscBool *rigid)
   Input Parameter:
 . body - the `Body`
 
-  Output Parameter:
-. led - `PETSC_TRUE` if so
+  Output Parameters:
++ led    - `PETSC_TRUE` if so, or `NULL`
+- wholly - `PETSC_TRUE` if nothing is left to forces, or `NULL`: then its kinetic energy is given
 
   Level: developer
 
 .seealso: `Body`, `BodySetRigidDisplacement()`, `BodySetRigidRotation()`
 @*/
-PetscErrorCode BodyGetLed(Body body, PetscBool *led)
+PetscErrorCode BodyGetLed(Body body, PetscBool *led, PetscBool *wholly)
 {
+  const PetscBool axisymmetric = body->model.element->axisymmetric;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(led, 2);
-  *led = BodyIsLed(body);
+  if (led) *led = BodyIsLed(body);
+  if (!wholly) PetscFunctionReturn(PETSC_SUCCESS);
+  *wholly = (PetscBool)(BodyLeads(body, 3) || body->mesh.dim == 1 || axisymmetric);
+  for (PetscInt d = axisymmetric ? 1 : 0; d < body->mesh.dim; d++) *wholly = (PetscBool)(*wholly && BodyLeads(body, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

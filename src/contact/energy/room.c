@@ -167,6 +167,19 @@ static PetscErrorCode BookLevel(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Kinetic and potential energy of a body, without what is given to it for good: that of a rigid body that is led */
+static PetscErrorCode GetOwnEnergy(Body body, PetscReal *energy)
+{
+  BodyMeasures measures;
+  PetscBool    given;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetMeasures(body, &measures));
+  PetscCall(BodyGetLed(body, NULL, &given));
+  *energy = (given ? 0 : measures.kinetic) + measures.potential;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The excess is a part of the energy at the start or, where all starts at rest without strain, of the largest that there has been at the
    end of an accepted step. Collective. */
 static PetscErrorCode GrowRoom(Contact contact)
@@ -178,10 +191,10 @@ static PetscErrorCode GrowRoom(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += ContactMoreRoom(contact);
   if (!energy->at_rest || energy->excess == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    BodyMeasures measures;
+    PetscReal own = 0;
 
-    PetscCall(BodyGetMeasures(contact->bodies[b], &measures));
-    now += measures.kinetic + measures.potential;
+    PetscCall(GetOwnEnergy(contact->bodies[b], &own));
+    now += own;
   }
   if (now <= energy->scale) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += energy->excess * (now - energy->scale) / contact->n_bodies;
@@ -281,10 +294,10 @@ PetscErrorCode ContactBeginEnergy(Contact contact)
   if (energy->begun) PetscFunctionReturn(PETSC_SUCCESS);
   energy->begun = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    BodyMeasures measures;
+    PetscReal own = 0;
 
-    PetscCall(BodyGetMeasures(contact->bodies[b], &measures));
-    energy->scale += measures.kinetic + measures.potential;
+    PetscCall(GetOwnEnergy(contact->bodies[b], &own));
+    energy->scale += own;
   }
   energy->at_rest = (PetscBool)(energy->scale <= 0);
   energy->scale   = PetscMax(energy->scale, 0);

@@ -136,7 +136,7 @@ static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
 
   PetscFunctionBegin;
   PetscCall(BodyGetHeldDofs(contact->bodies[b], &n, &dofs));
-  PetscCall(BodyGetLed(contact->bodies[b], &led));
+  PetscCall(BodyGetLed(contact->bodies[b], &led, NULL));
   *held = n > 0 || led;
   PetscCall(ContactOr(contact, held));
   PetscFunctionReturn(PETSC_SUCCESS);
