@@ -21,6 +21,8 @@ static const KnownOption options[] = {
     {"bodies", OPTION_OF_BODY, "initial_velocity", "v[,v,v]", "velocity at the start [m/s], numbers or formulas in x, y, z; default 0"},
     {"bodies", OPTION_OF_BODY, "initial_displacement", "u[,u,u]",
      "displacement at the start [m], numbers or formulas in x, y, z; default 0"},
+    {"bodies", OPTION_OF_BODY, "rigid", "true|false",
+     "whether it moves as a whole, without deforming, by the mass and inertia of its mesh; needs a density alone; default false"},
     {"bodies", OPTION_OF_BODY, "mass_type", "lumped|consistent|averaged",
      "mass matrix; averaged: the mean of the two others. Default averaged, but lumped for explicit bodies in 2-D and 3-D"},
     {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false|near",
@@ -136,6 +138,11 @@ static const KnownOption options[] = {
      "traction on such a surface [Pa], formulas in x, y, z, t and the outward normal nx, ny, nz, or table:file"},
     {"loads", OPTION_OF_BODY, "body_force", "f[,f,f]", "force per volume [N/m^3], formulas in x, y, z, t, or table:file"},
     {"loads", OPTION_OF_BODY, "gravity", "g[,g,g]", "acceleration of gravity [m/s^2]"},
+    {"loads", OPTION_OF_BODY, "rigid_displacement", "u[,u,u]",
+     "leads the centre of mass of a rigid body [m]: formulas in t, or table:file; free: along that axis forces move it"},
+    {"loads", OPTION_OF_BODY, "rigid_rotation", "r[,r,r]",
+     "leads the rotation of a rigid body about its centre of mass [rad]: in 2-D an angle, in 3-D axis times angle; formulas in t, or "
+     "table:file"},
 
     {"time", OPTION_OF_RUN, "time_start", "t", "start [s], default 0"},
     {"time", OPTION_OF_RUN, "time_end", "t", "end [s]"},
@@ -143,8 +150,8 @@ static const KnownOption options[] = {
      "a run ends with an error where its energy has grown by more than this part, less the work of loads; default 0.05, 0: none"},
     {"time", OPTION_OF_RUN, "time_step", "dt|auto",
      "controller step, at whose ends all bodies are at the same time [s]; auto: the largest that resolves contact"},
-    {"time", OPTION_OF_BODY, "ts_type", "alpha2|centraldifference|static",
-     "integrator: implicit, explicit, or none (no inertia); default alpha2"},
+    {"time", OPTION_OF_BODY, "ts_type", "alpha2|centraldifference|static|rigid",
+     "integrator: implicit, explicit, none (no inertia), or that of rigid bodies; default alpha2"},
     {"time", OPTION_OF_BODY, "artificial_stiffness", "part",
      "of the springs that hold a static body, where contact or ties alone do, while contact forces are found, in parts of its own; default "
      "1e-2, of a nonlinear one 1"},

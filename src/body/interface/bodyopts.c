@@ -29,10 +29,17 @@ static PetscErrorCode CreateMesh(Body body)
 /* The material of the body; nothing where the program has set it */
 static PetscErrorCode ReadMaterial(Body body)
 {
+  PetscBool rigid;
+
   PetscFunctionBegin;
   if (body->model.material) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->model.material));
   PetscCall(MaterialSetOptionsPrefix(body->model.material, ((PetscObject)body)->prefix));
+  PetscCall(BodyAsksForRigid(body, &rigid));
+  if (rigid) { /* any modulus does where none is given */
+    PetscCall(MaterialSetType(body->model.material, MATERIAL_LINEAR_ELASTIC));
+    PetscCall(MaterialSetYoungsModulus(body->model.material, 1));
+  }
   PetscCall(MaterialSetFromOptions(body->model.material));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,7 +135,7 @@ static PetscErrorCode ReadStatic(Body body)
 . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
 . -<body>_mass_redistribute (true|false|near)        - moves the mass of contact nodes to their inner neighbours, default true
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
-. -<body>_ts_type (alpha2|centraldifference|static)  - implicit, explicit, or without inertia, default alpha2
+. -<body>_ts_type (alpha2|centraldifference|static|rigid) - implicit, explicit, without inertia, or rigid, default alpha2
 . -<body>_rigid (true|false)                         - it does not deform, see `BodySetRigid()`
 . -<body>_ts_time_step (auto|dt)                     - substep [s], default the controller step, or auto where that is unstable
 . -<body>_damping_mass alpha                         - Rayleigh damping by the mass [1/s], default 0

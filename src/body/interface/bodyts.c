@@ -13,11 +13,11 @@
 
   Input Parameters:
 + body - the `Body`, not yet set up
-- type - `TSALPHA2` (implicit, the default: Newmark's trapezoidal rule), `TSCENTRALDIFFERENCE` (explicit), or `TSSTATIC` (without
-         inertia)
+- type - `TSALPHA2` (implicit, the default: Newmark's trapezoidal rule), `TSCENTRALDIFFERENCE` (explicit), `TSSTATIC` (without
+         inertia), or `TSRIGID` (see `BodySetRigid()`)
 
   Options Database Key:
-. -<body>_ts_type (alpha2|centraldifference|static) - the integrator
+. -<body>_ts_type (alpha2|centraldifference|static|rigid) - the integrator
 
   Level: beginner
 

@@ -21,12 +21,11 @@
 
   Notes:
   The same as `BodySetTSType()` with `TSRIGID`. The centre moves by the trapezoidal rule, the rotation by a rule that keeps energy and angular
-  momentum (Simo, Wong 1991), for any step. The mass is consistent, so that the moments of inertia are those of the mesh. The
-  material's density makes the mass; its moduli are asked for as of any body, and decide nothing but the penalty parameter and
-  the scale of tolerances.
+  momentum (Simo, Wong 1991), for any step. The mass is consistent, so that the moments of inertia are those of the mesh. Of the
+  material the density alone counts; from options it needs no modulus.
 
-  In contact its nodes keep their mass, and its partner has to give: a body with massless contact nodes, or a penalty. It is the second side of
-  its pairs.
+  In contact its partner has to give: a pair of two rigid bodies, or of one and an obstacle, is refused. It takes forces, and so is the second
+  side of its pairs, whatever their order.
 
 .seealso: `Body`, `BodyIsRigid()`, `BodySetRigidDisplacement()`, `BodySetRigidRotation()`, `TSRIGID`
 @*/
@@ -112,6 +111,20 @@ PetscErrorCode BodyReadRigid(Body body, const char type[], PetscBool *rigid)
   }
   if (!given && type) *rigid = PETSC_FALSE;
   if (given) PetscCall(BodySetRigid(body, *rigid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether options, or else the program, make the body a rigid one, before its integrator is read */
+PetscErrorCode BodyAsksForRigid(Body body, PetscBool *rigid)
+{
+  char      type[64];
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsRigid(body, rigid));
+  PetscCall(PetscOptionsGetString(NULL, ((PetscObject)body)->prefix, "-ts_type", type, sizeof(type), &set));
+  if (set) PetscCall(PetscStrcmp(type, TSRIGID, rigid));
+  PetscCall(PetscOptionsGetBool(NULL, ((PetscObject)body)->prefix, "-rigid", rigid, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

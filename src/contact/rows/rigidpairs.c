@@ -13,24 +13,20 @@ static PetscErrorCode CountRigid(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, of no length that a step could resolve */
-static PetscErrorCode CheckGives(Contact contact, const ContactPair *pair)
+/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, which no step resolves. Nor do springs of a
+   penalty: a rigid disc on a rigid plate, both with default parameters, gained 5 % within 800 steps, and lost 35 % with softer springs and
+   friction. */
+static PetscErrorCode RefuseRigid(Contact contact, const ContactPair *pair)
 {
-  PetscBool springs;
-
   PetscFunctionBegin;
-  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &springs));
-  if (pair->obstacle)
-    PetscCheck(springs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: let the body deform, put a body "
-               "that deforms in place of the obstacle, or choose -contact_type penalty",
-               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
-  else
-    PetscCheck(springs, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: let one of them deform, or choose -contact_type "
-               "penalty; where pairs were chosen by 'auto' or 'all', name those of bodies that deform",
-               pair->name);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!pair->obstacle, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: let the body deform, or put a body "
+             "that deforms in place of the obstacle",
+             pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: let one of them deform, or leave the pair out (where "
+          "'auto' has chosen it, name the other pairs)",
+          pair->name);
 }
 
 /* Turns a pair round whose first body is rigid: rows lie on the side that takes displacements, and a rigid body takes forces */
@@ -41,7 +37,7 @@ PetscErrorCode ContactTurnRigid(Contact contact, ContactPair *pair)
 
   PetscFunctionBegin;
   PetscCall(CountRigid(contact, pair, &n, &first));
-  if (n == 2 || (n && pair->obstacle)) PetscCall(CheckGives(contact, pair));
+  if (n == 2 || (n && pair->obstacle)) PetscCall(RefuseRigid(contact, pair));
   else if (first) {
     PetscCheck(pair->row_side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "

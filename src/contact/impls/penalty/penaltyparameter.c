@@ -34,7 +34,7 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
 PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair, PetscReal given, PetscReal wanted, PetscReal *parameter,
                                        PetscReal *scale)
 {
-  PetscReal flexibility = 0, of_rigid = 0;
+  PetscReal flexibility  = 0;
   PetscBool all_massless = PETSC_TRUE;
 
   PetscFunctionBegin;
@@ -49,10 +49,8 @@ PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair,
     PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
     PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
     if (!massless && !rigid) all_massless = PETSC_FALSE;
-    if (rigid) of_rigid += 1 / stiffness;
-    else flexibility += 1 / stiffness;
+    if (!rigid) flexibility += 1 / stiffness;
   }
-  if (!(flexibility > 0)) flexibility = of_rigid; /* nothing deforms but the springs */
   if (!(*scale > 0)) *scale = all_massless ? MASSLESS_SCALE : MASS_SCALE;
   *parameter = *scale / flexibility;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -39,8 +39,12 @@ static PetscErrorCode CheckSwappable(Contact contact, PetscInt b)
   const ContactBodyRows *of = &contact->body_rows[b];
   const Mat              B  = contact->interfaces[b];
   Vec                    row, displacement, transposed;
+  PetscBool              rigid;
 
   PetscFunctionBegin;
+  PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
+  PetscCheck(!rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_swap_sides: body '%s' is rigid, and takes forces alone; leave the option out", ((PetscObject)contact->bodies[b])->name);
   PetscCall(MatCreateVecs(B, &transposed, &row));
   PetscCall(VecDuplicate(row, &displacement));
   for (PetscInt j = 0; j < of->n_all; j++) {
