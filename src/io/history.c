@@ -28,6 +28,7 @@ struct _n_History {
   PetscBool      springs;         /* contact has penalty springs */
   PetscBool     *plastic;         /* per body: its material flows */
   PetscBool     *hourglasses;     /* per body: its elements have one point */
+  PetscBool     *rigid;           /* per body */
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
@@ -70,12 +71,12 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ControllerGetProbes(controller, &n_probes, &probes));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(PetscMalloc4(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->plastic,
-                         history->n_bodies, &history->hourglasses));
+  PetscCall(PetscMalloc5(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->plastic,
+                         history->n_bodies, &history->hourglasses, history->n_bodies, &history->rigid));
   PetscCall(ContactGetLaw(contact, &law));
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
-  PetscCall(PetscCalloc1(3 + 10 * n_pairs + 11 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscCalloc1(3 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
   if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", "J", 1, PETSC_FALSE));
@@ -114,6 +115,11 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     if (history->plastic[i]) PetscCall(AddSeries(history, "/body/", name, "plastic_work", "J", 1, PETSC_FALSE));
     PetscCall(BodyHasHourglasses(bodies[i], &history->hourglasses[i]));
     if (history->hourglasses[i]) PetscCall(AddSeries(history, "/body/", name, "hourglass_energy", "J", 1, PETSC_FALSE));
+    PetscCall(BodyIsRigid(bodies[i], &history->rigid[i]));
+    if (!history->rigid[i]) continue;
+    PetscCall(AddSeries(history, "/body/", name, "centre", "m", *dim, PETSC_FALSE));
+    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "rotation", "rad", 3, PETSC_FALSE));
+    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_velocity", "rad/s", 3, PETSC_FALSE));
   }
   for (PetscInt i = 0; i < n_supports; i++) {
     const ControllerSupport *support = &supports[i];
@@ -270,6 +276,10 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
     if (history->damped[i]) *next++ = frame->bodies[i].damping_work;
     if (history->plastic[i]) *next++ = frame->bodies[i].plastic_work;
     if (history->hourglasses[i]) *next++ = frame->bodies[i].hourglass_energy;
+    if (!history->rigid[i]) continue;
+    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->bodies[i].place[d];
+    for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].orientation[d];
+    for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].angular_velocity[d];
   }
   for (PetscInt i = 0; i < frame->n_supports; i++) {
     for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
@@ -397,7 +407,7 @@ PetscErrorCode HistoryDestroy(History *history)
   if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(*history)->failed) PetscCall(HistoryFlush(*history));
   PetscCall(PetscFree((*history)->options));
-  PetscCall(PetscFree4((*history)->dims, (*history)->damped, (*history)->plastic, (*history)->hourglasses));
+  PetscCall(PetscFree5((*history)->dims, (*history)->damped, (*history)->plastic, (*history)->hourglasses, (*history)->rigid));
   PetscCall(PetscFree((*history)->series));
   PetscCall(PetscFree((*history)->records));
   PetscCall(OutputFileRelease(&(*history)->held));

@@ -640,6 +640,21 @@ static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal accel
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Measure(Body body, BodyMeasures *measures)
+{
+  RigidMotion motion;
+  Momentum    momentum;
+
+  PetscFunctionBegin;
+  PetscCall(FindPlace(body, body->state.u, &motion));
+  PetscCall(FindMomentum(body, &motion, body->state.v, body->work.nodes[1], &momentum));
+  FindVelocity(body, &momentum, &motion);
+  PetscCall(PetscArraycpy(measures->place, motion.centre, 3));
+  PetscCall(PetscArraycpy(measures->angular_velocity, motion.angular_velocity, 3));
+  RigidFindVector(motion.rotation, measures->orientation);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode View(Body body, PetscViewer viewer)
 {
   const PetscReal *J = GetRigid(body)->inertia;
@@ -686,6 +701,7 @@ PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator integrator)
   integrator->ops.start             = Start;
   integrator->ops.startacceleration = CompleteStartAcceleration;
   integrator->ops.rates             = GetRates;
+  integrator->ops.measure           = Measure;
   integrator->ops.view              = View;
   integrator->ops.destroy           = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);

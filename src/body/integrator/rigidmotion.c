@@ -119,6 +119,33 @@ void RigidSpin(const PetscReal v[3], const PetscReal rate[3], PetscReal spin[3])
   RigidMultiply(A, rate, spin);
 }
 
+/* The vector of axis times angle, 0 to pi, of a rotation: by its quaternion, of which the largest part is found first (S. W. Shepperd, Quaternion
+   from rotation matrix, Journal of Guidance and Control 1, 1978) */
+void RigidFindVector(const PetscReal R[9], PetscReal v[3])
+{
+  const PetscReal squares[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8], 1 - R[0] + R[4] - R[8], 1 - R[0] - R[4] + R[8]};
+  PetscReal       q[4], length, scale;
+  PetscInt        k = 0;
+
+  for (PetscInt i = 1; i < 4; i++)
+    if (squares[i] > squares[k]) k = i;
+  q[k] = 0.5 * PetscSqrtReal(squares[k]);
+  if (k == 0)
+    for (PetscInt i = 0; i < 3; i++) q[1 + i] = (R[3 * ((i + 2) % 3) + (i + 1) % 3] - R[3 * ((i + 1) % 3) + (i + 2) % 3]) / (4 * q[0]);
+  else {
+    const PetscInt a = k - 1, b = k % 3, c = (k + 1) % 3;
+
+    q[0]     = (R[3 * c + b] - R[3 * b + c]) / (4 * q[k]);
+    q[1 + b] = (R[3 * a + b] + R[3 * b + a]) / (4 * q[k]);
+    q[1 + c] = (R[3 * a + c] + R[3 * c + a]) / (4 * q[k]);
+  }
+  if (q[0] < 0)
+    for (PetscInt i = 0; i < 4; i++) q[i] = -q[i];
+  length = PetscSqrtReal(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  scale  = length > 0 ? 2 * PetscAtan2Real(length, q[0]) / length : 2;
+  for (PetscInt i = 0; i < 3; i++) v[i] = scale * q[1 + i];
+}
+
 /* The angle by which R is turned against Q [rad] */
 PetscReal RigidAngle(const PetscReal R[9], const PetscReal Q[9])
 {

@@ -20,6 +20,7 @@ PETSC_INTERN PetscBool RigidFindRotation(PetscReal[9]);
 PETSC_INTERN void      RigidCayley(const PetscReal[3], PetscReal[9]);
 PETSC_INTERN void      RigidExponential(const PetscReal[3], PetscReal[9]);
 PETSC_INTERN void      RigidSpin(const PetscReal[3], const PetscReal[3], PetscReal[3]);
+PETSC_INTERN void      RigidFindVector(const PetscReal[9], PetscReal[3]);
 PETSC_INTERN PetscReal RigidAngle(const PetscReal[9], const PetscReal[9]);
 PETSC_INTERN void      RigidTorque(const PetscReal[9], const PetscReal[9], PetscReal[3]);
 

@@ -214,7 +214,9 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
     measures->momentum[d]         = sums[2 + d];
     measures->angular_momentum[d] = sums[5 + d];
     measures->mean_velocity[d]    = sums[8 + d] / body->mass.total;
+    measures->place[d] = measures->orientation[d] = measures->angular_velocity[d] = 0;
   }
+  if (body->integrator->ops.measure) PetscCall((*body->integrator->ops.measure)(body, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
