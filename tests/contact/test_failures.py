@@ -28,3 +28,11 @@ def test_pairs_in_contact_of_many(impakt):
     run = impakt(f"-options_file {ROOT}/options/cradle-3.opts -schwarz_snes_type nrichardson -schwarz_snes_max_it 1 -schwarz_snes_atol 1e-25 -schwarz_snes_rtol 1e-25", expect_failure=True)
     assert run.returncode > 0
     check_message(run, ["in controller step ", "in contact: "])
+
+
+@pytest.mark.parametrize("method", ["-contact_type penalty -penalty_snes_linesearch_type", "-schwarz_snes_linesearch_type"])
+@pytest.mark.parametrize("search", ["bt", "nleqerr"])
+def test_line_searches_that_want_slopes(impakt, method, search):
+    """They multiply with the Jacobian, which is there only to be divided by."""
+    run = impakt(f"-options_file {ROOT}/options/impact-high-speed.opts {method} {search}", expect_failure=True)
+    check_message(run, [f"snes_linesearch_type {search}", "secant"])

@@ -79,7 +79,7 @@ def test_mass_on_a_bar(impakt):
     run = impakt("-options_file options/rigid-mass.opts")
     body, time = run.history["body/mass"], run.history["time"][()]
     late = time > 2e-5
-    np.testing.assert_allclose(body["mean_velocity"][()].ravel()[late], 10 * np.exp(-time[late] * 1e6 / 150), rtol=0, atol=1e-2)  # measured: 3e-3
+    np.testing.assert_allclose(body["mean_velocity"][()].ravel()[late], 10 * np.exp(-time[late] * 1e6 / 150), rtol=0, atol=3e-3)  # measured: 7e-4
     assert run.summary["contact"]["impulse"] == pytest.approx(1500 * (1 - np.exp(-9e-4 * 1e6 / 150)), rel=1e-4)
     assert worst_energy_error(run.summary) <= 1e-6
     assert run.summary["schwarz"]["max"] <= 2
@@ -99,7 +99,7 @@ def test_punch(impakt):
     surface = (pressure > 0) & (positions[:, 0] < 0.9 * radius)
     fitted = np.array(hertz.fit(positions[surface, 0] / radius, pressure[surface] / peak))
     assert surface.sum() > 10
-    assert fitted == pytest.approx([1, 1], abs=1e-2)
+    assert fitted == pytest.approx([1, 1], abs=1e-2)  # measured: +4.8e-3, -3.1e-3
 
 
 PLATE = (

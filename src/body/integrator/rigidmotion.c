@@ -46,7 +46,8 @@ PetscBool RigidInvert(const PetscReal A[9], PetscReal B[9])
 }
 
 /* The rotation next to A, in its place: the orthogonal factor of its polar decomposition by Newton's method, A <- (A + A^{-T}) / 2 (N. J.
-   Higham, Computing the polar decomposition, SIAM Journal on Scientific and Statistical Computing 7, 1986). False where A is far from any. */
+   Higham, Computing the polar decomposition, SIAM Journal on Scientific and Statistical Computing 7, 1986). False where A is far from any.
+ */
 PetscBool RigidFindRotation(PetscReal A[9])
 {
   PetscReal inverse[9], off;
@@ -97,8 +98,9 @@ void RigidExponential(const PetscReal v[3], PetscReal R[9])
 {
   const PetscReal square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], angle = PetscSqrtReal(square);
 
-  if (angle < SMALL_ANGLE) FromVector(1 - square / 2 + square * square / 24, 1 - square / 6 + square * square / 120,
-                                      0.5 - square / 24 + square * square / 720, v, R);
+  if (angle < SMALL_ANGLE)
+    FromVector(1 - square / 2 + square * square / 24, 1 - square / 6 + square * square / 120, 0.5 - square / 24 + square * square / 720, v,
+               R);
   else FromVector(PetscCosReal(angle), PetscSinReal(angle) / angle, (1 - PetscCosReal(angle)) / square, v, R);
 }
 
@@ -119,8 +121,8 @@ void RigidSpin(const PetscReal v[3], const PetscReal rate[3], PetscReal spin[3])
   RigidMultiply(A, rate, spin);
 }
 
-/* The vector of axis times angle, 0 to pi, of a rotation: by its quaternion, of which the largest part is found first (S. W. Shepperd, Quaternion
-   from rotation matrix, Journal of Guidance and Control 1, 1978) */
+/* The vector of axis times angle, 0 to pi, of a rotation: by its quaternion, of which the largest part is found first (S. W. Shepperd,
+   Quaternion from rotation matrix, Journal of Guidance and Control 1, 1978) */
 void RigidFindVector(const PetscReal R[9], PetscReal v[3])
 {
   const PetscReal squares[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8], 1 - R[0] + R[4] - R[8], 1 - R[0] - R[4] + R[8]};

@@ -5,8 +5,8 @@
 
 /* Where a rigid body is, and how it moves: x = c + R (X - C) */
 typedef struct {
-  PetscReal centre[3];   /* c: of its mass [m] */
-  PetscReal rotation[9]; /* R */
+  PetscReal centre[3];                        /* c: of its mass [m] */
+  PetscReal rotation[9];                      /* R */
   PetscReal velocity[3], angular_velocity[3]; /* of the centre [m/s]; about it [rad/s] */
   PetscReal acceleration[3], angular_acceleration[3];
 } RigidMotion;

@@ -368,7 +368,7 @@ PetscErrorCode BodyGetSurfaceMaterial(Body body, Material *material)
 }
 
 /*@
-  BodyIsLinear - whether the stiffness of a body is constant: all its materials are linear
+  BodyIsLinear - whether the stiffness of a body is constant: all its materials are linear, or it is rigid and cannot turn
 
   Not Collective
 
@@ -387,6 +387,10 @@ PetscErrorCode BodyIsLinear(Body body, PetscBool *linear)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(linear, 2);
+  if (body->integrator && !body->integrator->deforms) {
+    *linear = (PetscBool)(body->mesh.dim == 1 || body->model.element->axisymmetric);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!body->model.blocks.n) {
     PetscCall(MaterialIsLinear(body->model.material, linear));
     PetscFunctionReturn(PETSC_SUCCESS);

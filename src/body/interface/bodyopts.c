@@ -72,8 +72,8 @@ static PetscErrorCode ReadMass(Body body)
   PetscCall(BodySetMassMoments(body, moments));
   PetscCall(BodySetMassType(body, type));
   PetscCheck(!given || !redistribute || body->integrator->deforms, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-%smass_redistribute %s: body '%s' is rigid, and its nodes keep their mass; leave the option out", ((PetscObject)body)->prefix,
-             value, body->hdr.name);
+             "-%smass_redistribute %s: body '%s' is rigid, and its nodes keep their mass; leave the option out",
+             ((PetscObject)body)->prefix, value, body->hdr.name);
   if (given) {
     PetscCall(BodySetMassRedistribute(body, redistribute));
     PetscCall(BodySetMassRedistributeNear(body, near));

@@ -6,7 +6,6 @@ PETSC_INTERN PetscErrorCode BodySetUpMesh(Body);
 PETSC_INTERN PetscErrorCode BodySetTimeFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodySetUpIntegrator(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassType(Body);
-PETSC_INTERN PetscErrorCode BodyNoteLinear(Body);
 PETSC_INTERN PetscErrorCode BodyNoteHeld(Body);
 PETSC_INTERN PetscErrorCode BodyAsksForRigid(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyReadRigid(Body, const char[], PetscBool *);

@@ -285,6 +285,6 @@ PetscErrorCode BodySetUpIntegrator(Body body)
   PetscCall(TSGetDM(ts, &dm));
   if (dm != body->mesh.dm) PetscCall(TSSetDM(ts, body->mesh.dm));
   if (body->integrator->ops.getparameters) PetscCall((*body->integrator->ops.getparameters)(body));
-  if (body->model.material) PetscCall(BodyNoteLinear(body));
+  if (body->model.material) PetscCall(BodyIsLinear(body, &body->model.linear));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

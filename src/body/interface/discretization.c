@@ -21,24 +21,6 @@ PetscErrorCode BodySetUpMassType(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether displacements depend linearly on forces, by the material, or because a rigid body cannot turn */
-PetscErrorCode BodyNoteLinear(Body body)
-{
-  PetscFunctionBegin;
-  if (body->integrator && !body->integrator->deforms) {
-    body->model.linear = (PetscBool)(body->mesh.dim == 1 || body->model.element->axisymmetric);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(MaterialIsLinear(body->model.material, &body->model.linear));
-  for (PetscInt k = 0; k < body->model.blocks.n; k++) {
-    PetscBool linear;
-
-    PetscCall(MaterialIsLinear(body->model.blocks.materials[k], &linear));
-    body->model.linear = k ? (PetscBool)(body->model.linear && linear) : linear;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Nodes and elements, from mesh and material; nothing where they are there already */
 PetscErrorCode BodySetUpMesh(Body body)
 {
@@ -53,7 +35,7 @@ PetscErrorCode BodySetUpMesh(Body body)
              "Body '%s' has no material: call BodySetMaterial() or BodySetFromOptions() first", body->hdr.name);
   PetscCall(MaterialSetUp(body->model.material));
   for (PetscInt k = 0; k < body->model.blocks.n; k++) PetscCall(MaterialSetUp(body->model.blocks.materials[k]));
-  PetscCall(BodyNoteLinear(body));
+  PetscCall(BodyIsLinear(body, &body->model.linear));
   PetscCall(BodySetUpCells(body));
   PetscCall(BodySetUpLayout(body));
   PetscCall(BodyComputeBlockMass(body));

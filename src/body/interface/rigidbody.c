@@ -20,12 +20,12 @@
   Level: beginner
 
   Notes:
-  The same as `BodySetTSType()` with `TSRIGID`. The centre moves by the trapezoidal rule, the rotation by a rule that keeps energy and angular
-  momentum (Simo, Wong 1991), for any step. The mass is consistent, so that the moments of inertia are those of the mesh. Of the
+  The same as `BodySetTSType()` with `TSRIGID`. The centre moves by the trapezoidal rule, the rotation by a rule that keeps energy and
+angular momentum (Simo, Wong 1991), for any step. The mass is consistent, so that the moments of inertia are those of the mesh. Of the
   material the density alone counts; from options it needs no modulus.
 
-  In contact its partner has to give: a pair of two rigid bodies, or of one and an obstacle, is refused. It takes forces, and so is the second
-  side of its pairs, whatever their order.
+  In contact its partner has to give: a pair of two rigid bodies, or of one and an obstacle, is refused. It takes forces, and so is the
+second side of its pairs, whatever their order.
 
 .seealso: `Body`, `BodyIsRigid()`, `BodySetRigidDisplacement()`, `BodySetRigidRotation()`, `TSRIGID`
 @*/

@@ -53,14 +53,14 @@ typedef struct {
   /* (NULL) where body->solver does not have them: displacement of the rows at the end of a substep for forces on them at its end [m], to a
      vector from one [N] */
   PetscErrorCode (*applycompliance)(Body, Vec, Vec);
-  PetscErrorCode (*solvemass)(Body, Vec, Vec); /* (NULL) the acceleration [m/s^2] that forces on the nodes bring [N] */
-  PetscErrorCode (*start)(Body);               /* (NULL) checks, and corrects, displacement and velocity of the first state */
-  PetscErrorCode (*startacceleration)(Body);   /* (NULL) makes that of the first state, which solvemass() has found, complete */
+  PetscErrorCode (*solvemass)(Body, Vec, Vec);     /* (NULL) the acceleration [m/s^2] that forces on the nodes bring [N] */
+  PetscErrorCode (*start)(Body);                   /* (NULL) checks, and corrects, displacement and velocity of the first state */
+  PetscErrorCode (*startacceleration)(Body);       /* (NULL) makes that of the first state, which solvemass() has found, complete */
   PetscErrorCode (*measure)(Body, BodyMeasures *); /* (NULL) where a rigid body is, and how it turns */
-  PetscErrorCode (*view)(Body, PetscViewer);   /* (NULL) what there is to tell of such a body */
-  PetscErrorCode (*rates)(Body, PetscReal[3], PetscReal[3]);         /* (NULL) of rows: velocity and acceleration at the end of a substep as
-                                                                        multiples of u1 - u0, v0 and a0 */
-  PetscErrorCode (*destroy)(Body);                                   /* frees `data`; the body may not have been set up */
+  PetscErrorCode (*view)(Body, PetscViewer);       /* (NULL) what there is to tell of such a body */
+  PetscErrorCode (*rates)(Body, PetscReal[3], PetscReal[3]); /* (NULL) of rows: velocity and acceleration at the end of a substep as
+                                                                multiples of u1 - u0, v0 and a0 */
+  PetscErrorCode (*destroy)(Body);                           /* frees `data`; the body may not have been set up */
 } BodyIntegratorOps;
 
 struct _n_BodyIntegrator {

@@ -14,7 +14,8 @@ static PetscErrorCode RefusePlace(Body body, const char name[], PetscInt n, cons
 
     if (list[i]) PetscCall(ExpressionIsUniform(list[i], &uniform));
     PetscCheck(uniform, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-               "-%s%s: a rigid body is led as a whole; its formulas may use t, but not x, y, z or a normal", ((PetscObject)body)->prefix, name);
+               "-%s%s: a rigid body is led as a whole; its formulas may use t, but not x, y, z or a normal", ((PetscObject)body)->prefix,
+               name);
   }
   return PETSC_SUCCESS;
 }
@@ -50,8 +51,8 @@ PetscErrorCode BodyLoadsSetRigidRotation(Body body, const char text[])
              text, body->hdr.name);
   PetscCall(ExpressionListCount(text, &n));
   PetscCheck(n == turns, comm, PETSC_ERR_USER_INPUT,
-             "-%s '%s' has %" PetscInt_FMT " component%s; body '%s' is %" PetscInt_FMT "-dimensional and has %" PetscInt_FMT " [rad]", option,
-             text, n, n == 1 ? "" : "s", body->hdr.name, body->mesh.dim, turns);
+             "-%s '%s' has %" PetscInt_FMT " component%s; body '%s' is %" PetscInt_FMT "-dimensional and has %" PetscInt_FMT " [rad]",
+             option, text, n, n == 1 ? "" : "s", body->hdr.name, body->mesh.dim, turns);
   for (PetscInt d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&loads->lead[3 + d]));
   PetscCall(ExpressionListCreate(comm, option, text, turns, PETSC_FALSE, loads->lead + 3));
   PetscCall(RefusePlace(body, "rigid_rotation", turns, loads->lead + 3));
@@ -152,8 +153,8 @@ PetscErrorCode BodyLead(Body body, PetscReal t, RigidMotion *motion)
     PetscCall(EvaluateRotation(body, first ? t + h : t - h, NULL, near));
     PetscCall(EvaluateRotation(body, first ? t + 2 * h : t + h, NULL, far));
     for (PetscInt d = 0; d < 3; d++)
-      motion->angular_acceleration[d] =
-          first ? (4 * near[d] - 3 * motion->angular_velocity[d] - far[d]) / (2 * h) : (far[d] - near[d]) / (2 * h);
+      motion->angular_acceleration[d] = first ? (4 * near[d] - 3 * motion->angular_velocity[d] - far[d]) / (2 * h)
+                                              : (far[d] - near[d]) / (2 * h);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

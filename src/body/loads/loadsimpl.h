@@ -52,7 +52,7 @@ struct _BodyLoads {
   PetscReal              *reactions; /* work space of BodyGetReactions() */
   Expression              lead[6];   /* of a rigid body: displacement of its centre, components of its rotation vector; NULL: free, or 0 */
   PetscBool               led, turned; /* there are any of these; of the rotation */
-  Expression              axis;      /* 0: the distance from the axis of its nodes, the last prescription of all; NULL: there is no axis */
+  Expression              axis; /* 0: the distance from the axis of its nodes, the last prescription of all; NULL: there is no axis */
   /* forces; what comes below `ready` is made when they are first asked for */
   PetscInt         n_loads, n_uniform;
   Load            *loads;

@@ -152,8 +152,8 @@ PetscErrorCode BodyGetReactions(Body body, PetscReal force[], PetscReal moment[]
   PetscCall(VecRestoreArrayRead(body->state.u, &u));
   PetscCall(VecRestoreArrayRead(body->mesh.positions, &x));
   if (body->rows.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, loads->reactions, (PetscMPIInt)(N_SUMS * n), MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)body)));
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, loads->reactions, (PetscMPIInt)(N_SUMS * n), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt d = 0; d < 3; d++) {
       force[3 * i + d]  = loads->reactions[N_SUMS * i + d];

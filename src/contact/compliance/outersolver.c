@@ -78,6 +78,21 @@ static PetscErrorCode RemoveDefault(const char prefix[], const char option[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Line searches that want the slope of the residual's norm multiply with the Jacobian, of which there is only what divides by it */
+static PetscErrorCode RefuseSlopes(Contact contact, const char prefix[], SNESLineSearch line_search)
+{
+  SNESLineSearchType type;
+  PetscBool          slope;
+
+  PetscFunctionBegin;
+  PetscCall(SNESLineSearchGetType(line_search, &type));
+  PetscCall(PetscStrcmpAny(type, &slope, SNESLINESEARCHBT, SNESLINESEARCHNLEQERR, ""));
+  PetscCheck(!slope, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-%ssnes_linesearch_type %s needs products with the Jacobian, which this iteration does not have; choose none, secant or cp",
+             prefix, type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads type and tolerances. The defaults for Anderson (mixing 1/2, eight vectors) suit an iteration with a gain of about -1,
    which is that of the Dirichlet-Neumann alternation between equal bodies. */
 PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, PetscReal atol, PetscReal rtol, PetscInt max_it)
@@ -105,6 +120,7 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
     PetscCall(InsertDefault(prefix, "-snes_anderson_m", "8", &size));
   }
   PetscCall(SNESSetFromOptions(solver->snes));
+  PetscCall(RefuseSlopes(contact, prefix, line_search));
   PetscCall(RemoveDefault(prefix, "-snes_anderson_beta", beta));
   PetscCall(RemoveDefault(prefix, "-snes_anderson_m", size));
   PetscFunctionReturn(PETSC_SUCCESS);

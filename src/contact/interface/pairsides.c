@@ -68,11 +68,11 @@ PetscErrorCode ContactGetPreferences(Contact contact, ContactPreference preferen
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the second of two bodies is to take displacements. A rigid body never does. An implicit body does rather than an explicit one. Of two explicit bodies the
-   one with fewer substeps does: the compliance of rows on a body with substeps is found by integrating that body under a unit force on
-   each, so that the fewer such rows the better. If both are alike in that, the one with the finer mesh: of two discs without friction that
-   hit each other off-centre the coarser one as the first side has 1.5 to 5 times the spin. If both are alike in that too, the one that is
-   named first does. */
+/* Whether the second of two bodies is to take displacements. A rigid body never does. An implicit body does rather than an explicit one. Of
+   two explicit bodies the one with fewer substeps does: the compliance of rows on a body with substeps is found by integrating that body
+   under a unit force on each, so that the fewer such rows the better. If both are alike in that, the one with the finer mesh: of two discs
+   without friction that hit each other off-centre the coarser one as the first side has 1.5 to 5 times the spin. If both are alike in that
+   too, the one that is named first does. */
 PetscBool ContactChooseSides(const ContactPreference *a, const ContactPreference *b, const char **why)
 {
   if (a->is_rigid != b->is_rigid) {

@@ -47,8 +47,8 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes. Those of a rigid body
-   are no nodes that could move by themselves. */
+/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes. Those of a rigid
+   body are no nodes that could move by themselves. */
 PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *has)
 {
   PetscFunctionBegin;

@@ -13,20 +13,22 @@ static PetscErrorCode CountRigid(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, which no step resolves. Nor do springs of a
-   penalty: a rigid disc on a rigid plate, both with default parameters, gained 5 % within 800 steps, and lost 35 % with softer springs and
-   friction. */
+/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, which no step resolves. Nor do springs
+   of a penalty: a rigid disc on a rigid plate, both with default parameters, gained 5 % within 800 steps, and lost 35 % with softer springs
+   and friction. */
 static PetscErrorCode RefuseRigid(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
-  PetscCheck(!pair->obstacle, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: let the body deform, or put a body "
-             "that deforms in place of the obstacle",
-             pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: let one of them deform, or leave the pair out (where "
-          "'auto' has chosen it, name the other pairs)",
-          pair->name);
+  PetscCheck(
+      !pair->obstacle, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: let the body deform, or put a body "
+      "that deforms in place of the obstacle",
+      pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  SETERRQ(
+      PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: let one of them deform, or leave the pair out (where "
+      "'auto' has chosen it, name the other pairs)",
+      pair->name);
 }
 
 /* Turns a pair round whose first body is rigid: rows lie on the side that takes displacements, and a rigid body takes forces */
@@ -39,10 +41,11 @@ PetscErrorCode ContactTurnRigid(Contact contact, ContactPair *pair)
   PetscCall(CountRigid(contact, pair, &n, &first));
   if (n == 2 || (n && pair->obstacle)) PetscCall(RefuseRigid(contact, pair));
   else if (first) {
-    PetscCheck(pair->row_side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "
-               "out for this pair",
-               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+    PetscCheck(
+        pair->row_side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "
+        "out for this pair",
+        pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
     ContactTurnPair(pair);
     pair->why = "the rigid body takes forces";
   }

@@ -57,6 +57,12 @@ static void DefaultsDoNotAllocate(void **state)
   RunCase("");
 }
 
+static void RigidDoesNotAllocate(void **state)
+{
+  (void)state;
+  RunCase("-right_rigid true");
+}
+
 static void ExplicitDoesNotAllocate(void **state)
 {
   (void)state;
@@ -180,12 +186,19 @@ static void ImplicitSolidsDoNotAllocate(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(DefaultsDoNotAllocate),       cmocka_unit_test(ExplicitDoesNotAllocate),
-      cmocka_unit_test(DampingDoesNotAllocate),      cmocka_unit_test(PaperDoesNotAllocate),
-      cmocka_unit_test(TransmissionsDoNotAllocate),  cmocka_unit_test(SwappedSidesDoNotAllocate),
-      cmocka_unit_test(PenaltyDoesNotAllocate),      cmocka_unit_test(LagrangeDoesNotAllocate),
-      cmocka_unit_test(RatesDoNotAllocate),          cmocka_unit_test(NaiveStabilizationDoesNotAllocate),
-      cmocka_unit_test(ExplicitSolidsDoNotAllocate), cmocka_unit_test(ImplicitSolidsDoNotAllocate),
+      cmocka_unit_test(DefaultsDoNotAllocate),
+      cmocka_unit_test(ExplicitDoesNotAllocate),
+      cmocka_unit_test(RigidDoesNotAllocate),
+      cmocka_unit_test(DampingDoesNotAllocate),
+      cmocka_unit_test(PaperDoesNotAllocate),
+      cmocka_unit_test(TransmissionsDoNotAllocate),
+      cmocka_unit_test(SwappedSidesDoNotAllocate),
+      cmocka_unit_test(PenaltyDoesNotAllocate),
+      cmocka_unit_test(LagrangeDoesNotAllocate),
+      cmocka_unit_test(RatesDoNotAllocate),
+      cmocka_unit_test(NaiveStabilizationDoesNotAllocate),
+      cmocka_unit_test(ExplicitSolidsDoNotAllocate),
+      cmocka_unit_test(ImplicitSolidsDoNotAllocate),
   };
   int failed;
 

@@ -44,7 +44,8 @@ static PetscErrorCode CheckSwappable(Contact contact, PetscInt b)
   PetscFunctionBegin;
   PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
   PetscCheck(!rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_swap_sides: body '%s' is rigid, and takes forces alone; leave the option out", ((PetscObject)contact->bodies[b])->name);
+             "-contact_swap_sides: body '%s' is rigid, and takes forces alone; leave the option out",
+             ((PetscObject)contact->bodies[b])->name);
   PetscCall(MatCreateVecs(B, &transposed, &row));
   PetscCall(VecDuplicate(row, &displacement));
   for (PetscInt j = 0; j < of->n_all; j++) {

@@ -93,10 +93,11 @@ static PetscErrorCode CheckBodies(Contact contact)
     PetscBool   is_explicit, massless, rigid;
 
     PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
-    PetscCheck(!rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-schwarz_transmission robin and impedance put springs on the contact nodes of both bodies, and body '%s' is rigid: it takes "
-               "forces; choose -schwarz_transmission dirichlet_neumann",
-               name);
+    PetscCheck(
+        !rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "-schwarz_transmission robin and impedance put springs on the contact nodes of both bodies, and body '%s' is rigid: it takes "
+        "forces; choose -schwarz_transmission dirichlet_neumann",
+        name);
     PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
     PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
     PetscCheck(!is_explicit || massless, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
