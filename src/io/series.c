@@ -1,22 +1,38 @@
 /* Time series in HDF5: extensible datasets, to which records are appended. Functions are not collective: one rank calls them. */
 #include "series.h"
 #include "hdf5file.h"
+#include <stdint.h>
 
 _Static_assert(sizeof(PetscReal) == sizeof(double), "series are stored in double precision");
 
-/* Values in a chunk: few enough for the file of a short run to be small, and enough for the index of a long run to be small */
-#define CHUNK 1024
+/* Records in a chunk: few enough for the file of a short run to be small, and enough for the index of a long run to be small. Every series
+   takes a chunk for its first record, so chunks have fewer records where there are many series: all series together take about CHUNK_BYTES
+   then. */
+#define CHUNK_MOST  1024
+#define CHUNK_LEAST 64
+#define CHUNK_BYTES ((size_t)1 << 24)
 
 /* Records of a series that are written at a time, and most components of one */
 #define BLOCK           2048
 #define MOST_COMPONENTS 6
 
-static PetscErrorCode CreateDataset(hid_t file, const Series *series, const char path[])
+/* Records in a chunk of each series: a power of two */
+static hsize_t ChunkRecords(PetscInt n_series, const Series series[])
+{
+  size_t  record = 0; /* bytes of one record of all series */
+  hsize_t chunk  = CHUNK_MOST;
+
+  for (PetscInt i = 0; i < n_series; i++) record += (size_t)series[i].components * (series[i].integer ? sizeof(int32_t) : sizeof(double));
+  while (chunk > CHUNK_LEAST && chunk * record > CHUNK_BYTES) chunk /= 2;
+  return chunk;
+}
+
+static PetscErrorCode CreateDataset(hid_t file, const Series *series, hsize_t records, const char path[])
 {
   const int     rank       = series->components > 1 ? 2 : 1;
   const hsize_t size[2]    = {0, (hsize_t)series->components};
   const hsize_t maximum[2] = {H5S_UNLIMITED, (hsize_t)series->components};
-  const hsize_t chunk[2]   = {CHUNK, (hsize_t)series->components};
+  const hsize_t chunk[2]   = {records, (hsize_t)series->components};
   hid_t         space, links, layout, dataset;
 
   PetscFunctionBegin;
@@ -49,12 +65,13 @@ static PetscErrorCode CreateDataset(hid_t file, const Series *series, const char
 */
 PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Series series[], const char options[])
 {
-  hid_t file;
+  const hsize_t records = ChunkRecords(n_series, series);
+  hid_t         file;
 
   PetscFunctionBegin;
   PetscCall(HDF5Create(path, &file));
   PetscCall(HDF5WriteRun(file, options, path));
-  for (PetscInt i = 0; i < n_series; i++) PetscCall(CreateDataset(file, &series[i], path));
+  for (PetscInt i = 0; i < n_series; i++) PetscCall(CreateDataset(file, &series[i], records, path));
   PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
