@@ -304,7 +304,8 @@ PetscErrorCode BodyGetProbes(Body body, PetscReal position[], PetscReal displace
   if (points->history) BodyHistoryGather(body, PETSC_TRUE, points->element, points->of_body, points->history);
   points->element->history.start = points->history;
   points->element->history.step  = -1;
-  PetscCall((*points->element->ops->stress)(points->element, u, points->stress));
+  if (body->integrator->deforms) PetscCall((*points->element->ops->stress)(points->element, u, points->stress));
+  else PetscCall(PetscArrayzero(points->stress, 6 * points->n_places));
   SumPlaces(body, u, v);
   PetscCall(BodyRestoreLocalRead(body, body->state.v, &v_local, &v));
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &u_local, &u));
