@@ -147,7 +147,7 @@ PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
-PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact);
+PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact, PetscBool (*)(Contact, PetscInt));
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);

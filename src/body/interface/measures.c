@@ -161,6 +161,42 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the sums of the last measures are those of the present state, and from now on they are; one that is spread over ranks, or
+   remembers, is measured each time */
+static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
+{
+  const Vec of[4] = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
+
+  PetscFunctionBegin;
+  *measured = (PetscBool)(body->rows.size == 1 && !body->history && body->measured.time_step == body->time.step);
+  for (PetscInt k = 0; k < 4; k++) {
+    PetscObjectState now = 0;
+
+    if (of[k]) PetscCall(PetscObjectStateGet((PetscObject)of[k], &now));
+    if (now != body->measured.of[k]) *measured = PETSC_FALSE;
+    body->measured.of[k] = now;
+  }
+  body->measured.time_step = body->time.step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What measures are sums of, over this rank's part */
+static PetscErrorCode SumMeasures(Body body, PetscReal sums[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(sums, BODY_MEASURE_SUMS));
+  PetscCall(ComputePotential(body, &sums[1]));
+  PetscCall(ComputeHourglassEnergy(body, &sums[14]));
+  if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
+  else {
+    PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
+    for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
+  }
+  PetscCall(BodySumRotation(body, sums + 11));
+  sums[15] = body->model.element->plastic_work; /* found with the potential energy */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyGetMeasures - energies, momenta and mean velocity at the current time
 
@@ -186,21 +222,17 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  PetscReal sums[16] = {0}, drag;
+  PetscReal sums[BODY_MEASURE_SUMS], drag;
+  PetscBool measured;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(measures, 2);
-  PetscCall(ComputePotential(body, &sums[1]));
-  PetscCall(ComputeHourglassEnergy(body, &sums[14]));
-  if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
-  else {
-    PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
-    for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
-  }
-  PetscCall(BodySumRotation(body, sums + 11));
-  sums[15] = body->model.element->plastic_work; /* found with the potential energy */
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 16, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(IsMeasured(body, &measured));
+  if (!measured) PetscCall(SumMeasures(body, body->measured.sums));
+  PetscCall(PetscArraycpy(sums, body->measured.sums, BODY_MEASURE_SUMS));
+  if (body->rows.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, BODY_MEASURE_SUMS, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   measures->kinetic          = sums[0];
   measures->potential        = sums[1];
   measures->external_work    = body->state.external_work;

@@ -177,6 +177,8 @@ typedef struct {
 
 /* Motions of a body as if it were rigid: as many as space has translations and rotations */
 #define BODY_MAX_RIGID 6
+/* Sums over nodes and elements that measures are made of, see measures.c */
+#define BODY_MEASURE_SUMS 16
 
 /* Artificial springs of a static body that contact or ties alone hold, see src/body/system/springs.c */
 typedef struct {
@@ -202,11 +204,17 @@ struct _p_Body {
   BodyTime          time;
   BodyIntegrator    integrator;
   ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
-  BodyState         state, saved;   /* as it is; at the start of the controller step */
-  BodyState         kept;           /* put aside by BodyKeep() */
-  BodyHistory       history;        /* of the material at the points of integration; NULL where it has none */
-  PetscReal         plastic_before; /* plastic work in the history that was done before this run [J] */
-  BodyState         substep_start;  /* u and v, which are NULL unless loads or the integrator read them */
+  BodyState         state, saved; /* as it is; at the start of the controller step */
+  BodyState         kept;         /* put aside by BodyKeep() */
+  BodyHistory       history;      /* of the material at the points of integration; NULL where it has none */
+  /* the last sums that measures are made of, and the states that they were found from */
+  struct {
+    PetscReal        sums[BODY_MEASURE_SUMS];
+    PetscObjectState of[4]; /* of the displacement, velocity, acceleration and internal force; 0: there are none */
+    PetscReal        time_step;
+  } measured;
+  PetscReal plastic_before; /* plastic work in the history that was done before this run [J] */
+  BodyState substep_start;  /* u and v, which are NULL unless loads or the integrator read them */
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
     Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */

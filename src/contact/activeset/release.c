@@ -92,6 +92,7 @@ PetscErrorCode ContactLoadReleased(Contact contact, PetscInt b)
   PetscInt               levels;
 
   PetscFunctionBegin;
+  if (!contact->release.any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetSizes(trace, NULL, &levels));
   for (PetscInt level = 0; level <= levels && contact->release.fades; level++) {
     PetscCall(TraceGetLevel(trace, level, &force));
@@ -140,13 +141,19 @@ PetscErrorCode ContactReleaseRow(Contact contact, PetscInt i, PetscBool waveform
     force[k] = k > 1 && force[k - 1] == 0 ? 0 : part * PetscMax(sign * PetscRealPart(values[i - pair->shift[pair->dirichlet]]), 0);
     if (force[k] > 0) contact->release.intervals[i] = n;
   }
+  if (contact->release.intervals[i]) contact->release.any = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forgets rows that were let go in the step before */
-PetscErrorCode ContactBeginRelease(Contact contact)
+/* Forgets rows that were let go in the step before, or the attempt before at this one, but those of pairs that are to keep what they have
+ */
+PetscErrorCode ContactBeginRelease(Contact contact, PetscBool (*keeps)(Contact, PetscInt))
 {
   PetscFunctionBegin;
-  if (contact->release.fades) PetscCall(PetscArrayzero(contact->release.intervals, contact->rows.n));
+  if (!contact->release.any) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->release.any = PETSC_FALSE;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (!(*keeps)(contact, contact->rows.pair[i])) contact->release.intervals[i] = 0;
+    else if (contact->release.intervals[i]) contact->release.any = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

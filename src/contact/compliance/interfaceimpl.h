@@ -20,8 +20,9 @@ struct _n_InterfaceOperator {
   PetscInt *body_rows, *body_places; /* work space: those that concern a body, by its own numbers; their places in the list */
   /* groups of the rows that are solved for, between which S is zero: each row's, and how many rows each has */
   PetscInt   n_groups, *group, *group_rows;
-  PetscInt  *body_group; /* work space, per body */
-  PetscBool *has_rows;   /* per body: it answers to forces on some of the listed rows */
+  PetscInt  *body_group;           /* work space, per body */
+  PetscInt  *of_body, *body_begin; /* places of the rows of each body in the list, body by body; where those of each begin, and the end */
+  PetscBool *has_rows;             /* per body: it answers to forces on some of the listed rows */
   /* dense: each map's matrices, n x n by columns for each level, where they have been assembled */
   PetscBool    dense;
   PetscScalar *matrices[INTERFACE_MAPS];

@@ -11,8 +11,8 @@ PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings 
   op->contact  = contact;
   op->settings = *settings;
   op->levels   = 1;
-  PetscCall(PetscCalloc5(contact->rows.n, &op->marks, contact->rows.n, &op->diagonal, contact->n_bodies, &op->feels, contact->n_bodies,
-                         &op->body_group, contact->n_bodies, &op->has_rows));
+  PetscCall(PetscCalloc6(contact->rows.n, &op->marks, contact->rows.n, &op->diagonal, contact->n_bodies, &op->feels, contact->n_bodies,
+                         &op->body_group, contact->n_bodies, &op->has_rows, contact->n_bodies + 1, &op->body_begin));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
   if (settings->direct) PetscCall(InterfaceDirectCreate(op, &op->direct));
   if (contact->rows.n_all > PetscMin(settings->few, settings->dense_limit)) PetscCall(InterfaceOperatorCreateIterative(op));
@@ -27,9 +27,9 @@ PetscErrorCode InterfaceOperatorDestroy(InterfaceOperator *operator)
   PetscFunctionBegin;
   if (!op) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&op->matrix));
-  PetscCall(PetscFree5(op->marks, op->diagonal, op->feels, op->body_group, op->has_rows));
+  PetscCall(PetscFree6(op->marks, op->diagonal, op->feels, op->body_group, op->has_rows, op->body_begin));
   PetscCall(PetscFree6(op->rows, op->body_rows, op->body_places, op->places, op->listed[0], op->listed[1]));
-  PetscCall(PetscFree3(op->group, op->group_rows, op->grouped));
+  PetscCall(PetscFree4(op->group, op->group_rows, op->grouped, op->of_body));
   for (PetscInt m = 0; m < INTERFACE_MAPS; m++) PetscCall(PetscFree(op->matrices[m]));
   PetscCall(DenseFactorDestroy(&op->factor));
   PetscCall(InterfaceOperatorDestroyIterative(op));

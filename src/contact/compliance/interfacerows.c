@@ -10,12 +10,37 @@ PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
   PetscFunctionBegin;
   if (n <= op->room) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree6(op->rows, op->body_rows, op->body_places, op->places, op->listed[0], op->listed[1]));
-  PetscCall(PetscFree3(op->group, op->group_rows, op->grouped));
+  PetscCall(PetscFree4(op->group, op->group_rows, op->grouped, op->of_body));
   op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->rows.n_all));
   PetscCall(PetscMalloc6(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->body_places, op->room, &op->places, op->room,
                          &op->listed[0], op->room, &op->listed[1]));
-  PetscCall(PetscMalloc3(op->room, &op->group, op->room, &op->group_rows, op->room, &op->grouped));
+  PetscCall(PetscMalloc4(op->room, &op->group, op->room, &op->group_rows, op->room, &op->grouped, 2 * op->room, &op->of_body));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The listed rows of each body */
+static void ListByBody(InterfaceOperator op)
+{
+  const Contact contact = op->contact;
+  PetscInt     *next    = op->body_begin + 1; /* where the next row of body b comes; in the end that of body b + 1 begins there */
+
+  for (PetscInt b = 0; b <= contact->n_bodies; b++) op->body_begin[b] = 0;
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    for (PetscInt place = 0; place < op->n_known; place++) {
+      const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[op->rows[place]]];
+
+      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+        if (pass) op->of_body[next[pair->body[side]]++] = place;
+        else next[pair->body[side]]++;
+    }
+    if (pass) break;
+    for (PetscInt b = 0, sum = 0; b < contact->n_bodies; b++) {
+      const PetscInt count = next[b];
+
+      next[b] = sum;
+      sum += count;
+    }
+  }
 }
 
 /* Adds those of the listed rows from `begin` to `end` - 1 that concern a body to the `n` that body_rows has: their numbers among the rows
@@ -25,13 +50,12 @@ PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator op, PetscInt b, P
   const ContactBodyRows *of = &op->contact->body_rows[b];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < of->n_all; k++) {
-    PetscInt place;
+  for (PetscInt k = op->body_begin[b]; k < op->body_begin[b + 1]; k++) {
+    const PetscInt place = op->of_body[k];
 
-    PetscCall(PetscFindInt(of->all[k], end - begin, op->rows + begin, &place));
-    if (place < 0) continue;
-    op->body_rows[*n]       = k;
-    op->body_places[(*n)++] = begin + place;
+    if (place < begin || place >= end) continue;
+    PetscCall(PetscFindInt(op->rows[place], of->n_all, of->all, &op->body_rows[*n]));
+    op->body_places[(*n)++] = place;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,6 +145,7 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   next[INTERFACE_KNOWN]  = op->n;
   for (PetscInt i = 0; i < contact->rows.n_all; i++)
     if (contact->ranks.all_active[i]) op->rows[next[contact->ranks.all_active[i]]++] = i;
+  ListByBody(op);
   PetscCall(InterfaceOperatorFindGroups(op));
   PetscCall(ChooseDense(op));
   if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,6 +2,8 @@
 #pragma once
 #include <contact/parts.h>
 
+PETSC_INTERN PetscErrorCode ContactBeginAttempts(Contact);
+PETSC_INTERN PetscErrorCode ContactMakeAttempt(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeWork(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscReal[]);
 PETSC_INTERN void           ContactFindGroups(Contact);

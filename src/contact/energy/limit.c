@@ -37,51 +37,6 @@
 /* How often the two kinds of attempts take turns */
 #define MAX_TURNS 4
 
-/* The step from the saved states, with the start forces as they are */
-static PetscErrorCode MakeStep(Contact contact)
-{
-  ContactEnergy *energy = &contact->energy;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const ContactBodyRows *of = &contact->body_rows[b];
-
-    for (PetscInt k = 0; k < of->n; k++) {
-      const PetscInt i = of->rows[k];
-
-      energy->now[k]        = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (energy->start_force[i] - energy->last_force[i]);
-      contact->work.rest[k] = energy->rest[i];
-    }
-    PetscCall(BodySetStartForce(contact->bodies[b], energy->now, contact->work.rest));
-  }
-  PetscCall(PetscArraycpy(contact->start.force, energy->start_force, contact->rows.n));
-  energy->again = energy->changed = PETSC_TRUE;
-  PetscUseTypeMethod(contact, step);
-  PetscCall(ContactCompleteBodies(contact));
-  energy->again = PETSC_FALSE;
-  if (!ContactFailed(contact)) PetscCall(ContactComputeFrictionLoss(contact, energy->start_force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Work of contact on each group in the last attempt: that of the first, and by how much more the bodies and springs have now */
-static PetscErrorCode ComputeGroupWork(Contact contact)
-{
-  ContactEnergy *energy = &contact->energy;
-
-  PetscFunctionBegin;
-  PetscCall(ContactComputeEnergies(contact, energy->energies, energy->springs));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    energy->pair_sums[2 * p + 1] = PetscMax(energy->pair_sums[2 * p + 1], energy->springs[2 * p + 1]);
-  ContactFindGroups(contact);
-  PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    energy->group_work[energy->group[b]] += energy->first_work[b] + energy->energies[b] - energy->first_energy[b];
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->springs[2 * p] - energy->first_springs[2 * p];
-  PetscCall(ContactLeaveOutStatic(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether a group has gained more than it has room for */
 static PetscBool GainsTooMuch(Contact contact, PetscInt g)
 {
@@ -257,19 +212,6 @@ static PetscBool AnyGainsTooMuch(Contact contact)
   return PETSC_FALSE;
 }
 
-/* What attempts start from: the step as it has been made */
-static PetscErrorCode BeginAttempts(Contact contact)
-{
-  ContactEnergy *energy = &contact->energy;
-
-  PetscFunctionBegin;
-  PetscCall(ContactComputeEnergies(contact, energy->first_energy, energy->first_springs));
-  PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
-  PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
-  for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether friction brings energy on a row by the forces at both ends of the step. What a node that sticks slips is what the step has left
    of its residual, and no other start makes it less. */
 static PetscBool Rubs(Contact contact, PetscInt i)
@@ -295,13 +237,11 @@ static PetscErrorCode LimitFriction(Contact contact)
     for (PetscInt i = 0; i < contact->rows.n && !any; i++) any = Rubs(contact, i);
     PetscCall(ContactOr(contact, &any));
     if (!any) break;
-    if (!energy->changed) PetscCall(BeginAttempts(contact));
+    if (!energy->changed) PetscCall(ContactBeginAttempts(contact));
     for (PetscInt i = 0; i < contact->rows.n; i++)
       if (Rubs(contact, i)) energy->start_force[i] += 0.5 * (contact->end.force[i] - energy->start_force[i]);
-    PetscCall(MakeStep(contact));
+    PetscCall(ContactMakeAttempt(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(ComputeGroupWork(contact));
-    contact->counts.energy_attempts++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -313,7 +253,7 @@ static PetscErrorCode Attempt(Contact contact)
   PetscBool      going  = PETSC_TRUE;
 
   PetscFunctionBegin;
-  if (!energy->changed) PetscCall(BeginAttempts(contact));
+  if (!energy->changed) PetscCall(ContactBeginAttempts(contact));
   PetscCall(PetscArrayzero(energy->leaves, contact->rows.n));
   PetscCall(PetscArrayzero(energy->search, contact->n_bodies));
   while (going) {
@@ -327,10 +267,8 @@ static PetscErrorCode Attempt(Contact contact)
       if ((search->stage || before) && !search->done) going = PETSC_TRUE;
     }
     if (!going) break;
-    PetscCall(MakeStep(contact));
+    PetscCall(ContactMakeAttempt(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(ComputeGroupWork(contact));
-    contact->counts.energy_attempts++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

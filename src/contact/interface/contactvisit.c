@@ -104,6 +104,7 @@ static PetscErrorCode VisitRowStates(Contact contact, Checkpoint checkpoint)
   if (contact->release.intervals) {
     PetscCall(CheckpointVisitInts(checkpoint, "intervals", n, contact->release.intervals));
     PetscCall(CheckpointVisitReals(checkpoint, "released forces", n * contact->release.room, contact->release.forces));
+    if (CheckpointLoads(checkpoint)) contact->release.any = PETSC_TRUE; /* in the last step, perhaps */
   }
   if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
   if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;

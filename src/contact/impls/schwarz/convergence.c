@@ -62,9 +62,16 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
 static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], PetscReal *change, PetscReal *position)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
+  Groups   *groups  = &schwarz->groups;
   PetscReal sums[2] = {0, 0};
 
   PetscFunctionBegin;
+  if (groups->on) {
+    PetscCall(SchwarzSettleGroups(contact, f, sums));
+    *change   = PetscSqrtReal(sums[0]);
+    *position = PetscSqrtReal(sums[1]);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
     const PetscReal    scale = SchwarzResidualScale(contact, i);

@@ -318,11 +318,9 @@ static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
 
 static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
 {
-  Contact     contact;
-  Schwarz    *schwarz;
-  Vec         rest;
-  PetscInt    n, which[SCHWARZ_MAX_SECANTS];
-  PetscScalar c[SCHWARZ_MAX_SECANTS];
+  Contact  contact;
+  Schwarz *schwarz;
+  Vec      rest;
 
   PetscFunctionBegin;
   PetscCall(PCShellGetContext(pc, &contact));
@@ -332,9 +330,9 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
     PetscCall(SchwarzLimitTurns(contact, Y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(SchwarzApplySecants(contact, F, &rest, &n, which, c));
+  PetscCall(SchwarzApplySecants(contact, F, &rest));
   PetscCall(ApplyCompliance(contact, rest, Y));
-  for (PetscInt i = 0; i < n; i++) PetscCall(VecAXPY(Y, c[i], schwarz->secants.dx[which[i]]));
+  PetscCall(SchwarzAddSecants(contact, Y));
   PetscCall(SchwarzLimitTurns(contact, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

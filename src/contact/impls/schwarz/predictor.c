@@ -63,8 +63,9 @@ PetscErrorCode SchwarzPredict(Contact contact)
   PetscFunctionBegin;
   if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
   else
-    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
-  PetscCall(VecZeroEntries(schwarz->outer.x));
+    for (PetscInt b = 0; b < contact->n_bodies; b++)
+      if (!schwarz->groups.rests[b]) PetscCall(BodyResetTraces(contact->bodies[b]));
+  if (!schwarz->groups.on) PetscCall(VecZeroEntries(schwarz->outer.x));
   PetscCall(VecGetArray(schwarz->outer.x, &x));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscInt     p = contact->rows.pair[i], levels = schwarz->levels[p];
@@ -72,6 +73,8 @@ PetscErrorCode SchwarzPredict(Contact contact)
     const PetscReal    sign = NeumannSign(pair), width = schwarz->controller_step / levels;
     PetscScalar       *unknown = x + schwarz->offset[i], *reaction;
 
+    if (SchwarzPairRests(contact, p)) continue;
+    for (PetscInt level = 0; level < schwarz->room[p]; level++) unknown[level] = 0;
     for (PetscInt level = 1; level <= levels; level++) {
       const PetscReal part     = (PetscReal)level / levels;
       PetscScalar     position = 0;

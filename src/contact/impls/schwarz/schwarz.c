@@ -152,6 +152,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
                                ? SCHWARZ_CONVERGENCE_POSITION
                                : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscCall(SchwarzSetUpJacobian(contact));
+  PetscCall(SchwarzSetUpGroups(contact));
   if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
   PetscCall(SchwarzSetUpTied(contact));
   PetscCall(SchwarzCheckTurns(contact));
@@ -209,6 +210,7 @@ static PetscErrorCode ContactReset_Schwarz(Contact contact)
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
   PetscCall(SchwarzDestroyTied(contact));
+  PetscCall(SchwarzDestroyGroups(contact));
   PetscCall(SchwarzDestroyMemory(contact));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree3(schwarz->exchange, schwarz->offset, schwarz->all_offset));

@@ -42,9 +42,35 @@ typedef struct {
 typedef struct {
   PetscInt  n, next;
   PetscBool has_last;
-  Vec      *dx, *df, *basis;
+  Vec      *dx, *df;
   Vec       last_x, last_f, rest;
+  /* of the last fit: the unknowns of this rank and the pairs that took part, and factors of these */
+  PetscInt     n_listed, *listed;
+  PetscInt     used, which[SCHWARZ_MAX_SECANTS];
+  PetscScalar  factors[SCHWARZ_MAX_SECANTS];
+  PetscScalar *gathered, *basis[SCHWARZ_MAX_SECANTS]; /* work space, of listed unknowns */
 } Secants;
+
+/* What a group of bodies that touch each other does, see groups.c */
+typedef enum {
+  GROUP_FREE, /* nothing touches its one body */
+  GROUP_MOVES,
+  GROUP_RESTS
+} GroupState;
+
+typedef struct {
+  PetscBool    on;       /* in the iteration under way */
+  PetscInt     n;        /* groups with active rows */
+  PetscInt    *of;       /* per body: the first body of its group, by which it is named */
+  PetscBool   *rests;    /* per body: it is where its group has converged, and has nothing to do */
+  GroupState  *state;    /* per group */
+  PetscReal   *mismatch; /* per group, of all ranks: squared change of position in its last sweep [m^2] */
+  PetscReal   *found;    /* the same, as a sweep adds it up on this rank; after these the square of all positions */
+  PetscReal    position; /* square of all positions at the start of the step, of this rank [m^2] */
+  PetscBool   *active;   /* per row: the active set that the groups belong to */
+  PetscScalar *residual; /* per unknown: of the last sweep */
+  int         *flags;    /* work space: two per pair */
+} Groups;
 
 /* What is remembered from step to step: of cut controller steps at each level apart */
 typedef struct {
@@ -101,6 +127,7 @@ typedef struct {
   PetscBool    *known;                     /* per row: the bodies' compliance knows it */
   SchwarzMemory memory[STEP_MAX_CUTS + 1]; /* of other levels */
   PetscInt      level;                     /* the present one */
+  Groups        groups;
   /* ties that keep their mass */
   struct {
     PetscBool    any;     /* there are ties that keep their mass, of whatever bodies */
@@ -195,6 +222,7 @@ PETSC_INTERN PetscErrorCode SchwarzTakeActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzUpdateActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzBreakCycle(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
+PETSC_INTERN PetscErrorCode SchwarzReportByForce(Contact, PetscInt);
 PETSC_INTERN PetscReal      SchwarzOffset(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscErrorCode SchwarzPredict(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpTransmission(Contact);
@@ -217,8 +245,21 @@ PETSC_INTERN PetscErrorCode SchwarzChooseMode(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPreferForces(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetUpSecants(Contact);
 PETSC_INTERN PetscErrorCode SchwarzDestroySecants(Contact);
-PETSC_INTERN PetscErrorCode SchwarzApplySecants(Contact, Vec, Vec *, PetscInt *, PetscInt[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode SchwarzApplySecants(Contact, Vec, Vec *);
+PETSC_INTERN PetscErrorCode SchwarzAddSecants(Contact, Vec);
 PETSC_INTERN void           SchwarzResetSecants(Contact, PetscBool);
+PETSC_INTERN PetscErrorCode SchwarzSetUpGroups(Contact);
+PETSC_INTERN PetscErrorCode SchwarzDestroyGroups(Contact);
+PETSC_INTERN PetscErrorCode SchwarzBeginGroups(Contact);
+PETSC_INTERN void           SchwarzWakeBodies(Contact);
+PETSC_INTERN PetscErrorCode SchwarzFindGroups(Contact);
+PETSC_INTERN PetscBool      SchwarzPairRests(Contact, PetscInt);
+PETSC_INTERN void           SchwarzListMoving(Contact, PetscInt *, PetscInt[]);
+PETSC_INTERN void           SchwarzHoldUnknowns(Contact, PetscScalar[]);
+PETSC_INTERN PetscBool      SchwarzPairMoves(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode SchwarzCopyResidual(Contact, PetscScalar[]);
+PETSC_INTERN PetscBool      SchwarzPairTells(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode SchwarzSettleGroups(Contact, const PetscScalar[], PetscReal[2]);
 PETSC_INTERN PetscErrorCode SchwarzReadCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzFinishCondensed(Contact);

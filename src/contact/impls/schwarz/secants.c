@@ -9,21 +9,24 @@
    The newest pairs come first; those that add little to them are left out.
 */
 #include "schwarzimpl.h"
+#include <petscblaslapack.h>
 #include <sys/citations.h>
 
-/* parts of a pair that are orthogonal to the newer ones and smaller than this are noise */
+/* parts of a pair that are orthogonal to the newer ones and smaller than this, relative to the pair, are noise */
 #define INDEPENDENT 1e-2
+/* where the groups that still move have less than this of a pair, it is of a sweep in which others moved */
+#define OF_OTHERS 1e-9
 
 PetscErrorCode SchwarzSetUpSecants(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
   Secants *secants = &schwarz->secants;
+  PetscInt unknowns;
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SECANTS));
   PetscCall(VecDuplicateVecs(schwarz->outer.x, SCHWARZ_MAX_SECANTS, &secants->dx));
   PetscCall(VecDuplicateVecs(schwarz->outer.x, SCHWARZ_MAX_SECANTS, &secants->df));
-  PetscCall(VecDuplicateVecs(schwarz->outer.x, SCHWARZ_MAX_SECANTS, &secants->basis));
   PetscCall(VecDuplicate(schwarz->outer.x, &secants->last_x));
   PetscCall(VecDuplicate(schwarz->outer.x, &secants->last_f));
   PetscCall(VecDuplicate(schwarz->outer.x, &secants->rest));
@@ -31,8 +34,10 @@ PetscErrorCode SchwarzSetUpSecants(Contact contact)
   for (PetscInt i = 0; i < SCHWARZ_MAX_SECANTS; i++) {
     PetscCall(VecZeroEntries(secants->dx[i]));
     PetscCall(VecZeroEntries(secants->df[i]));
-    PetscCall(VecZeroEntries(secants->basis[i]));
   }
+  PetscCall(VecGetLocalSize(schwarz->outer.x, &unknowns));
+  PetscCall(PetscMalloc2(unknowns, &secants->listed, unknowns, &secants->gathered));
+  for (PetscInt i = 0; i < SCHWARZ_MAX_SECANTS; i++) PetscCall(PetscMalloc1(unknowns, &secants->basis[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,7 +48,8 @@ PetscErrorCode SchwarzDestroySecants(Contact contact)
   PetscFunctionBegin;
   PetscCall(VecDestroyVecs(SCHWARZ_MAX_SECANTS, &secants->dx));
   PetscCall(VecDestroyVecs(SCHWARZ_MAX_SECANTS, &secants->df));
-  PetscCall(VecDestroyVecs(SCHWARZ_MAX_SECANTS, &secants->basis));
+  PetscCall(PetscFree2(secants->listed, secants->gathered));
+  for (PetscInt i = 0; i < SCHWARZ_MAX_SECANTS; i++) PetscCall(PetscFree(secants->basis[i]));
   PetscCall(VecDestroy(&secants->last_x));
   PetscCall(VecDestroy(&secants->last_f));
   PetscCall(VecDestroy(&secants->rest));
@@ -74,55 +80,124 @@ static PetscErrorCode AddPair(Secants *secants, Vec X, Vec F)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rest = F - Y c, and c; `used` of the pairs, `which` of them, take part */
-static PetscErrorCode Fit(Secants *secants, Vec F, PetscInt *used, PetscInt which[], PetscScalar c[])
+/* Over the unknowns of all ranks that take part */
+static PetscErrorCode Dot(Contact contact, PetscInt n, const PetscScalar a[], const PetscScalar b[], PetscScalar *sum)
 {
-  PetscScalar upper[SCHWARZ_MAX_SECANTS][SCHWARZ_MAX_SECANTS];
-  PetscInt    n = 0;
+  const PetscBLASInt one = 1;
+  PetscBLASInt       size;
+
+  PetscFunctionBegin;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCallBLAS("BLASdot", *sum = BLASdot_(&size, a, &one, b, &one));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* a += s b */
+static PetscErrorCode Add(PetscInt n, PetscScalar s, const PetscScalar b[], PetscScalar a[])
+{
+  const PetscBLASInt one = 1;
+  PetscBLASInt       size;
+
+  PetscFunctionBegin;
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCallBLAS("BLASaxpy", BLASaxpy_(&size, &s, b, &one, a, &one));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The unknowns that take part: those of groups that rest, which have nothing to say, are most of those of many bodies */
+static PetscErrorCode Gather(const Secants *secants, Vec v, PetscScalar listed[])
+{
+  const PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(v, &values));
+  for (PetscInt i = 0; i < secants->n_listed; i++) listed[i] = values[secants->listed[i]];
+  PetscCall(VecRestoreArrayRead(v, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f -= Y c, and c; `used` of the pairs, `which` of them, take part. Listed unknowns alone. */
+static PetscErrorCode Fit(Contact contact, PetscScalar f[])
+{
+  Secants       *secants = &((Schwarz *)contact->data)->secants;
+  const PetscInt size    = secants->n_listed;
+  PetscScalar    upper[SCHWARZ_MAX_SECANTS][SCHWARZ_MAX_SECANTS], *c = secants->factors, squares;
+  PetscInt       n = 0;
 
   PetscFunctionBegin;
   for (PetscInt age = 0; age < secants->n; age++) {
-    const PetscInt slot = (secants->next - 1 - age + 2 * SCHWARZ_MAX_SECANTS) % SCHWARZ_MAX_SECANTS;
-    PetscReal      left;
+    const PetscInt slot   = (secants->next - 1 - age + 2 * SCHWARZ_MAX_SECANTS) % SCHWARZ_MAX_SECANTS;
+    PetscScalar   *newest = secants->basis[n];
+    PetscReal      whole, left;
 
-    PetscCall(VecCopy(secants->df[slot], secants->basis[n]));
+    PetscCall(Gather(secants, secants->df[slot], newest));
+    PetscCall(Dot(contact, size, newest, newest, &squares));
+    whole = PetscSqrtReal(PetscRealPart(squares));
     for (PetscInt i = 0; i < n; i++) {
-      PetscCall(VecDot(secants->basis[n], secants->basis[i], &upper[i][n]));
-      PetscCall(VecAXPY(secants->basis[n], -upper[i][n], secants->basis[i]));
+      PetscCall(Dot(contact, size, newest, secants->basis[i], &upper[i][n]));
+      PetscCall(Add(size, -upper[i][n], secants->basis[i], newest));
     }
-    /* a norm that PETSc has kept since the vector was scaled is another one, to the last bit, than that of a vector from a checkpoint */
-    PetscCall(PetscObjectStateIncrease((PetscObject)secants->basis[n]));
-    PetscCall(VecNorm(secants->basis[n], NORM_2, &left));
-    if (left < INDEPENDENT) continue;
-    PetscCall(VecScale(secants->basis[n], 1 / left));
-    upper[n][n] = left;
-    which[n++]  = slot;
+    PetscCall(Dot(contact, size, newest, newest, &squares));
+    left = PetscSqrtReal(PetscRealPart(squares));
+    if (whole < OF_OTHERS || left < INDEPENDENT * whole) continue;
+    for (PetscInt i = 0; i < size; i++) newest[i] *= 1 / left;
+    upper[n][n]         = left;
+    secants->which[n++] = slot;
   }
-  PetscCall(VecCopy(F, secants->rest));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(VecDot(secants->rest, secants->basis[i], &c[i]));
-    PetscCall(VecAXPY(secants->rest, -c[i], secants->basis[i]));
+    PetscCall(Dot(contact, size, f, secants->basis[i], &c[i]));
+    PetscCall(Add(size, -c[i], secants->basis[i], f));
   }
   for (PetscInt i = n - 1; i >= 0; i--) {
     for (PetscInt j = i + 1; j < n; j++) c[i] -= upper[i][j] * c[j];
     c[i] /= upper[i][i];
   }
-  *used = n;
+  secants->used = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes what the pairs say of F out of it: the rest is for the compliance. `n` pairs `which` with factors `c` are to be added to its
-   answer. */
-PetscErrorCode SchwarzApplySecants(Contact contact, Vec F, Vec *rest, PetscInt *n, PetscInt which[], PetscScalar c[])
+/* Takes what the pairs say of F out of it: the rest is for the compliance, whose answer SchwarzAddSecants() is for */
+PetscErrorCode SchwarzApplySecants(Contact contact, Vec F, Vec *rest)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
-  Vec      X;
+  Schwarz     *schwarz = (Schwarz *)contact->data;
+  Secants     *secants = &schwarz->secants;
+  PetscScalar *values;
+  Vec          X;
 
   PetscFunctionBegin;
   PetscCall(SNESGetSolution(schwarz->outer.snes, &X));
-  PetscCall(AddPair(&schwarz->secants, X, F));
-  PetscCall(Fit(&schwarz->secants, F, n, which, c));
-  *rest = schwarz->secants.rest;
+  PetscCall(AddPair(secants, X, F));
+  SchwarzListMoving(contact, &secants->n_listed, secants->listed);
+  PetscCall(Gather(secants, F, secants->gathered));
+  PetscCall(Fit(contact, secants->gathered));
+  PetscCall(VecCopy(F, secants->rest));
+  PetscCall(VecGetArray(secants->rest, &values));
+  for (PetscInt i = 0; i < secants->n_listed; i++) values[secants->listed[i]] = secants->gathered[i];
+  PetscCall(VecRestoreArray(secants->rest, &values));
+  *rest = secants->rest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Y += X c on the unknowns that take part, and zero on those of groups that rest */
+PetscErrorCode SchwarzAddSecants(Contact contact, Vec Y)
+{
+  const Secants *secants = &((Schwarz *)contact->data)->secants;
+  PetscScalar   *y;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArray(Y, &y));
+  for (PetscInt k = 0; k < secants->used; k++) {
+    const Vec          of = secants->dx[secants->which[k]];
+    const PetscScalar *dx;
+
+    PetscCall(VecGetArrayRead(of, &dx));
+    for (PetscInt i = 0; i < secants->n_listed; i++) y[secants->listed[i]] += secants->factors[k] * dx[secants->listed[i]];
+    PetscCall(VecRestoreArrayRead(of, &dx));
+  }
+  SchwarzHoldUnknowns(contact, y);
+  PetscCall(VecRestoreArray(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -28,8 +28,13 @@ static PetscErrorCode PrepareSweeps(Contact contact)
   if (schwarz->newton || schwarz->mode == SCHWARZ_CONDENSED) PetscCall(SchwarzUpdateJacobian(contact));
   schwarz->step = schwarz->mode == SCHWARZ_CONDENSED && schwarz->jacobian.dense ? STEP_CONDENSED : STEP_WHOLE;
   if (schwarz->step == STEP_CONDENSED) PetscCall(SchwarzPrepareCondensed(contact));
+  PetscCall(SchwarzFindGroups(contact));
   PetscCall(SchwarzPredict(contact));
-  if (schwarz->step == STEP_WHOLE) PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
+  for (PetscInt b = 0; b < contact->n_bodies && schwarz->step == STEP_WHOLE; b++) {
+    if (schwarz->groups.rests[b]) continue;
+    ContactGetConditions(contact, SchwarzConditions(schwarz), b, contact->work.conditions);
+    PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,6 +86,7 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
 
   PetscFunctionBegin;
   schwarz->step = STEP_WHOLE;
+  SchwarzWakeBodies(contact);
   PetscCall(ContactIntegrateFree(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzUpdateActiveSet(contact, in_contact));
@@ -152,13 +158,15 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscCall(RoundsBegin(&schwarz->rounds));
   PetscCall(PetscArrayzero(schwarz->turns.fixed, contact->n_pairs));
   PetscCall(PetscArrayzero(schwarz->turns.joined, contact->n_pairs));
-  PetscCall(ContactBeginRelease(contact));
+  PetscCall(SchwarzBeginGroups(contact));
+  PetscCall(ContactBeginRelease(contact, SchwarzPairRests));
   schwarz->have_base = PETSC_FALSE;
   if (schwarz->swap && schwarz->started && !contact->energy.again && !contact->attempt.again) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || (contact->start.active[i] && contact->start.force[i] > 0));
+    if (!SchwarzPairRests(contact, contact->rows.pair[i]))
+      contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || (contact->start.active[i] && contact->start.force[i] > 0));
   ContactArrangeShared(contact);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));

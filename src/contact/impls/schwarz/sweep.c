@@ -106,7 +106,7 @@ static PetscErrorCode LoadByForce(Contact contact, PetscInt p, const PetscScalar
 }
 
 /* After the body has been integrated: to its partner, that force is as good as a reaction */
-static PetscErrorCode ReportByForce(Contact contact, PetscInt b)
+PetscErrorCode SchwarzReportByForce(Contact contact, PetscInt b)
 {
   const ContactBodyRows *of     = &contact->body_rows[b];
   const BodyTraces      *traces = &contact->traces[b];
@@ -197,6 +197,7 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
     const PetscInt     p    = contact->body_rows[b].pairs[k];
     const ContactPair *pair = &contact->pairs[p];
 
+    if (!SchwarzPairTells(contact, p)) continue;
     if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
       if (DirichletBody(pair) == b) {
         PetscCall(PrescribePair(contact, p, x));
@@ -293,15 +294,18 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(SchwarzTakeTurns(contact, x));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
+    if (schwarz->groups.rests[contact->order[k]]) continue;
     PetscCall(LoadBody(contact, contact->order[k], x));
     if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
     else PetscCall(ContactIntegrateBody(contact, contact->order[k]));
-    if (schwarz->has_forces) PetscCall(ReportByForce(contact, contact->order[k]));
+    if (schwarz->has_forces) PetscCall(SchwarzReportByForce(contact, contact->order[k]));
   }
   if (ContactFailed(contact)) PetscCall(ContactRejectResidual(F));
   else {
     PetscCall(VecGetArrayWrite(F, &f));
-    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
+    for (PetscInt p = 0; p < contact->n_pairs; p++)
+      if (SchwarzPairMoves(contact, p)) PetscCall(ComparePair(contact, p, x, schwarz->groups.on ? schwarz->groups.residual : f));
+    if (schwarz->groups.on) PetscCall(SchwarzCopyResidual(contact, f));
     PetscCall(SchwarzCompareTurns(contact, f));
     PetscCall(SchwarzMeasureChange(contact, f));
     PetscCall(VecRestoreArrayWrite(F, &f));

@@ -1,0 +1,101 @@
+/* An attempt at a step with other contact forces at its start, for limit.c. */
+#include "energyimpl.h"
+
+/* What attempts start from: the step as it has been made */
+PetscErrorCode ContactBeginAttempts(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(ContactComputeEnergies(contact, energy->first_energy, energy->first_springs));
+  PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
+  PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
+  PetscCall(PetscArraycpy(energy->tried_force, energy->start_force, contact->rows.n));
+  PetscCall(PetscArraycpy(energy->tried_rest, energy->rest, contact->rows.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bodies that start the attempt as they did the last one. Collective */
+static PetscErrorCode FindStaying(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of      = &contact->body_rows[b];
+    PetscBool              differs = (PetscBool)!energy->reuses;
+
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt i = of->rows[k];
+
+      if (energy->start_force[i] != energy->tried_force[i] || energy->rest[i] != energy->tried_rest[i]) differs = PETSC_TRUE;
+    }
+    energy->stays[b] = (PetscBool)!differs;
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy->stays, (PetscMPIInt)contact->n_bodies, MPI_C_BOOL, MPI_LAND,
+                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(PetscArraycpy(energy->tried_force, energy->start_force, contact->rows.n));
+  PetscCall(PetscArraycpy(energy->tried_rest, energy->rest, contact->rows.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step from the saved states, with the start forces as they are */
+static PetscErrorCode MakeStep(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(FindStaying(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
+
+    if (energy->stays[b]) continue;
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt i = of->rows[k];
+
+      energy->now[k]        = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (energy->start_force[i] - energy->last_force[i]);
+      contact->work.rest[k] = energy->rest[i];
+    }
+    PetscCall(BodySetStartForce(contact->bodies[b], energy->now, contact->work.rest));
+  }
+  PetscCall(PetscArraycpy(contact->start.force, energy->start_force, contact->rows.n));
+  energy->again = energy->changed = PETSC_TRUE;
+  PetscUseTypeMethod(contact, step);
+  PetscCall(ContactCompleteBodies(contact));
+  energy->again = PETSC_FALSE;
+  PetscCall(PetscArrayzero(energy->stays, contact->n_bodies));
+  if (!ContactFailed(contact)) PetscCall(ContactComputeFrictionLoss(contact, energy->start_force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Work of contact on each group in the last attempt: that of the first, and by how much more the bodies and springs have now */
+static PetscErrorCode ComputeGroupWork(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(ContactComputeEnergies(contact, energy->energies, energy->springs));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    energy->pair_sums[2 * p + 1] = PetscMax(energy->pair_sums[2 * p + 1], energy->springs[2 * p + 1]);
+  ContactFindGroups(contact);
+  PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    energy->group_work[energy->group[b]] += energy->first_work[b] + energy->energies[b] - energy->first_energy[b];
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->springs[2 * p] - energy->first_springs[2 * p];
+  PetscCall(ContactLeaveOutStatic(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step once more, with the start forces as they are, and what each group gains in it; nothing is told where it fails. Collective. */
+PetscErrorCode ContactMakeAttempt(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(MakeStep(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComputeGroupWork(contact));
+  contact->counts.energy_attempts++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
