@@ -292,8 +292,8 @@ def pairs_of_discs(numbers, words):
 @pytest.mark.parametrize("ranks", [1, pytest.param(3, marks=pytest.mark.long)])
 @pytest.mark.parametrize(
     ("words", "sweeps", "close"),
-    [("explicit -time_step 2e-4", 1.16, 1e-8), ("-time_step 2e-3 -contact_energy_excess 0", 2.0, 1e-10)],
-    ids=["explicit", "limited"],
+    [("explicit -time_step 2e-4", 1.16, 1e-8), ("explicit -time_step 2e-4 -schwarz_transmission robin", 1.16, 1e-8), ("-time_step 2e-3 -contact_energy_excess 0", 2.0, 1e-10)],
+    ids=["explicit", "robin", "limited"],
 )
 def test_groups_that_have_converged_rest(words, sweeps, close, ranks, impakt):
     """Six pairs of discs in one run are where each of them is alone, and cost little more: what one pair has to do again, as its active set changes or it would

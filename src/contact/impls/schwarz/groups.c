@@ -258,7 +258,8 @@ static PetscErrorCode MeasureGroups(Contact contact, const PetscScalar f[])
 
     if (!SchwarzPairMoves(contact, p)) continue;
     for (PetscInt i = pair->begin; i < pair->end; i++)
-      for (PetscInt k = 0; k < schwarz->room[p]; k++) *sum += PetscSqr(SchwarzResidualScale(contact, i) * f[schwarz->offset[i] + k]);
+      for (PetscInt k = 0; k < schwarz->room[p] && contact->end.active[i]; k++)
+        *sum += PetscSqr(SchwarzResidualScale(contact, i) * f[schwarz->offset[i] + k]);
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, groups->found, (PetscMPIInt)(contact->n_bodies + 1), MPIU_REAL, MPIU_SUM,
