@@ -55,8 +55,7 @@ void SchwarzWakeBodies(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) groups->rests[b] = PETSC_FALSE;
 }
 
-/* A controller step begins, and another attempt at the one before perhaps: then bodies that rest, and start as they did, are where they
- * were */
+/* A controller step begins. In another attempt at it, groups that rest, and start as they did, are where they were. */
 PetscErrorCode SchwarzBeginGroups(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
@@ -201,22 +200,23 @@ PetscBool SchwarzPairTells(Contact contact, PetscInt p)
 }
 
 /* Unknowns of this rank that Newton's step may change: all, or those of pairs that move */
-void SchwarzListMoving(Contact contact, PetscInt *n, PetscInt listed[])
+PetscErrorCode SchwarzListMoving(Contact contact, PetscInt *n, PetscInt listed[])
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
-  PetscInt       all;
 
-  *n = 0;
+  PetscFunctionBegin;
   if (!schwarz->groups.on) {
-    PetscCallAbort(PETSC_COMM_SELF, VecGetLocalSize(schwarz->outer.x, &all));
-    for (; *n < all; (*n)++) listed[*n] = *n;
-    return;
+    PetscCall(VecGetLocalSize(schwarz->outer.x, n));
+    for (PetscInt k = 0; k < *n; k++) listed[k] = k;
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
+  *n = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     if (!SchwarzPairMoves(contact, p)) continue;
     for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++)
       for (PetscInt k = 0; k < schwarz->room[p] && contact->end.active[i]; k++) listed[(*n)++] = schwarz->offset[i] + k;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Unknowns of pairs that rest stay where they are */

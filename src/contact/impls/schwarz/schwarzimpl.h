@@ -254,7 +254,7 @@ PETSC_INTERN PetscErrorCode SchwarzBeginGroups(Contact);
 PETSC_INTERN void           SchwarzWakeBodies(Contact);
 PETSC_INTERN PetscErrorCode SchwarzFindGroups(Contact);
 PETSC_INTERN PetscBool      SchwarzPairRests(Contact, PetscInt);
-PETSC_INTERN void           SchwarzListMoving(Contact, PetscInt *, PetscInt[]);
+PETSC_INTERN PetscErrorCode SchwarzListMoving(Contact, PetscInt *, PetscInt[]);
 PETSC_INTERN void           SchwarzHoldUnknowns(Contact, PetscScalar[]);
 PETSC_INTERN PetscBool      SchwarzPairMoves(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzCopyResidual(Contact, PetscScalar[]);

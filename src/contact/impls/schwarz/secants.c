@@ -169,7 +169,7 @@ PetscErrorCode SchwarzApplySecants(Contact contact, Vec F, Vec *rest)
   PetscFunctionBegin;
   PetscCall(SNESGetSolution(schwarz->outer.snes, &X));
   PetscCall(AddPair(secants, X, F));
-  SchwarzListMoving(contact, &secants->n_listed, secants->listed);
+  PetscCall(SchwarzListMoving(contact, &secants->n_listed, secants->listed));
   PetscCall(Gather(secants, F, secants->gathered));
   PetscCall(Fit(contact, secants->gathered));
   PetscCall(VecCopy(F, secants->rest));
