@@ -22,6 +22,31 @@ static PetscInt GetBodies(InterfaceOperator op, const ContactPair *pair, PetscIn
   return n;
 }
 
+/* The listed rows of each body */
+static void ListByBody(InterfaceOperator op)
+{
+  const Contact contact = op->contact;
+  PetscInt     *next    = op->body_begin + 1; /* where the next row of body b comes; in the end that of body b + 1 begins there */
+
+  for (PetscInt b = 0; b <= contact->n_bodies; b++) op->body_begin[b] = 0;
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    for (PetscInt place = 0; place < op->n_known; place++) {
+      const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[op->rows[place]]];
+
+      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+        if (pass) op->of_body[next[pair->body[side]]++] = place;
+        else next[pair->body[side]]++;
+    }
+    if (pass) break;
+    for (PetscInt b = 0, sum = 0; b < contact->n_bodies; b++) {
+      const PetscInt count = next[b];
+
+      next[b] = sum;
+      sum += count;
+    }
+  }
+}
+
 /* Finds the groups of the rows that are listed to be solved for, in the order of their first rows, and the bodies of all that are listed;
    all rows are one group where S is given as a matrix. The same on all ranks. */
 PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator op)
@@ -30,6 +55,7 @@ PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator op)
   PetscInt     *root    = op->body_group, bodies[2];
 
   PetscFunctionBegin;
+  ListByBody(op);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     root[b]         = b;
     op->has_rows[b] = PETSC_FALSE;

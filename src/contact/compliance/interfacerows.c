@@ -18,31 +18,6 @@ PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The listed rows of each body */
-static void ListByBody(InterfaceOperator op)
-{
-  const Contact contact = op->contact;
-  PetscInt     *next    = op->body_begin + 1; /* where the next row of body b comes; in the end that of body b + 1 begins there */
-
-  for (PetscInt b = 0; b <= contact->n_bodies; b++) op->body_begin[b] = 0;
-  for (PetscInt pass = 0; pass < 2; pass++) {
-    for (PetscInt place = 0; place < op->n_known; place++) {
-      const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[op->rows[place]]];
-
-      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-        if (pass) op->of_body[next[pair->body[side]]++] = place;
-        else next[pair->body[side]]++;
-    }
-    if (pass) break;
-    for (PetscInt b = 0, sum = 0; b < contact->n_bodies; b++) {
-      const PetscInt count = next[b];
-
-      next[b] = sum;
-      sum += count;
-    }
-  }
-}
-
 /* Adds those of the listed rows from `begin` to `end` - 1 that concern a body to the `n` that body_rows has: their numbers among the rows
    of the body, and into body_places their places in the list. Each part of the list ascends. */
 PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator op, PetscInt b, PetscInt begin, PetscInt end, PetscInt *n)
@@ -145,7 +120,6 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   next[INTERFACE_KNOWN]  = op->n;
   for (PetscInt i = 0; i < contact->rows.n_all; i++)
     if (contact->ranks.all_active[i]) op->rows[next[contact->ranks.all_active[i]]++] = i;
-  ListByBody(op);
   PetscCall(InterfaceOperatorFindGroups(op));
   PetscCall(ChooseDense(op));
   if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
