@@ -25,6 +25,20 @@ typedef struct ContactPreference {
 /* What checkpoints have of a row; the last number is that of the row among those of all ranks */
 #define CONTACT_ROW_NUMBERS 29
 
+/* Groups of bodies, each named by its first one. While groups are joined, `of` leads to that by way of others. */
+static inline PetscInt ContactGroupOf(const PetscInt of[], PetscInt b)
+{
+  while (of[b] != b) b = of[b];
+  return b;
+}
+
+static inline void ContactJoinGroups(PetscInt of[], PetscInt a, PetscInt b)
+{
+  const PetscInt first = ContactGroupOf(of, a), second = ContactGroupOf(of, b);
+
+  of[PetscMax(first, second)] = PetscMin(first, second);
+}
+
 /* The number of the second body of a pair, or the number of bodies and that of the obstacle */
 static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pair)
 {
@@ -146,6 +160,7 @@ PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
 PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
+PETSC_INTERN PetscErrorCode ContactSetBodyConditions(Contact, ContactConditions, PetscInt);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact, PetscBool (*)(Contact, PetscInt));
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);

@@ -23,14 +23,19 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
   }
 }
 
-/* Tells every body what its rows mean */
+/* Tells a body what its rows mean */
+PetscErrorCode ContactSetBodyConditions(Contact contact, ContactConditions conditions, PetscInt b)
+{
+  PetscFunctionBegin;
+  ContactGetConditions(contact, conditions, b, contact->work.conditions);
+  PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ContactSetConditions(Contact contact, ContactConditions conditions)
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactGetConditions(contact, conditions, b, contact->work.conditions);
-    PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
-  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactSetBodyConditions(contact, conditions, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,13 +5,6 @@
 */
 #include "interfaceimpl.h"
 
-/* The body that stands for the group of body b */
-static PetscInt Root(const PetscInt group[], PetscInt b)
-{
-  while (group[b] != b) b = group[b];
-  return b;
-}
-
 /* The bodies of a pair that answer to forces on its rows; returns how many */
 static PetscInt GetBodies(InterfaceOperator op, const ContactPair *pair, PetscInt bodies[2])
 {
@@ -66,12 +59,8 @@ PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator op)
     for (PetscInt k = 0; k < n; k++) op->has_rows[bodies[k]] = PETSC_TRUE;
   }
   for (PetscInt i = 0; i < op->n && !op->matrix; i++)
-    if (GetBodies(op, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], bodies) == 2) {
-      const PetscInt first = Root(root, bodies[0]), second = Root(root, bodies[1]);
-
-      root[PetscMax(first, second)] = PetscMin(first, second);
-    }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) root[b] = Root(root, b);
+    if (GetBodies(op, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], bodies) == 2) ContactJoinGroups(root, bodies[0], bodies[1]);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) root[b] = ContactGroupOf(root, b);
   op->n_groups = 0;
   if (op->matrix) {
     for (PetscInt i = 0; i < op->n; i++) op->group[i] = 0;

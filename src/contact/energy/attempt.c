@@ -1,6 +1,17 @@
 /* An attempt at a step with other contact forces at its start, for limit.c. */
 #include "energyimpl.h"
 
+/* The start that the next attempt is compared with */
+static PetscErrorCode NoteStart(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(energy->tried_force, energy->start_force, contact->rows.n));
+  PetscCall(PetscArraycpy(energy->tried_rest, energy->rest, contact->rows.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What attempts start from: the step as it has been made */
 PetscErrorCode ContactBeginAttempts(Contact contact)
 {
@@ -11,8 +22,7 @@ PetscErrorCode ContactBeginAttempts(Contact contact)
   PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
   PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
-  PetscCall(PetscArraycpy(energy->tried_force, energy->start_force, contact->rows.n));
-  PetscCall(PetscArraycpy(energy->tried_rest, energy->rest, contact->rows.n));
+  PetscCall(NoteStart(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,8 +46,7 @@ static PetscErrorCode FindStaying(Contact contact)
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy->stays, (PetscMPIInt)contact->n_bodies, MPI_C_BOOL, MPI_LAND,
                                PetscObjectComm((PetscObject)contact)));
-  PetscCall(PetscArraycpy(energy->tried_force, energy->start_force, contact->rows.n));
-  PetscCall(PetscArraycpy(energy->tried_rest, energy->rest, contact->rows.n));
+  PetscCall(NoteStart(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

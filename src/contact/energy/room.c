@@ -12,13 +12,6 @@
 */
 #include "energyimpl.h"
 
-/* The body that stands for the group of body b */
-static PetscInt Root(const PetscInt group[], PetscInt b)
-{
-  while (group[b] != b) b = group[b];
-  return b;
-}
-
 /* Which bodies have been in one group in this step, in the attempts so far: those whose pairs touch are joined to it */
 void ContactFindGroups(Contact contact)
 {
@@ -26,14 +19,10 @@ void ContactFindGroups(Contact contact)
 
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    PetscInt           first, second;
 
-    if (energy->pair_sums[2 * p + 1] == 0 || pair->obstacle) continue;
-    first                                  = Root(energy->group, pair->body[0]);
-    second                                 = Root(energy->group, pair->body[1]);
-    energy->group[PetscMax(first, second)] = PetscMin(first, second);
+    if (energy->pair_sums[2 * p + 1] != 0 && !pair->obstacle) ContactJoinGroups(energy->group, pair->body[0], pair->body[1]);
   }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group[b] = Root(energy->group, b);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group[b] = ContactGroupOf(energy->group, b);
 }
 
 /* Groups in which a body has no inertia neither gain nor lose: static balance knows no force at the start of a step, so that the

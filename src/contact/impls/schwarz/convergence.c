@@ -67,7 +67,7 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 
   PetscFunctionBegin;
   if (groups->on) {
-    PetscCall(SchwarzSettleGroups(contact, f, sums));
+    PetscCall(SchwarzSettleGroups(contact, sums));
     *change   = PetscSqrtReal(sums[0]);
     *position = PetscSqrtReal(sums[1]);
     PetscFunctionReturn(PETSC_SUCCESS);

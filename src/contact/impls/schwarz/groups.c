@@ -92,12 +92,6 @@ static PetscInt FirstUnknown(Contact contact, PetscInt i)
   return i < contact->rows.n ? schwarz->offset[i] : contact->rows.n ? schwarz->offset[i - 1] + schwarz->room[contact->rows.pair[i - 1]] : 0;
 }
 
-static PetscInt Root(const PetscInt of[], PetscInt b)
-{
-  while (of[b] != b) b = of[b];
-  return b;
-}
-
 /* Which pairs of all ranks have active rows, and of which rows have joined or left since the last time */
 static PetscErrorCode FlagPairs(Contact contact, int has[], int differs[])
 {
@@ -153,26 +147,22 @@ PetscErrorCode SchwarzFindGroups(Contact contact)
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    PetscInt           first, second;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
       if (differs[p]) groups->rests[pair->body[side]] = PETSC_FALSE;
     if (!has[p]) continue;
     PetscCall(AddPositions(contact, p, &groups->position));
-    if (pair->obstacle) continue;
-    first                               = Root(groups->of, pair->body[0]);
-    second                              = Root(groups->of, pair->body[1]);
-    groups->of[PetscMax(first, second)] = PetscMin(first, second);
+    if (!pair->obstacle) ContactJoinGroups(groups->of, pair->body[0], pair->body[1]);
   }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) groups->of[b] = Root(groups->of, b);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) groups->of[b] = ContactGroupOf(groups->of, b);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     /* nothing is said of rows that are not active any more */
-    if (!has[p])
+    if (!has[p] && differs[p])
       PetscCall(PetscArrayzero(groups->residual + FirstUnknown(contact, pair->begin),
                                FirstUnknown(contact, pair->end) - FirstUnknown(contact, pair->begin)));
-    else groups->state[groups->of[pair->body[0]]] = GROUP_RESTS;
+    if (has[p]) groups->state[groups->of[pair->body[0]]] = GROUP_RESTS;
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (groups->state[groups->of[b]] == GROUP_RESTS && !groups->rests[b]) groups->state[groups->of[b]] = GROUP_MOVES;
@@ -220,16 +210,21 @@ PetscErrorCode SchwarzListMoving(Contact contact, PetscInt *n, PetscInt listed[]
 }
 
 /* Unknowns of pairs that rest stay where they are */
-void SchwarzHoldUnknowns(Contact contact, PetscScalar y[])
+PetscErrorCode SchwarzHoldUnknowns(Contact contact, Vec Y)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
+  PetscScalar   *y;
 
-  if (!schwarz->groups.on) return;
+  PetscFunctionBegin;
+  if (!schwarz->groups.on) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(Y, &y));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     if (!schwarz->groups.flags[p] || !SchwarzPairRests(contact, p)) continue;
     for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++)
       for (PetscInt k = 0; k < schwarz->room[p]; k++) y[schwarz->offset[i] + k] = 0;
   }
+  PetscCall(VecRestoreArray(Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The residual of all pairs, in whichever vector it is wanted */
@@ -242,9 +237,9 @@ PetscErrorCode SchwarzCopyResidual(Contact contact, PetscScalar f[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The squared change of position that the residual f is for each group that moves, and after these the squares of all positions, of all
+/* The squared change of position that the residual is for each group that moves, and after these the squares of all positions, of all
    ranks [m^2] */
-static PetscErrorCode MeasureGroups(Contact contact, const PetscScalar f[])
+static PetscErrorCode MeasureGroups(Contact contact)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
   const Groups  *groups  = &schwarz->groups;
@@ -259,7 +254,7 @@ static PetscErrorCode MeasureGroups(Contact contact, const PetscScalar f[])
     if (!SchwarzPairMoves(contact, p)) continue;
     for (PetscInt i = pair->begin; i < pair->end; i++)
       for (PetscInt k = 0; k < schwarz->room[p] && contact->end.active[i]; k++)
-        *sum += PetscSqr(SchwarzResidualScale(contact, i) * f[schwarz->offset[i] + k]);
+        *sum += PetscSqr(SchwarzResidualScale(contact, i) * groups->residual[schwarz->offset[i] + k]);
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, groups->found, (PetscMPIInt)(contact->n_bodies + 1), MPIU_REAL, MPIU_SUM,
@@ -267,9 +262,9 @@ static PetscErrorCode MeasureGroups(Contact contact, const PetscScalar f[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After a sweep, which has left the residual f: groups that have converged rest, and bodies that nothing touches. Returns the squares of
+/* After a sweep, which has left its residual: groups that have converged rest, and bodies that nothing touches. Returns the squares of
    the change of position and of all positions, over all groups and ranks [m^2]. */
-PetscErrorCode SchwarzSettleGroups(Contact contact, const PetscScalar f[], PetscReal sums[2])
+PetscErrorCode SchwarzSettleGroups(Contact contact, PetscReal sums[2])
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
   Groups   *groups  = &schwarz->groups;
@@ -277,7 +272,7 @@ PetscErrorCode SchwarzSettleGroups(Contact contact, const PetscScalar f[], Petsc
   PetscBool moves = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(MeasureGroups(contact, f));
+  PetscCall(MeasureGroups(contact));
   sums[0]   = 0;
   sums[1]   = groups->found[contact->n_bodies];
   tolerance = PetscMax(schwarz->atol, schwarz->rtol * PetscSqrtReal(sums[1]));

@@ -325,14 +325,13 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
   PetscFunctionBegin;
   PetscCall(PCShellGetContext(pc, &contact));
   schwarz = (Schwarz *)contact->data;
-  if (!schwarz->secants.dx || (schwarz->exact && schwarz->jacobian.dense)) {
-    PetscCall(ApplyCompliance(contact, F, Y));
-    PetscCall(SchwarzLimitTurns(contact, Y));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!schwarz->secants.dx || (schwarz->exact && schwarz->jacobian.dense)) PetscCall(ApplyCompliance(contact, F, Y));
+  else {
+    PetscCall(SchwarzApplySecants(contact, F, &rest));
+    PetscCall(ApplyCompliance(contact, rest, Y));
+    PetscCall(SchwarzAddSecants(contact, Y));
   }
-  PetscCall(SchwarzApplySecants(contact, F, &rest));
-  PetscCall(ApplyCompliance(contact, rest, Y));
-  PetscCall(SchwarzAddSecants(contact, Y));
+  PetscCall(SchwarzHoldUnknowns(contact, Y));
   PetscCall(SchwarzLimitTurns(contact, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

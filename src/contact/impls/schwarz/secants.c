@@ -180,7 +180,7 @@ PetscErrorCode SchwarzApplySecants(Contact contact, Vec F, Vec *rest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Y += X c on the unknowns that take part, and zero on those of groups that rest */
+/* Y += X c on the unknowns that take part */
 PetscErrorCode SchwarzAddSecants(Contact contact, Vec Y)
 {
   const Secants *secants = &((Schwarz *)contact->data)->secants;
@@ -196,7 +196,6 @@ PetscErrorCode SchwarzAddSecants(Contact contact, Vec Y)
     for (PetscInt i = 0; i < secants->n_listed; i++) y[secants->listed[i]] += secants->factors[k] * dx[secants->listed[i]];
     PetscCall(VecRestoreArrayRead(of, &dx));
   }
-  SchwarzHoldUnknowns(contact, y);
   PetscCall(VecRestoreArray(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -30,11 +30,8 @@ static PetscErrorCode PrepareSweeps(Contact contact)
   if (schwarz->step == STEP_CONDENSED) PetscCall(SchwarzPrepareCondensed(contact));
   PetscCall(SchwarzFindGroups(contact));
   PetscCall(SchwarzPredict(contact));
-  for (PetscInt b = 0; b < contact->n_bodies && schwarz->step == STEP_WHOLE; b++) {
-    if (schwarz->groups.rests[b]) continue;
-    ContactGetConditions(contact, SchwarzConditions(schwarz), b, contact->work.conditions);
-    PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
-  }
+  for (PetscInt b = 0; b < contact->n_bodies && schwarz->step == STEP_WHOLE; b++)
+    if (!schwarz->groups.rests[b]) PetscCall(ContactSetBodyConditions(contact, SchwarzConditions(schwarz), b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
