@@ -5,17 +5,21 @@
 
    with prescribed rows held and Robin rows on their springs. One round is exact for a linear material. Others repeat it by chord Newton's
    method, with the factors of K_LL at a displacement that may lie many steps back, at first that of the undeformed body. These factors
-   become worse as the body turns, and fail after 23 degrees. When a balance has become slow, new ones are made: at the start of the next
-   controller step or, within a controller step, before the next substep's balance. In the second case they are not those that the step
-   began with, so that a restore has to make these again, for the step to end with the same bits when it is repeated.
+   become worse as the body turns, and fail after 23 degrees. When a balance has become slow, new ones are made at the start of the next
+   controller step or, when it has become much slower still, within a controller step, before the next balance. In the second case they are
+   not those that the step began with, so that a restore has to make these again, for the step to end with the same bits when it is
+   repeated; and they are made where the outer iteration is, which may be far from where it ends.
 */
 #include "explicitimpl.h"
 
 /* Rounds that the balance of a nonlinear layer may take */
 #define MAX_ROUNDS 100
-/* A balance that takes so many is slow. With new factors, a block that turns by half a degree in a step (tests/unit/body_repeat.c) takes
-   3 to 6 rounds at first. */
-#define SLOW_ROUNDS 20
+/* A balance that takes so many is slow: in the plane, where a layer is a curve and its factors cost little, and in space. With new factors,
+   a block that turns by half a degree in a step (tests/unit/body_repeat.c) takes 3 to 6 rounds at first. */
+#define SLOW_ROUNDS_PLANE 6
+#define SLOW_ROUNDS_SPACE 20
+/* and so many are too slow to wait for the next step */
+#define SLOW_ROUNDS_WITHIN_STEP 20
 /* Of a material that flows, stiffness changes within a step by orders of magnitude: after so many rounds with the same factors there are
    new ones, where the layer is then */
 #define ROUNDS_OF_FACTORS 8
@@ -23,6 +27,9 @@
 #define TOLERANCE 1e-12
 /* or below this part of the norm of displacements and reference positions of all nodes, whose round-off is part of any change */
 #define ROUND_OFF (4 * PETSC_MACHINE_EPSILON)
+/* Forces of contact rows cancel what the layer would do without them, and where its stiffness is near singular that is many times what
+   is left: a change that falls no more is round-off too when it is below so many times the above */
+#define AMPLIFIED 100
 
 /* Factors of a nonlinear layer */
 typedef struct {
@@ -31,7 +38,7 @@ typedef struct {
   PetscReal *history; /* that the elements of the layer had then, and the length of their step; NULL where the material has none */
   PetscReal  step;
   PetscInt   number; /* of these factors, counted as they are made */
-  PetscBool  slow;   /* the last balance with them was */
+  PetscInt   rounds; /* that the last balance with them took */
 } Factors;
 
 struct _n_LayerBalance {
@@ -87,7 +94,7 @@ static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
   PetscCall(BodyGatherLayer(body, u, layer->now.point));
   PetscCall(BodyLayerCopyHistory(body, layer->now.history, &layer->now.step));
   layer->now.number = ++layer->n_made;
-  layer->now.slow   = PETSC_FALSE;
+  layer->now.rounds = 0;
   PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -99,10 +106,11 @@ PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body, BodySlot slot)
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  if (slot == BODY_SLOT_SAVED && layer->now.slow) PetscCall(RefactorAt(layer, body, body->state.u));
+  if (slot == BODY_SLOT_SAVED && layer->now.rounds >= (body->mesh.dim == 2 ? SLOW_ROUNDS_PLANE : SLOW_ROUNDS_SPACE))
+    PetscCall(RefactorAt(layer, body, body->state.u));
   if (aside->number != layer->now.number) PetscCall(CopyOrigin(layer, &layer->now, aside));
   aside->number = layer->now.number;
-  aside->slow   = layer->now.slow;
+  aside->rounds = layer->now.rounds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,7 +120,7 @@ PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body, BodySlot slot)
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  layer->now.slow = aside->slow;
+  layer->now.rounds = aside->rounds;
   if (aside->number == layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
   layer->now.number = aside->number;
   PetscCall(CopyOrigin(layer, aside, &layer->now));
@@ -126,11 +134,11 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
 {
   const PetscBool outside = BodyHasOutsideForce(body, contact), linear = (PetscBool)(body->model.linear || body->model.linearized),
                   robin = (PetscBool)(contact && body->rows.n_robin);
-  PetscReal       first = 0, round_off = 0;
+  PetscReal       first = 0, previous = PETSC_MAX_REAL, round_off = 0;
 
   PetscFunctionBegin;
   if (!linear) {
-    if (contact && layer->now.slow) PetscCall(RefactorAt(layer, body, u));
+    if (contact && layer->now.rounds >= SLOW_ROUNDS_WITHIN_STEP) PetscCall(RefactorAt(layer, body, u));
     PetscCall(VecNorm(u, NORM_2, &round_off));
     round_off = ROUND_OFF * (round_off + layer->reach);
   }
@@ -152,8 +160,10 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     PetscCall(VecNorm(layer->solution, NORM_2, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
-    if (contact) layer->now.slow = (PetscBool)(round + 1 >= SLOW_ROUNDS);
+    if (contact) layer->now.rounds = round + 1;
     if (change <= TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
+    if (change >= previous && change <= AMPLIFIED * round_off) PetscFunctionReturn(PETSC_SUCCESS);
+    previous = change;
   }
   PetscCall(StepFailureSet(
       &body->failure, STEP_DIVERGED_LAYER, PETSC_ERR_NOT_CONVERGED,
@@ -318,7 +328,7 @@ static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool other
   PetscFunctionBegin;
   for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
     layer->aside[slot].number = layer->now.number;
-    layer->aside[slot].slow   = layer->now.slow;
+    layer->aside[slot].rounds = layer->now.rounds;
     PetscCall(CopyOrigin(layer, &layer->now, &layer->aside[slot]));
   }
   if (others) PetscCall(Refactor(layer, body));
@@ -326,13 +336,13 @@ static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool other
 }
 
 /* For a checkpoint that is continued on another number of ranks: where the factors were made, on the nodes of the body near the layer, and
-   their number, 0 for those of the undeformed layer, and whether they are slow; or back */
+   their number, 0 for those of the undeformed layer, and the rounds of the last balance with them; or back */
 PetscErrorCode LayerBalanceCopyPoint(LayerBalance layer, Body body, PetscBool back, Vec point, PetscReal numbers[2])
 {
   PetscFunctionBegin;
   if (back) {
     layer->n_made = layer->now.number = (PetscInt)numbers[0];
-    layer->now.slow                   = (PetscBool)(numbers[1] != 0);
+    layer->now.rounds                 = (PetscInt)numbers[1];
     if (!layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
     /* a displacement of earlier steps goes with the history of these steps: with that of now there are factors where the body is now */
     PetscCall(BodyGatherLayer(body, body->history ? body->saved.u : point, layer->now.point));
@@ -341,7 +351,7 @@ PetscErrorCode LayerBalanceCopyPoint(LayerBalance layer, Body body, PetscBool ba
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   numbers[0] = (PetscReal)layer->now.number;
-  numbers[1] = layer->now.slow;
+  numbers[1] = (PetscReal)layer->now.rounds;
   PetscCall(BodySpreadLayer(body, layer->now.point, point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -355,7 +365,7 @@ PetscErrorCode LayerBalanceVisit(LayerBalance layer, Body body, Checkpoint check
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckpointVisitInts(checkpoint, "layer factors", 1, &layer->n_made));
   PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
-  PetscCall(CheckpointVisitBools(checkpoint, "layer slow", 1, &layer->now.slow));
+  PetscCall(CheckpointVisitInts(checkpoint, "layer rounds", 1, &layer->now.rounds));
   PetscCall(CheckpointVisitVec(checkpoint, "layer point", layer->now.point));
   if (body->history) {
     PetscCall(CheckpointVisitReals(checkpoint, "layer history", layer->n_history, layer->now.history));
