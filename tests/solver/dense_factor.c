@@ -104,28 +104,30 @@ static void diagonal_blocks_are_factored_by_themselves(void **state)
     PetscScalar solution[9], x[9];
     PetscInt    begin = 0;
 
-    ok(DenseFactorResize(&factor, 9, MOST));
-    ok(DenseFactorSetBlocks(&factor, 4, orders));
-    for (PetscInt e = 0; e < 81; e++) factor.values[e] = 1e30;
+    ok(DenseFactorResizeBlocks(&factor, 4, orders, MOST));
+    assert_int_equal(factor.n, 9);
     for (PetscInt j = 0; j < 9; j++) solution[j] = 1 - 0.3 * j;
-    for (PetscInt k = 0; k < 4; begin += orders[k++])
+    for (PetscInt k = 0; k < 4; begin += orders[k++]) {
+      PetscInt     order;
+      PetscScalar *block = DenseFactorGetBlock(&factor, k, &order);
+
+      assert_int_equal(order, orders[k]);
       for (PetscInt i = 0; i < orders[k]; i++) {
         x[begin + i] = 0;
         for (PetscInt j = 0; j < orders[k]; j++) {
           const PetscScalar value = bad && k == 3 ? 1 : entry(orders[k], i, j);
 
-          factor.values[(begin + j) * 9 + begin + i] = value;
+          block[j * order + i] = value;
           x[begin + i] += value * solution[begin + j];
         }
       }
+    }
     ok(DenseFactorCompute(&factor, &singular));
     assert_int_equal(singular, bad);
     if (bad) continue;
     ok(DenseFactorSolve(&factor, x));
     for (PetscInt j = 0; j < 9; j++) near(x[j], solution[j], 1e-13); /* round-off of numbers up to 6 */
   }
-  ok(DenseFactorResize(&factor, 8, MOST));
-  refused(PETSC_ERR_ARG_SIZ, "9 rows in all do not make a matrix of order 8", DenseFactorSetBlocks(&factor, 4, orders));
   solve(&factor, 4);
   ok(DenseFactorDestroy(&factor));
 }

@@ -77,9 +77,13 @@ PetscErrorCode ForceProblemSolve(Contact contact, ForceProblem *problem, Vec F, 
 /* `stiffness`: one for each row of this rank, which may change while the problem is marked as stale */
 PetscErrorCode ForceProblemCreate(Contact contact, PetscReal stiffness[], ForceProblem *problem)
 {
-  const InterfaceSettings settings = {
-      .prefix = "penalty_interface_", .tolerance = FORCE_TOLERANCE, .worst = 0, .dense_limit = DENSE_LIMIT, .few = DENSE_ROWS};
-  const PetscInt n = contact->rows.n;
+  const InterfaceSettings settings = {.prefix      = "penalty_interface_",
+                                      .tolerance   = FORCE_TOLERANCE,
+                                      .worst       = 0,
+                                      .dense_limit = DENSE_LIMIT,
+                                      .few         = DENSE_ROWS,
+                                      .sparse      = PETSC_TRUE};
+  const PetscInt          n        = contact->rows.n;
 
   PetscFunctionBegin;
   problem->stiffness = stiffness;

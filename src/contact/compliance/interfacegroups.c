@@ -15,13 +15,15 @@ static PetscInt GetBodies(InterfaceOperator op, const ContactPair *pair, PetscIn
   return n;
 }
 
-/* The listed rows of each body */
+/* The listed rows of each body; the first one has all where S is given as a matrix */
 static void ListByBody(InterfaceOperator op)
 {
   const Contact contact = op->contact;
   PetscInt     *next    = op->body_begin + 1; /* where the next row of body b comes; in the end that of body b + 1 begins there */
 
-  for (PetscInt b = 0; b <= contact->n_bodies; b++) op->body_begin[b] = 0;
+  for (PetscInt b = 0; b <= contact->n_bodies; b++) op->body_begin[b] = op->matrix && b ? op->n_known : 0;
+  for (PetscInt place = 0; place < op->n_known && op->matrix; place++) op->of_body[place] = place;
+  if (op->matrix) return;
   for (PetscInt pass = 0; pass < 2; pass++) {
     for (PetscInt place = 0; place < op->n_known; place++) {
       const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[op->rows[place]]];
@@ -63,6 +65,7 @@ PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator op)
   for (PetscInt b = 0; b < contact->n_bodies; b++) root[b] = ContactGroupOf(root, b);
   op->n_groups = 0;
   if (op->matrix) {
+    for (PetscInt b = 0; b < contact->n_bodies; b++) op->has_rows[b] = (PetscBool)(b == 0);
     for (PetscInt i = 0; i < op->n; i++) op->group[i] = 0;
     if (op->n) op->group_rows[op->n_groups++] = op->n;
     PetscFunctionReturn(PETSC_SUCCESS);

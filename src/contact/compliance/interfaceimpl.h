@@ -2,8 +2,7 @@
 #pragma once
 #include "interfaceoperator.h"
 #include <solver/densefactor.h>
-
-#define INTERFACE_MAPS 4
+#include <solver/sparsefactor.h>
 
 typedef struct _n_InterfaceDirect         *InterfaceDirect;
 typedef struct _n_InterfacePreconditioner *InterfacePreconditioner;
@@ -23,12 +22,14 @@ struct _n_InterfaceOperator {
   PetscInt  *body_group;           /* work space, per body */
   PetscInt  *of_body, *body_begin; /* places of the rows of each body in the list, body by body; where those of each begin, and the end */
   PetscBool *has_rows;             /* per body: it answers to forces on some of the listed rows */
-  /* dense: each map's matrices, n x n by columns for each level, where they have been assembled */
-  PetscBool    dense;
-  PetscScalar *matrices[INTERFACE_MAPS];
-  PetscInt     sizes[INTERFACE_MAPS]; /* of these arrays */
-  PetscBool    assembled[INTERFACE_MAPS];
-  DenseFactor  factor; /* of S at the first level with the diagonal, on the rows that are `in` */
+  /* dense: the compliance of each body on the rows of its own that are solved for, by columns, body by body and level by level, or all of
+     a sparse S as one block; and where the block of each body begins in a level, and the end */
+  PetscBool    dense, assembled;
+  PetscInt    *block_begin, blocks_room;
+  PetscScalar *blocks, *gathered; /* the latter is work space: values of one body's rows */
+  DenseFactor  factor;            /* of S at the first level with the diagonal, on the rows that are `in` */
+  SparseFactor sparse;            /* the same in its place where bodies are many */
+  PetscBool    is_sparse;
   PetscBool    factored;
   PetscInt     n_in, *places; /* which of the listed rows these are, group by group */
   PetscScalar *listed[2];     /* work space */
@@ -48,6 +49,11 @@ struct _n_InterfaceOperator {
 PETSC_INTERN PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator, PetscInt);
 PETSC_INTERN PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator, PetscInt, PetscInt, PetscInt, PetscInt *);
 PETSC_INTERN PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator);
+PETSC_INTERN PetscErrorCode InterfaceBlocksUpdate(InterfaceOperator);
+PETSC_INTERN void           InterfaceBlocksAdd(InterfaceOperator, InterfaceMap, PetscInt, const PetscInt[], PetscInt, PetscScalar[]);
+PETSC_INTERN PetscErrorCode InterfaceBlocksVisit(InterfaceOperator, Checkpoint);
+PETSC_INTERN PetscInt       InterfaceBlockPlaces(InterfaceOperator, PetscInt, const PetscInt *[]);
+PETSC_INTERN PetscErrorCode InterfaceFactorVisit(InterfaceOperator, Checkpoint);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);

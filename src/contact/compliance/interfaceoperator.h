@@ -31,6 +31,7 @@ typedef struct {
   PetscBool   warm;        /* conjugate gradients begin with what the solution is before */
   PetscBool
       precondition; /* conjugate gradients by what the Dirichlet sides answer with, where these are linear and rows beyond dense_limit */
+  PetscBool sparse; /* factors of S may be sparse, with more rows than dense_limit, where the bodies are many */
   PetscBool direct; /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
 } InterfaceSettings;
 
@@ -39,7 +40,7 @@ PETSC_INTERN PetscErrorCode InterfaceOperatorDestroy(InterfaceOperator *);
 PETSC_INTERN PetscErrorCode InterfaceOperatorSetMatrix(InterfaceOperator, Mat);
 PETSC_INTERN PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator, const InterfaceMark[], PetscInt);
 PETSC_INTERN void           InterfaceOperatorGetRows(InterfaceOperator, PetscInt *, const PetscInt *[], PetscBool *);
-PETSC_INTERN PetscErrorCode InterfaceOperatorAssemble(InterfaceOperator, InterfaceMap, PetscInt, PetscScalar[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorAssemble(InterfaceOperator, InterfaceMap, PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorFactor(InterfaceOperator, const PetscBool[], const PetscReal[]);
 PETSC_INTERN PetscBool      InterfaceOperatorWantsDense(InterfaceOperator);
 /* on the listed rows of all ranks, where matrices are dense */

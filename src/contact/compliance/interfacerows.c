@@ -4,17 +4,22 @@
 /* Groups from which on small dense blocks are preferred to sparse factors of all, which rows that come and go would have made again */
 #define MANY_GROUPS 8
 
+/* Factors of S are sparse where it has so many times more places than entries, and dense factors would take so many operations */
+#define SPARSE_PART 8
+#define CHEAP_FLOPS 1e6
+
 /* Room for n listed rows */
 PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
 {
   PetscFunctionBegin;
   if (n <= op->room) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree6(op->rows, op->body_rows, op->body_places, op->places, op->listed[0], op->listed[1]));
-  PetscCall(PetscFree4(op->group, op->group_rows, op->grouped, op->of_body));
+  PetscCall(PetscFree5(op->group, op->group_rows, op->grouped, op->gathered, op->of_body));
   op->room = PetscMax(n, PetscMin(2 * op->room, op->contact->rows.n_all));
   PetscCall(PetscMalloc6(op->room, &op->rows, op->room, &op->body_rows, op->room, &op->body_places, op->room, &op->places, op->room,
                          &op->listed[0], op->room, &op->listed[1]));
-  PetscCall(PetscMalloc4(op->room, &op->group, op->room, &op->group_rows, op->room, &op->grouped, 2 * op->room, &op->of_body));
+  PetscCall(PetscMalloc5(op->room, &op->group, op->room, &op->group_rows, op->room, &op->grouped, 2 * op->room, &op->gathered, 2 * op->room,
+                         &op->of_body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -46,13 +51,40 @@ static PetscErrorCode ListKnownRows(InterfaceOperator op, PetscInt b, PetscInt *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Entries of S, those on the diagonal twice */
+static PetscLogDouble CountEntries(InterfaceOperator op)
+{
+  PetscLogDouble entries = 0;
+
+  for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
+    const PetscInt *places, n = InterfaceBlockPlaces(op, b, &places);
+
+    entries += (PetscLogDouble)n * n;
+  }
+  return entries;
+}
+
+/* Whether factors of S are to be sparse: where bodies are many, and dense factors of their groups would not be cheap */
+static PetscBool IsSparse(InterfaceOperator op)
+{
+  PetscLogDouble dense = 0, square = 0;
+
+  if (!op->settings.sparse || op->levels > 1 || op->matrix) return PETSC_FALSE;
+  for (PetscInt g = 0; g < op->n_groups; g++) {
+    dense += DenseFactorFlops(op->group_rows[g]);
+    square += PetscSqr((PetscLogDouble)op->group_rows[g]);
+  }
+  return (PetscBool)(dense > CHEAP_FLOPS && square > SPARSE_PART * CountEntries(op));
+}
+
 /* Operations that one product with S takes, and those that it takes to have a dense matrix, its columns and its factors, in its place */
 static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, PetscLogDouble *dense)
 {
   PetscFunctionBegin;
   *product = 0;
   *dense   = 0;
-  for (PetscInt g = 0; g < op->n_groups; g++) *dense += DenseFactorFlops(op->group_rows[g]);
+  if (op->is_sparse) *dense = SparseFactorFlops(op->n, CountEntries(op));
+  for (PetscInt g = 0; g < op->n_groups && !op->is_sparse; g++) *dense += DenseFactorFlops(op->group_rows[g]);
   for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
     PetscLogDouble apply, extend;
     PetscInt       n;
@@ -76,9 +108,10 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
 
   PetscFunctionBegin;
   op->dense_flops = 0;
-  op->dense       = (PetscBool)(size <= op->settings.dense_limit);
+  op->is_sparse   = IsSparse(op);
+  op->dense       = (PetscBool)(size <= op->settings.dense_limit || op->is_sparse);
   if (!op->dense || size <= op->settings.few || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
-  if (InterfaceIsDirect(op) && op->n_groups < MANY_GROUPS) {
+  if (InterfaceIsDirect(op) && op->n_groups < MANY_GROUPS && !op->is_sparse) {
     op->dense = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -103,9 +136,9 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   PetscInt count[3] = {0, 0, 0}, next[3];
 
   PetscFunctionBegin;
-  op->levels   = levels;
-  op->factored = PETSC_FALSE;
-  for (PetscInt m = 0; m < INTERFACE_MAPS; m++) op->assembled[m] = PETSC_FALSE;
+  op->levels    = levels;
+  op->factored  = PETSC_FALSE;
+  op->assembled = PETSC_FALSE;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     op->marks[i]                  = marks[i];
     contact->ranks.mine_active[i] = (int)marks[i];

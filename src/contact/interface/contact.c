@@ -3,6 +3,8 @@
 #include <sys/names.h>
 #include <sys/stages.h>
 
+/* Pairs whose names are printed */
+#define MOST_NAMED 50
 /* Slip [parts of the face] and turn [rad] after which rows are built again by default. Smaller bounds follow curved surfaces better, larger
    ones lose less energy: a half disc that is led round another one has ripples of 1.5 % in its normal force with these, and 0.2 % with
    0.05. */
@@ -276,12 +278,14 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   if (!contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s:", ((PetscObject)contact)->type_name));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+  for (PetscInt p = 0; p < PetscMin(contact->n_pairs, MOST_NAMED); p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     PetscCall(PetscViewerASCIIPrintf(viewer, pair->why ? " %s (sides chosen: %s)" : " %s", pair->name, pair->why));
     if (pair->turned) PetscCall(PetscViewerASCIIPrintf(viewer, " (rows on %s)", ((PetscObject)contact->bodies[pair->body[0]])->name));
   }
+  if (contact->n_pairs > MOST_NAMED)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " and %" PetscInt_FMT " more pairs", contact->n_pairs - MOST_NAMED));
   if (contact->setup) PetscCall(CountNodes(contact, &nodes));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", nodes, nodes == 1 ? "" : "s"));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)

@@ -24,6 +24,7 @@ typedef struct _n_FrictionSolver *FrictionSolver;
 PETSC_INTERN PetscErrorCode FrictionSolverCreate(FrictionSolver *);
 PETSC_INTERN PetscErrorCode FrictionSolverSolve(FrictionSolver, const FrictionProblem *, PetscBool *, PetscBool *);
 PETSC_INTERN PetscErrorCode FrictionSolverDestroy(FrictionSolver *);
+PETSC_INTERN void           FrictionLearn(FrictionProblem *, const PetscScalar[], const PetscScalar[], const PetscScalar[]);
 PETSC_INTERN PetscErrorCode FrictionSolveNode(PetscInt, const PetscReal[], const PetscReal[], const PetscReal[], PetscReal[]);
 
 PETSC_INTERN PetscErrorCode ContactLawCreate_Coulomb(Contact, ContactFrictionLaw *);

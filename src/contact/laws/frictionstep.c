@@ -28,7 +28,9 @@ typedef struct {
   FrictionSolver    solver;
   FrictionProblem   problem;
   PetscInt          room; /* rows that the problem has room for */
-  PetscReal         atol; /* what S tells and what bodies do may differ by this [m] */
+  /* of the last sweep: the change of forces, and what rows open by for it, by S and by the bodies */
+  PetscScalar *force_change, *told, *answer;
+  PetscReal    atol; /* what S tells and what bodies do may differ by this [m] */
   /* springs between both sides of each row, which make it give by flexibility (force - multiplier); all are 0 where there are none */
   ContactFrictionSprings springs;
   PetscBool              has_springs;
@@ -86,9 +88,12 @@ static PetscErrorCode ComputeSlips(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreeProblem(FrictionProblem *problem)
+static PetscErrorCode FreeProblem(FrictionStep *step)
 {
+  FrictionProblem *problem = &step->problem;
+
   PetscFunctionBegin;
+  PetscCall(PetscFree3(step->force_change, step->told, step->answer));
   PetscCall(PetscFree6(problem->S, problem->opened, problem->base, problem->limit, problem->force, problem->state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,10 +106,11 @@ static PetscErrorCode MakeRoom(FrictionStep *step, PetscInt n, PetscInt most)
   PetscFunctionBegin;
   problem->n = n;
   if (n <= step->room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FreeProblem(problem));
+  PetscCall(FreeProblem(step));
   step->room = n = PetscMax(n, PetscMin(2 * step->room, most));
   PetscCall(
       PetscMalloc6(n * n, &problem->S, n, &problem->opened, n, &problem->base, n, &problem->limit, n, &problem->force, n, &problem->state));
+  PetscCall(PetscMalloc3(n, &step->force_change, n, &step->told, n, &step->answer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,7 +145,7 @@ static PetscErrorCode ListRows(Contact contact)
              " of them touch, with %d rows each; there may be %d rows: choose coarser contact surfaces, or -contact_law frictionless",
              contact->friction.name, n / contact->dim, (int)contact->dim, MOST_ROWS);
   PetscCall(MakeRoom(step, n, contact->rows.n_all));
-  PetscCall(InterfaceOperatorAssemble(step->S, INTERFACE_GAP, -1, step->problem.S));
+  PetscCall(InterfaceOperatorAssemble(step->S, INTERFACE_GAP, step->problem.S));
   for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = step->flexibility[i];
   PetscCall(InterfaceOperatorGather(step->S, step->mine, step->problem.opened));
   for (PetscInt i = 0; i < n; i++) step->problem.S[i * (n + 1)] += step->problem.opened[i];
@@ -185,16 +191,20 @@ static PetscErrorCode Compare(Contact contact, PetscReal *mismatch, PetscReal *r
   PetscReal        largest = 0;
 
   PetscFunctionBegin;
-  /* what S tells, into `base` */
-  for (PetscInt i = 0; i < problem->n; i++) problem->base[i] = problem->force[i] - problem->base[i];
-  PetscCall(DenseMultiplyAdd(problem->n, problem->n, problem->S, 1, problem->base, problem->opened));
-  PetscCall(GatherOpened(contact, problem->base));
+  for (PetscInt i = 0; i < problem->n; i++) {
+    step->force_change[i] = problem->force[i] - problem->base[i];
+    step->told[i]         = 0;
+  }
+  PetscCall(DenseMultiplyAdd(problem->n, problem->n, problem->S, 1, step->force_change, step->told));
+  PetscCall(GatherOpened(contact, step->answer));
   *mismatch = 0;
   for (PetscInt i = 0; i < problem->n; i++) {
-    const PetscReal differs = PetscAbsScalar(problem->base[i] - problem->opened[i]);
+    const PetscScalar opened  = step->answer[i];
+    const PetscReal   differs = PetscAbsScalar(opened - (problem->opened[i] + step->told[i]));
 
-    *mismatch          = differs > *mismatch || PetscIsInfOrNanReal(differs) ? differs : *mismatch;
-    problem->opened[i] = problem->base[i];
+    *mismatch = differs > *mismatch || PetscIsInfOrNanReal(differs) ? differs : *mismatch;
+    step->answer[i] -= problem->opened[i];
+    problem->opened[i] = opened;
     problem->base[i]   = problem->force[i];
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++)
@@ -394,7 +404,7 @@ static PetscErrorCode Settle(Contact contact)
       if (residual > RESIDUAL_MOST * PetscMax(step->atol, round_off)) PetscCall(Fail(contact, PETSC_FALSE, 0));
       contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, residual);
       PetscFunctionReturn(PETSC_SUCCESS);
-    }
+    } else FrictionLearn(&step->problem, step->force_change, step->told, step->answer);
   }
   PetscCall(Fail(contact, PETSC_TRUE, mismatch));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -530,7 +540,7 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(ForcesDestroy(&step->forces));
   PetscCall(InterfaceOperatorDestroy(&step->S));
   PetscCall(FrictionSolverDestroy(&step->solver));
-  PetscCall(FreeProblem(&step->problem));
+  PetscCall(FreeProblem(step));
   PetscCall(PetscFree5(step->marks, step->mine, step->flexibility, step->multiplier, step->change));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -14,6 +14,7 @@ typedef struct {
   Contact   contact;
   Rounds    set;
   PetscReal force[MOST_ROWS], gap[MOST_ROWS]; /* of all rows, on every rank */
+  PetscReal margin[2][MOST_ROWS];             /* of rounds that are left early, of this rank's rows */
   PetscInt  rounds;
 } Model;
 
@@ -30,6 +31,7 @@ static void model_create(PetscInt n, Model *m)
   ok(PetscCalloc4(local, &m->contact->end.active, local, &m->contact->rows.tied, local, &m->contact->end.force, local,
                   &m->contact->end.gap));
   ok(RoundsCreate(m->contact, m->contact->end.active, m->contact->end.force, m->contact->end.gap, &m->set));
+  for (PetscInt k = 0; k < 2; k++) m->set.margin[k] = m->margin[k];
 }
 
 static void model_destroy(Model *m)
@@ -67,8 +69,8 @@ static void solve(const Problem *problem, Model *m)
   }
 }
 
-/* One controller step; how often sets have been seen twice so far */
-static PetscInt step(const Problem *problem, Model *m)
+/* One controller step, in which rounds are left early as long as they may be, or none is; how often sets have been seen twice so far */
+static PetscInt step_in(const Problem *problem, PetscBool haste, Model *m)
 {
   PetscBool changed = PETSC_TRUE, flips;
 
@@ -77,11 +79,17 @@ static PetscInt step(const Problem *problem, Model *m)
   for (m->rounds = 0; changed; m->rounds++) {
     ok(RoundsNext(&m->set));
     solve(problem, m);
+    if (haste && RoundsMayLeave(&m->set)) RoundsLeaveEarly(&m->set);
     ok(RoundsChange(&m->set));
     ok(RoundsHaveChanged(&m->set, &changed));
     if (changed) ok(RoundsBreakCycle(&m->set, &flips));
   }
   return m->contact->counts.set_cycles;
+}
+
+static PetscInt step(const Problem *problem, Model *m)
+{
+  return step_in(problem, PETSC_FALSE, m);
 }
 
 static void check(const Model *m, PetscInt n, const PetscReal force[])
@@ -192,13 +200,74 @@ static void a_long_way_ends(void **state)
   model_destroy(&model);
 }
 
+/* What rounds were left with is no solution: a set that comes up again is no circle until rounds have been solved to their end */
+static void hasty_rounds_are_no_circle(void **state)
+{
+  Problem problem = {.n = 3};
+  Model   model;
+
+  (void)state;
+  memcpy(problem.S, circle_S, sizeof(circle_S));
+  memcpy(problem.q, circle_q, sizeof(circle_q));
+  model_create(3, &model);
+  assert_int_equal(step(&problem, &model), 1);
+  model.contact->counts.set_cycles = 0;
+  between(model.rounds, 4, 10);
+  {
+    const PetscInt patient = model.rounds;
+
+    assert_int_equal(step_in(&problem, PETSC_TRUE, &model), 1);
+    check(&model, 3, circle_force);
+    assert_int_equal(model.rounds, patient + 3); /* once round in haste */
+    assert_true(model.set.patient && !model.set.early);
+  }
+  ok(RoundsBegin(&model.set));
+  assert_true(RoundsMayLeave(&model.set));
+  model_destroy(&model);
+}
+
+/* Rows that are wrong by less than forces and gaps may still change by are left as they are, until the round is solved to its end */
+static void rounds_left_early_change_what_is_clear(void **state)
+{
+  static const PetscReal force[] = {-1, -0.1, 0, 0}, gap[] = {0, 0, -1, -0.1};
+  static const PetscBool start[] = {PETSC_TRUE, PETSC_TRUE, PETSC_FALSE, PETSC_FALSE};
+  Model                  model;
+
+  (void)state;
+  model_create(4, &model);
+  for (PetscInt round = 0; round < 2; round++) {
+    ok(RoundsBegin(&model.set));
+    for (PetscInt i = 0; i < model.contact->rows.n; i++) {
+      const PetscInt row = model.contact->rows.begin + i;
+
+      model.contact->end.active[i] = start[row];
+      model.contact->end.force[i]  = force[row];
+      model.contact->end.gap[i]    = gap[row];
+      model.margin[0][i] = model.margin[1][i] = 0.5;
+    }
+    ok(RoundsNext(&model.set));
+    assert_null(RoundsBefore(&model.set));
+    if (!round) RoundsLeaveEarly(&model.set);
+    ok(RoundsChange(&model.set));
+    for (PetscInt i = 0; i < model.contact->rows.n; i++) {
+      const PetscInt row = model.contact->rows.begin + i;
+
+      assert_int_equal(model.contact->end.active[i], round ? !start[row] : row == 1 || row == 2);
+    }
+    ok(RoundsNext(&model.set));
+    assert_false(model.set.early);
+    for (PetscInt i = 0; i < model.contact->rows.n; i++)
+      assert_int_equal(RoundsBefore(&model.set)[i], start[model.contact->rows.begin + i]);
+  }
+  model_destroy(&model);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_circle_of_three_sets),
-      cmocka_unit_test(a_row_that_flips),
-      cmocka_unit_test(fewer_wrong_rows),
-      cmocka_unit_test(a_long_way_ends),
+      cmocka_unit_test(a_circle_of_three_sets),     cmocka_unit_test(a_row_that_flips),
+      cmocka_unit_test(fewer_wrong_rows),           cmocka_unit_test(a_long_way_ends),
+      cmocka_unit_test(hasty_rounds_are_no_circle), cmocka_unit_test(rounds_left_early_change_what_is_clear),
   };
 
   return impakt_main(argc, argv, tests);

@@ -223,6 +223,79 @@ static void may_be_a_sparse_matrix(void **state)
   ok(MatDestroy(&S));
 }
 
+/* Blocks in a line, each pressed by its neighbours: sparse factors of one group with more rows than may be
+   dense give the forces that dense ones give: all, without those of one pair, with springs */
+static void many_bodies_have_sparse_factors(void **state)
+{
+  static const InterfaceSettings wholes  = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 1000, .few = 1000};
+  static const InterfaceSettings sparses = {
+      .prefix = "operator_", .tolerance = 1e-14, .dense_limit = 10, .few = 0, .at_once = 100, .sparse = PETSC_TRUE};
+  Simulation       *simulation = (Simulation *)*state;
+  const PetscInt    n_blocks   = 40;
+  Contact           contact;
+  InterfaceOperator whole, many;
+  InterfaceMark    *marks;
+  PetscScalar      *gap, *expected, *found;
+  PetscReal        *springs;
+  PetscBool        *in, is_dense;
+  char              options[8192] = "-time_step 0.04 -time_end 1 -bodies ", pairs[4096] = "";
+  PetscInt          n;
+
+  for (PetscInt k = 0; k < n_blocks; k++) {
+    char body[512];
+
+    ok(PetscSNPrintf(body, sizeof(body), "%sb%d", k ? "," : "", (int)k));
+    ok(PetscStrlcat(options, body, sizeof(options)));
+    if (k) {
+      ok(PetscSNPrintf(body, sizeof(body), "%sb%d.xmax:b%d.xmin", k > 1 ? "," : "", (int)k - 1, (int)k));
+      ok(PetscStrlcat(pairs, body, sizeof(pairs)));
+    }
+    ok(PetscSNPrintf(body, sizeof(body),
+                     "-prefix_push b%d_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 2,4 -dm_plex_box_lower %d,0 "
+                     "-dm_plex_box_upper %d,1 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 -ts_type centraldifference -prefix_pop",
+                     (int)k, (int)k, (int)k + 1));
+    AddOptions(body);
+  }
+  AddOptions(options);
+  ok(PetscSNPrintf(options, sizeof(options), "-contact_pairs %s", pairs));
+  AddOptions(options);
+  ok(SimulationCreate(simulation));
+  contact = simulation->contact;
+  n       = contact->rows.n;
+  ok(PetscMalloc6(n, &marks, n, &gap, n, &expected, n, &found, n, &springs, n, &in));
+  for (PetscInt i = 0; i < n; i++) marks[i] = INTERFACE_SOLVED;
+  ok(InterfaceOperatorCreate(contact, &wholes, &whole));
+  ok(InterfaceOperatorCreate(contact, &sparses, &many));
+  ok(InterfaceOperatorSetRows(whole, marks, 1));
+  ok(InterfaceOperatorSetRows(many, marks, 1));
+  InterfaceOperatorGetRows(many, NULL, NULL, &is_dense);
+  assert_true(is_dense);
+  fill(contact, gap);
+  for (PetscInt round = 0; round < 3; round++) {
+    PetscReal largest = 0;
+
+    for (PetscInt i = 0; i < n; i++) {
+      in[i]      = (PetscBool)(!round || contact->rows.pair[i] != 7);
+      springs[i] = round == 2 ? 0.3 : 0;
+    }
+    ok(InterfaceOperatorFactor(whole, in, springs));
+    ok(InterfaceOperatorFactor(many, in, springs));
+    ok(InterfaceOperatorSolve(whole, gap, expected));
+    ok(InterfaceOperatorSolve(many, gap, found));
+    for (PetscInt i = 0; i < n; i++) largest = PetscMax(largest, PetscAbsScalar(expected[i]));
+    for (PetscInt i = 0; i < n; i++) {
+      near(found[i], expected[i], 1e-11 * largest); /* round-off, times a condition number of some hundred */
+      if (!in[i]) near(found[i], 0, 0);
+    }
+    ok(InterfaceOperatorMultiply(many, INTERFACE_GAP, found, expected));
+    for (PetscInt i = 0; i < n; i++)
+      if (in[i]) near(expected[i] + springs[i] * found[i], gap[i], 1e-11 * largest);
+  }
+  ok(InterfaceOperatorDestroy(&whole));
+  ok(InterfaceOperatorDestroy(&many));
+  ok(PetscFree6(marks, gap, expected, found, springs, in));
+}
+
 /* Conjugate gradients that stop early end the run, and say what is left and what to do */
 static void iterations_that_do_not_converge_are_an_error(void **state)
 {
@@ -242,9 +315,13 @@ static void iterations_that_do_not_converge_are_an_error(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(products_are_the_same),         simulation_test(solutions_are_the_same),
-      simulation_test(sparse_factors_solve_the_same), simulation_test(becomes_dense_when_that_has_paid),
-      simulation_test(may_be_a_sparse_matrix),        simulation_test(iterations_that_do_not_converge_are_an_error),
+      simulation_test(products_are_the_same),
+      simulation_test(solutions_are_the_same),
+      simulation_test(sparse_factors_solve_the_same),
+      simulation_test(becomes_dense_when_that_has_paid),
+      simulation_test(may_be_a_sparse_matrix),
+      simulation_test(many_bodies_have_sparse_factors),
+      simulation_test(iterations_that_do_not_converge_are_an_error),
   };
 
   return impakt_main(argc, argv, tests);

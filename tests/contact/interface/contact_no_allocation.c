@@ -284,9 +284,36 @@ static void forward_lagrange(void **state)
 /* Without lateral contraction blocks that meet head on do not slip, and their rows stay as they are */
 #define NONLINEAR "-a_material_type neo_hookean -b_material_type neo_hookean -a_poissons_ratio 0 -b_poissons_ratio 0"
 
+/* What PETSc may allocate where factors are made anew: MatLUFactorNumeric() takes four work arrays for that, and
+   MatSetOptionsPrefixFactor() one for a name */
+#define ALLOCATIONS_OF_FACTORS 5
+/* On several ranks, where PCREDUNDANT is set up around the factors, PETSc's assembly and the collection of the matrix take more: 15 to 22
+   for both */
+#define ALLOCATIONS_OF_MATRICES 12
+
+static void expect_little(const Counted *counted, long ours)
+{
+  PetscMPIInt size;
+
+  ok(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  if (size == 1) {
+    assert_int_equal(counted->ours, 0);
+    between(counted->petsc, 0, ALLOCATIONS_OF_FACTORS * counted->factors);
+  } else {
+    between(counted->ours, 0, ours + ALLOCATIONS_OF_MATRICES * counted->factors);
+    between(counted->petsc, 0, ALLOCATIONS_OF_MATRICES * counted->factors);
+  }
+}
+
+/* Layers of nonlinear bodies have new factors where a balance is slow */
 static void nonlinear_explicit_bodies(void **state)
 {
-  expect_nothing_if_explicit((Simulation *)*state, NONLINEAR);
+  for (PetscInt dim = 2; dim <= 3; dim++) {
+    const Counted counted = count((Simulation *)*state, dim, EXPLICIT, NONLINEAR);
+
+    assert_int_equal(counted.free, 0);
+    expect_little(&counted, 0);
+  }
 }
 
 /* Of the blocks one slides along the other: rows of nonlinear bodies follow it in each step, and have new values. It slides by 1/100 of a
@@ -295,28 +322,20 @@ static void nonlinear_explicit_bodies(void **state)
 
 static void rows_that_follow(void **state)
 {
-  PetscMPIInt size;
-
   const char *const slides[]  = {"-a_initial_velocity 0.05,0.005 -b_initial_velocity -0.05,0 ",
                                  "-a_initial_velocity 0.05,0.005,0.002 -b_initial_velocity -0.05,0,0 "};
   const char *const methods[] = {"", "-contact_type penalty", "-contact_energy_cap 0"};
 
-  ok(MPI_Comm_size(PETSC_COMM_WORLD, &size));
   for (int i = 0; i < 3; i++) {
     char    text[512];
     Counted counted;
 
     ok(PetscSNPrintf(text, sizeof(text), SLIDING "%s%s", slides[i % 2], methods[i]));
     counted = count((Simulation *)*state, 2 + i % 2, EXPLICIT, text);
-    if ((size == 1 && counted.ours) || counted.petsc || !counted.follow)
-      print_error("%s: %ld allocations of Impakt's and %ld of PETSc's in %d steps, in %d of which rows follow\n", text, counted.ours,
-                  counted.petsc, (int)counted.steps, (int)counted.follow);
     assert_int_equal(counted.follow, counted.steps);
     /* after each assembly of a matrix on several ranks MatGetRow() takes room for a row, two arrays: of the rows of both bodies, and of
        their layers */
-    if (size == 1) assert_int_equal(counted.ours, 0);
-    else between(counted.ours, 0, 4 * counted.steps);
-    assert_int_equal(counted.petsc, 0);
+    expect_little(&counted, 4 * counted.steps);
   }
 }
 
@@ -332,8 +351,7 @@ static void anderson_allocates_once_an_iteration(void **state)
   }
 }
 
-/* The tangent of a nonlinear body is factored anew: MatLUFactorNumeric() takes four work arrays for that, and MatSetOptionsPrefixFactor()
-   one for a name. On more ranks it is a library's own business. */
+/* The tangent of a nonlinear body is factored anew. On more ranks it is a library's own business. */
 static void nonlinear_implicit_bodies_allocate_in_lu_alone(void **state)
 {
   skip_beyond_ranks(1);
@@ -342,7 +360,7 @@ static void nonlinear_implicit_bodies_allocate_in_lu_alone(void **state)
 
     assert_int_equal(counted.ours, 0);
     assert_true(counted.factors > 0);
-    between(counted.petsc, 0, 5 * counted.factors);
+    between(counted.petsc, 0, ALLOCATIONS_OF_FACTORS * counted.factors);
   }
 }
 

@@ -161,7 +161,7 @@ static PetscErrorCode ComputeCompliance(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(InterfaceOperatorSetRows(lagrange->S, lagrange->marks, 1));
-  PetscCall(InterfaceOperatorAssemble(lagrange->S, INTERFACE_GAP, -1, lagrange->compliance));
+  PetscCall(InterfaceOperatorAssemble(lagrange->S, INTERFACE_GAP, lagrange->compliance));
   for (PetscInt i = 0; i < contact->rows.n_all * contact->rows.n_all; i++) lagrange->compliance[i] *= lagrange->scale;
   lagrange->have_jacobian = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

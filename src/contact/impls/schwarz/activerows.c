@@ -35,6 +35,7 @@ PetscErrorCode SchwarzUpdateActiveSet(Contact contact, PetscBool *changed)
   PetscFunctionBegin;
   /* while sweeps run on the compliance, the gaps of rows that it does not know are not told */
   schwarz->rounds.known = schwarz->step == STEP_CONDENSED ? schwarz->known : NULL;
+  if (schwarz->rounds.early) PetscCall(SchwarzTakeMargins(contact));
   PetscCall(RoundsChange(&schwarz->rounds));
   PetscCall(SchwarzTakeActiveSet(contact, changed));
   PetscFunctionReturn(PETSC_SUCCESS);

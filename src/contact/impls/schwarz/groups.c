@@ -23,6 +23,9 @@ PetscErrorCode SchwarzSetUpGroups(Contact contact)
                          contact->n_bodies, &groups->rests));
   PetscCall(PetscCalloc4(contact->n_bodies + 1, &groups->found, 2 * contact->n_pairs, &groups->flags, contact->rows.n, &groups->active,
                          unknowns, &groups->residual));
+  PetscCall(PetscCalloc5(2 * contact->n_bodies, &groups->largest, contact->n_bodies, &groups->before, 2 * contact->n_bodies,
+                         &groups->margin, 2 * contact->rows.n, &groups->beyond, contact->n_bodies, &groups->wrong));
+  for (PetscInt k = 0; k < 2; k++) schwarz->rounds.margin[k] = groups->beyond + k * contact->rows.n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -33,6 +36,7 @@ PetscErrorCode SchwarzDestroyGroups(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscFree4(groups->of, groups->state, groups->mismatch, groups->rests));
   PetscCall(PetscFree4(groups->found, groups->flags, groups->active, groups->residual));
+  PetscCall(PetscFree5(groups->largest, groups->before, groups->margin, groups->beyond, groups->wrong));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,6 +59,15 @@ void SchwarzWakeBodies(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) groups->rests[b] = PETSC_FALSE;
 }
 
+/* Groups that were left before they had converged do not rest any more */
+static void WakeLeft(Contact contact)
+{
+  Groups *groups = &((Schwarz *)contact->data)->groups;
+
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (groups->state[groups->of[b]] == GROUP_LEFT) groups->rests[b] = PETSC_FALSE;
+}
+
 /* A controller step begins. In another attempt at it, groups that rest, and start as they did, are where they were. */
 PetscErrorCode SchwarzBeginGroups(Contact contact)
 {
@@ -67,6 +80,7 @@ PetscErrorCode SchwarzBeginGroups(Contact contact)
 
     if (!contact->energy.stays[b]) groups->rests[g] = groups->rests[b] = PETSC_FALSE;
   }
+  WakeLeft(contact);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     groups->rests[b] = (PetscBool)(groups->rests[b] && groups->rests[groups->of[b]]);
     /* the body has been made complete since, with reactions of the rows that it prescribes alone */
@@ -140,6 +154,7 @@ PetscErrorCode SchwarzFindGroups(Contact contact)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(FlagPairs(contact, has, differs));
+  WakeLeft(contact);
   groups->position = 0;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     groups->of[b]    = b;
@@ -279,10 +294,14 @@ PetscErrorCode SchwarzSettleGroups(Contact contact, PetscReal sums[2])
   most      = PetscSqr(PART_OF_TOLERANCE * tolerance) / PetscMax(groups->n, 1);
   for (PetscInt g = 0; g < contact->n_bodies; g++) {
     if (groups->state[g] == GROUP_MOVES) groups->mismatch[g] = groups->found[g];
-    if (groups->of[g] != g || groups->state[g] == GROUP_FREE) continue;
-    sums[0] += groups->mismatch[g];
+    if (groups->of[g] != g || groups->state[g] == GROUP_FREE || groups->state[g] == GROUP_LEFT) continue;
     groups->state[g] = groups->mismatch[g] <= most ? GROUP_RESTS : GROUP_MOVES;
-    moves            = (PetscBool)(moves || groups->state[g] == GROUP_MOVES);
+  }
+  PetscCall(SchwarzLeaveGroups(contact));
+  for (PetscInt g = 0; g < contact->n_bodies; g++) {
+    if (groups->of[g] != g || groups->state[g] == GROUP_FREE || groups->state[g] == GROUP_LEFT) continue;
+    sums[0] += groups->mismatch[g];
+    moves = (PetscBool)(moves || groups->state[g] == GROUP_MOVES);
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) groups->rests[b] = (PetscBool)(groups->state[groups->of[b]] != GROUP_MOVES);
   /* what rests from rounds with fewer groups may be too much together */

@@ -358,6 +358,7 @@ PetscErrorCode SchwarzCreateJacobian(Contact contact)
                                       .few          = PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit),
                                       .at_once      = AT_ONCE,
                                       .precondition = PETSC_TRUE,
+                                      .sparse       = PETSC_TRUE,
                                       .direct       = PETSC_TRUE};
 
   PetscFunctionBegin;

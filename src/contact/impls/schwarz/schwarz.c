@@ -1,6 +1,7 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, destruction. */
 #include "schwarzimpl.h"
 #include <sys/citations.h>
+#include <sys/petsccompat.h>
 #include <stddef.h>
 
 /* Interface unknowns up to which matrices are dense: their factors take 32 MB on every rank then */
@@ -94,7 +95,8 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->rows.n, MPIU_INT, schwarz->all_offset, contact->ranks.counts,
                               contact->ranks.offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc2(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->previous));
+  PetscCall(
+      PetscMalloc3(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->previous, contact->rows.n, &schwarz->by_force));
   PetscCall(PetscCalloc2(contact->rows.n, &schwarz->known, contact->rows.n, &schwarz->solved_active));
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &schwarz->rounds));
   schwarz->rounds.recheck = schwarz->recheck;
@@ -104,9 +106,10 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
 
 static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 {
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscInt  unknowns;
-  PetscBool richardson, damping_set;
+  Schwarz       *schwarz = (Schwarz *)contact->data;
+  PetscInt       unknowns;
+  PetscBool      richardson, damping_set;
+  SNESLineSearch line_search;
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
@@ -133,17 +136,16 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
   if (schwarz->newton) PetscCall(SchwarzPreferForces(contact));
+  PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
+  PetscCall(PetscObjectTypeCompare((PetscObject)line_search, LINESEARCH_FULL_STEP, &schwarz->full_steps));
   schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
   for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
   if (schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN) {
-    SNESLineSearch line_search;
-
     PetscCheck(richardson, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
     PetscCall(PetscOptionsHasName(NULL, "schwarz_", "-snes_linesearch_damping", &damping_set));
     PetscCall(SchwarzSetUpAitken(contact));
-    PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
   /* on the compliance alone bodies stay where they are from sweep to sweep, whatever the rows do */
@@ -215,7 +217,7 @@ static PetscErrorCode ContactReset_Schwarz(Contact contact)
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree3(schwarz->exchange, schwarz->offset, schwarz->all_offset));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
-  PetscCall(PetscFree2(schwarz->kept_force, schwarz->previous));
+  PetscCall(PetscFree3(schwarz->kept_force, schwarz->previous, schwarz->by_force));
   PetscCall(RoundsDestroy(&schwarz->rounds));
   PetscCall(SchwarzDestroyTurns(contact));
   PetscCall(PetscFree(schwarz->row_work));

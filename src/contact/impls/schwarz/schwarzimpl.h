@@ -55,6 +55,7 @@ typedef struct {
 typedef enum {
   GROUP_FREE, /* nothing touches its one body */
   GROUP_MOVES,
+  GROUP_LEFT, /* it rests before it has converged, since its active set will be another anyway: see leave.c */
   GROUP_RESTS
 } GroupState;
 
@@ -67,9 +68,14 @@ typedef struct {
   PetscReal   *mismatch; /* per group, of all ranks: squared change of position in its last sweep [m^2] */
   PetscReal   *found;    /* the same, as a sweep adds it up on this rank; after these the square of all positions */
   PetscReal    position; /* square of all positions at the start of the step, of this rank [m^2] */
+  PetscReal   *largest;  /* per group, of all ranks: residual of a row in the last sweep [m], and change of a force [N] */
+  PetscReal   *before;   /* per group: that residual in the sweep before */
+  PetscReal   *margin;   /* per group: what forces [N] and gaps [m] may still change by; 0 unless it has been left */
+  PetscReal   *beyond;   /* per row: the same */
   PetscBool   *active;   /* per row: the active set that the groups belong to */
   PetscScalar *residual; /* per unknown: of the last sweep */
   int         *flags;    /* work space: two per pair */
+  int         *wrong;    /* work space: per body */
 } Groups;
 
 /* What is remembered from step to step: of cut controller steps at each level apart */
@@ -103,6 +109,7 @@ typedef struct {
   PetscBool   exact;           /* the compliance of all bodies tells all that sweeps do */
   PetscBool   substeps;        /* a body makes several */
   PetscBool   newton;          /* the outer iteration is Newton's method */
+  PetscBool   full_steps;      /* without a line search */
   PetscReal   controller_step; /* [s]; of the present level, as what is remembered below */
   PetscBool   has_forces;      /* forces are the unknowns of some rows */
   /* unknowns of the outer iteration */
@@ -156,8 +163,11 @@ typedef struct {
   PetscInt    side;      /* 0, or 1 while sides are swapped */
   PetscBool   started;   /* a step has been made */
   PetscBool   have_base; /* an integration of this step that condensed sweeps count from */
+  PetscBool   iterated;  /* unknowns, forces and traces are those that the round before ended with */
+  PetscBool   goes_on;   /* and the one under way goes on from these */
   Rounds      rounds;
   PetscBool  *solved_active;    /* per row: the active set that the Jacobian belongs to */
+  PetscBool  *by_force;         /* per row: its unknown was a force in the last round */
   PetscBool   swept;            /* `previous` is of this step */
   PetscReal   change, position; /* of the last sweep: the body with the worst ratio */
   PetscReal   growth;           /* of the change over that of the sweep before */
@@ -260,6 +270,9 @@ PETSC_INTERN PetscBool      SchwarzPairMoves(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzCopyResidual(Contact, PetscScalar[]);
 PETSC_INTERN PetscBool      SchwarzPairTells(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzSettleGroups(Contact, PetscReal[2]);
+PETSC_INTERN PetscErrorCode SchwarzComputeEnd(Contact);
+PETSC_INTERN PetscErrorCode SchwarzLeaveGroups(Contact);
+PETSC_INTERN PetscErrorCode SchwarzTakeMargins(Contact);
 PETSC_INTERN PetscErrorCode SchwarzReadCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzFinishCondensed(Contact);

@@ -29,6 +29,7 @@ static PetscErrorCode PrepareSweeps(Contact contact)
   schwarz->step = schwarz->mode == SCHWARZ_CONDENSED && schwarz->jacobian.dense ? STEP_CONDENSED : STEP_WHOLE;
   if (schwarz->step == STEP_CONDENSED) PetscCall(SchwarzPrepareCondensed(contact));
   PetscCall(SchwarzFindGroups(contact));
+  schwarz->goes_on = (PetscBool)(schwarz->iterated && schwarz->groups.on && !schwarz->substeps);
   PetscCall(SchwarzPredict(contact));
   for (PetscInt b = 0; b < contact->n_bodies && schwarz->step == STEP_WHOLE; b++)
     if (!schwarz->groups.rests[b]) PetscCall(ContactSetBodyConditions(contact, SchwarzConditions(schwarz), b));
@@ -50,6 +51,7 @@ static PetscErrorCode Iterate(Contact contact)
     PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
     PetscCall(SchwarzCheckConverged(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    schwarz->iterated = schwarz->groups.on;
     PetscCall(SchwarzJoinTurned(contact, &again));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -61,18 +63,7 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionBegin;
   PetscCall(Iterate(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair     = &contact->pairs[p];
-    Trace              reaction = contact->traces[DirichletBody(pair)].reaction;
-    PetscScalar       *end;
-    PetscInt           levels;
-
-    PetscCall(TraceGetSizes(reaction, NULL, &levels));
-    PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++)
-      contact->end.force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
-  }
-  PetscCall(ContactComputeGaps(contact));
+  PetscCall(SchwarzComputeEnd(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,7 +73,8 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  schwarz->step = STEP_WHOLE;
+  schwarz->step     = STEP_WHOLE;
+  schwarz->iterated = PETSC_FALSE;
   SchwarzWakeBodies(contact);
   PetscCall(ContactIntegrateFree(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
@@ -157,7 +149,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscCall(PetscArrayzero(schwarz->turns.joined, contact->n_pairs));
   PetscCall(SchwarzBeginGroups(contact));
   PetscCall(ContactBeginRelease(contact, SchwarzPairRests));
-  schwarz->have_base = PETSC_FALSE;
+  schwarz->have_base = schwarz->iterated = PETSC_FALSE;
   if (schwarz->swap && schwarz->started && !contact->energy.again && !contact->attempt.again) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
@@ -172,6 +164,11 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
     if (!ContactFailed(contact)) PetscCall(SolveActive(contact));
     if (ContactFailed(contact)) break;
     PetscCall(SchwarzUpdateActiveSet(contact, &changed));
+    if (!changed && schwarz->rounds.early) {
+      /* rows that were about to change have been let be: what was left is to be solved for */
+      RoundsBePatient(&schwarz->rounds);
+      continue;
+    }
     if (!changed) PetscCall(Finish(contact, &changed));
     if (!changed || ContactFailed(contact)) break;
     contact->counts.set_changes++;
