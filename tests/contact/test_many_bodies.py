@@ -10,6 +10,7 @@ import re
 import h5py
 import numpy as np
 import pytest
+from pile import pile
 
 STACK = "-options_file options/stack.opts -time_end 0.3"
 BALLS = "-options_file options/ten-balls.opts -time_end 0.5"
@@ -78,6 +79,23 @@ def test_ten_balls_with_friction(shared_run):
     assert contact["friction_loss"] > 50  # [J]
     assert contact["friction_least"] >= -1e-7 * kinetic.max()  # measured: -7e-8 J of 68 J
     assert run.summary["schwarz"]["unlimited_steps"] == 0
+
+
+@pytest.mark.long
+def test_ten_balls_with_friction_in_three_dimensions(shared_run):
+    """options/ten-balls-3d-friction.opts: rubber balls that roll and slide come to rest, and neither contact nor friction brings energy."""
+    run = shared_run("-options_file options/ten-balls-3d-friction.opts -output_fields_interval 100000")
+    contact, system = run.summary["contact"], run.summary["system"]
+    kinetic = sum(body["kinetic"][()] for body in run.history["body"].values())
+    assert kinetic[-1] <= 1e-4 * kinetic.max()  # measured: 1.2e-5
+    assert -0.01 <= system["energy_error_min"] and system["energy_error_max"] <= ROUND_OFF  # measured: -4.5e-3, 3e-18
+    assert contact["friction_loss"] > 50  # [J], measured: 84
+    assert contact["friction_least"] >= -1e-10 * kinetic.max()  # measured: -2e-10 J of 59 J
+    assert max(depths(run)) <= DEPTH
+    assert run.summary["schwarz"]["unlimited_steps"] == 0
+    weight = sum(body["mass"]["total"] for body in run.summary["bodies"].values()) * 9.81
+    borne = np.mean(sum(obstacle["reaction"]["force"][-500:, 2] for obstacle in run.history["obstacle"].values()))
+    assert borne == pytest.approx(weight, rel=5e-3)  # they still rock a little; measured: 4e-4
 
 
 @pytest.mark.long
@@ -240,6 +258,37 @@ def test_restart_where_pairs_come_and_go(ranks, impakt):
     for pair in whole.history["contact"]:
         for figure in ("impulse", "gap", "force"):
             assert np.array_equal(whole.history["contact"][pair][figure][begin:], rest.history["contact"][pair][figure][()]), f"{pair} {figure}"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_pile_with_sparse_factors(ranks, impakt):
+    """Discs that press on each other have one matrix of contact forces, whose factors are sparse. It never gains energy, and goes on from a checkpoint with the
+    same bits; the floor bears what weight and momentum say."""
+    words = pile(5, 16, youngs_modulus=3e4, step=1.8e-4, end=0.072, damping=60, slack=6e-3, lift=3e-4, more="-checkpoint_interval 200")
+    whole = impakt(f"{words} -checkpoint c.h5", ranks)
+    rest = impakt(f"{words} -checkpoint d.h5 -restart {whole.folder / 'c.prev.h5'}", ranks)
+    assert whole.summary["system"]["energy_error_max"] <= ROUND_OFF  # measured: 8e-18
+    active = np.sum([pair["active"][()] for pair in whole.history["contact"].values()], axis=0)
+    assert active[-1] >= 150  # so many dense factors would take 10^6 operations
+    begin = len(whole.history["time"]) - len(rest.history["time"])
+    assert begin == 201
+    for body in whole.history["body"]:
+        for figure in ("momentum", "kinetic", "potential"):
+            assert np.array_equal(whole.history["body"][body][figure][begin:], rest.history["body"][body][figure][()]), f"{body} {figure}"
+
+
+@pytest.mark.long
+def test_a_pile_settles(impakt):
+    """100 soft discs fall on each other and come to rest by Rayleigh damping: the floor bears their weight, and each round of the active set goes on from the last."""
+    run = impakt(pile(5, 20, end=0.42))
+    kinetic = sum(run.history["body"][body]["kinetic"][()] for body in run.history["body"])
+    assert kinetic[-1] <= 1e-4 * kinetic.max()  # measured: 6e-5
+    assert run.summary["system"]["energy_error_max"] <= ROUND_OFF
+    assert max(depths(run)) <= DEPTH
+    weight = sum(body["mass"]["total"] for body in run.summary["bodies"].values()) * 9.81
+    assert abs(run.history["obstacle"]["floor"]["reaction"]["force"][-1][1]) == pytest.approx(weight, rel=1e-3)  # measured: 2e-5
+    assert run.summary["schwarz"]["mean_contact_steps"] <= 6
 
 
 def grid(n):
