@@ -149,10 +149,11 @@ paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in 
 # Where TESTS does not say what is wanted, `make test` leaves out what is marked as long.
 test: ## unit tests on 1 to 3 ranks and regression tests, without the long ones; or what TESTS names
 test-all: ## all tests
-test-long: ## the tests that `make test` leaves out
-test test-all test-long: $(BUILD)/impakt $(units) $(replays)
+test-long: ## the tests that `make test` leaves out, but for the longest
+test-longest: ## those that take more than 40 s each
+test test-all test-long test-longest: $(BUILD)/impakt $(units) $(replays)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long") $(if $(filter $@,test-long),-m long)
+	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long") $(if $(filter $@,test-long),-m "long and not longest") $(if $(filter $@,test-longest),-m longest)
 
 # BENCH="--largest 10000" makes it shorter
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yardstick_solids ## time and memory, beside plain C yardsticks: a report in out/bench

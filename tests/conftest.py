@@ -192,9 +192,15 @@ def impakt(tmp_path):
 def pytest_configure(config):
     config.addinivalue_line(
         "markers",
-        "long: what `make test` leaves to `make test-all`. A test is long if it takes more than 2 s of a core, with the runs that it alone needs, or if it "
+        "long: what `make test` leaves to `make test-long`. A test is long if it takes more than 2 s of a core, with the runs that it alone needs, or if it "
         "repeats at some cost, for one more mesh, pairing or number of ranks, what a quicker case shows of the same feature.",
     )
+    config.addinivalue_line("markers", "longest: long, and more than 40 s by itself, which is left to `make test-longest`.")
+
+
+def pytest_itemcollected(item):
+    if item.get_closest_marker("longest"):
+        item.add_marker("long")
 
 
 def tally(config):

@@ -5,7 +5,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from cases import long, never_tensile
+from cases import long, longest, never_tensile
 
 STEPS = 20
 COARSE = "-left_dm_plex_box_faces 12,20,20 -right_dm_plex_box_faces 10,17,17 -time_step 1.8e-6 -time_end 3.6e-5"
@@ -23,7 +23,7 @@ def events(path):
     return counts
 
 
-@pytest.mark.parametrize("ranks", [1, 2, *long(3)])
+@pytest.mark.parametrize("ranks", [1, 2, *longest(3)])
 def test_costs(ranks, impakt, tmp_path):
     """The forces of the elements are computed once in a step and body, whatever the sweeps. The interface is factored once; then a sweep takes one
     solution of each layer, and a step one of the interface."""

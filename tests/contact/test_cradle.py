@@ -8,7 +8,7 @@ the last bar leaves, with all of the momentum.
 
 import numpy as np
 import pytest
-from cases import long, never_tensile, worst_energy_error
+from cases import long, longest, never_tensile, worst_energy_error
 
 CROSSING = 2.5e-4  # L/c [s]
 MASS, SPEED, PUSH = 2.5e-4, 100, 50
@@ -46,7 +46,7 @@ def velocities(run, bodies):
     return [run.history[f"body/{body}/mean_velocity"][-1] for body in bodies]
 
 
-@pytest.mark.parametrize("case", ["3", "3-explicit", "3-reversed", *long("3-ranks", "10")])
+@pytest.mark.parametrize("case", ["3", "3-explicit", "3-reversed", *longest("3-ranks"), *long("10")])
 def test_cradle(case, shared_run):
     options, ranks, bodies = CRADLES[case]
     run = shared_run(options, ranks)
@@ -71,7 +71,7 @@ def test_cradle(case, shared_run):
         assert run.summary["pairs"][pair]["onsets"] <= 3, pair
 
 
-@pytest.mark.parametrize("case", ["default", "explicit", "reversed", *long("two-ranks")])
+@pytest.mark.parametrize("case", ["default", "explicit", "reversed", *longest("two-ranks")])
 def test_two_sided(case, shared_run):
     """b is pushed from both sides, with 50 N. What each push makes is at the other side after L/c, as if b were hit by its mirror
     image: 100 N against v0. After 2 L/c the waves in a and c are back, and 50 N are left. After 3 L/c, a and c fly back with the

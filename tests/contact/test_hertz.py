@@ -7,7 +7,7 @@ import h5py
 import hertz
 import numpy as np
 import pytest
-from cases import long
+from cases import long, longest
 from conftest import ROOT
 
 CYLINDER = "-options_file options/hertz-cylinder.opts"
@@ -193,7 +193,7 @@ def test_impact_converges(shared_run):
     assert np.all(coarse < 0.1)
 
 
-@pytest.mark.parametrize("options", [*long(COARSE_IMPACT), f"{CYLINDER} -time_step 0.5", *long(COARSE_SPHERE)], ids=["impact", "cylinder", "sphere"])
+@pytest.mark.parametrize("options", [*long(COARSE_IMPACT), f"{CYLINDER} -time_step 0.5", *longest(COARSE_SPHERE)], ids=["impact", "cylinder", "sphere"])
 def test_ranks(options, shared_run):
     """The same history on 2 and 3 ranks to 1e-7 of the largest number; gaps that are closed, to the round-off of positions of 1 m."""
     histories = [shared_run(options, ranks=ranks).history for ranks in (1, 2, 3)]

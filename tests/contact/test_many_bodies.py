@@ -68,7 +68,7 @@ def test_ten_balls(shared_run):
     assert max(depths(run)) <= DEPTH  # of rows; discs of 16 edges overlap by up to 6 mm at their corners
 
 
-@pytest.mark.long
+@pytest.mark.longest
 def test_ten_balls_with_friction(shared_run):
     """They come to rest by damping, which takes what friction leaves; neither brings energy."""
     run = shared_run("-options_file options/ten-balls-friction.opts -output_fields_interval 1000")
@@ -81,7 +81,7 @@ def test_ten_balls_with_friction(shared_run):
     assert run.summary["schwarz"]["unlimited_steps"] == 0
 
 
-@pytest.mark.long
+@pytest.mark.longest
 def test_ten_balls_with_friction_in_three_dimensions(shared_run):
     """options/ten-balls-3d-friction.opts: rubber balls that roll and slide come to rest, and neither contact nor friction brings energy."""
     run = shared_run("-options_file options/ten-balls-3d-friction.opts -output_fields_interval 100000")
@@ -212,7 +212,7 @@ def named(n):
 
 @pytest.mark.parametrize(
     ("kind", "ranks"),
-    [("explicit", 1), pytest.param("implicit", 1, marks=pytest.mark.long), pytest.param("substeps", 1, marks=pytest.mark.long), pytest.param("nonlinear", 2, marks=pytest.mark.long)],
+    [("explicit", 1), pytest.param("implicit", 1, marks=pytest.mark.long), pytest.param("substeps", 1, marks=pytest.mark.long), pytest.param("nonlinear", 2, marks=pytest.mark.longest)],
 )
 def test_pairs_that_come_and_go(kind, ranks, impakt):
     """Of more than 100 chosen pairs those alone have rows whose bodies are near. Pairs that are named have them always; all else is the same, to what round-off

@@ -1,7 +1,7 @@
 """The number of ranks must not change the result."""
 
 import pytest
-from cases import ANDERSON, DEFAULTS, LUMPED, PAIRINGS, long
+from cases import ANDERSON, DEFAULTS, LUMPED, PAIRINGS, long, longest
 
 # The high-speed impact, unsymmetric and inside a step, with most of the free flight before and after it left out: 1060 steps of 0.4 of
 # what a wave needs for an element
@@ -63,7 +63,7 @@ def check_same(summary, reference):
     assert not differences
 
 
-@pytest.mark.parametrize(("name", "ranks"), [*((name, 2) for name in RUNS), ("newtonls", 3), ("EE", 3), *long(*((name, 3) for name in RUNS if name not in ("newtonls", "EE")))])
+@pytest.mark.parametrize(("name", "ranks"), [*((name, 2) for name in RUNS), ("newtonls", 3), ("EE", 3), *longest(("defaults", 3)), *long(*((name, 3) for name in RUNS if name not in ("newtonls", "EE", "defaults")))])
 def test_ranks(name, ranks, shared_run):
     check_same(shared_run(RUNS[name], ranks).summary, shared_run(RUNS[name]).summary)
 

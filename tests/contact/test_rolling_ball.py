@@ -75,7 +75,7 @@ def test_slides(shared_run):
     check_balance(run)
 
 
-@pytest.mark.long
+@pytest.mark.longest
 def test_slides_as_a_stiffer_ball(shared_run):
     """Three times as stiff it sinks in by 0.9 % of R, and its spin has half the error: 0.95 % against the lever R, of 2.3 %."""
     soft, stiff = shared_run(f"{BALL} {SLIDES}"), shared_run(f"{BALL} {SLIDES} -ball_youngs_modulus 2.5e6")

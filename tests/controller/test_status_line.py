@@ -112,7 +112,7 @@ def test_setup(take_cores):
     assert re.search(r"^\r((mesh|elements|matrices) of body (left|right)|contact (surfaces|method)|first state), [1-9]\d* s so far", text), text
 
 
-@pytest.mark.long
+@pytest.mark.longest
 def test_lines_in_a_log(tmp_path):
     """Where there is no terminal: the first line after one minute."""
     with open(tmp_path / "log", "w") as log:

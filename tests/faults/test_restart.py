@@ -5,6 +5,7 @@ import shutil
 import h5py
 import numpy as np
 import pytest
+from cases import long, longest
 from conftest import IMPAKT
 from messages import check_message
 from restarts import differences, names_of, summary
@@ -336,13 +337,15 @@ RANKS_NONLINEAR = {
 }
 
 
+SLOWEST = "discs, the first one implicit"
+
+
 def test_other_ranks_nonlinear(run_in, folder):
     """4e-13 was seen. A compliance and secants that are found anew made it 7.9e-10."""
     goes_on(run_in, folder, VARIANTS["nonlinear, explicit"], 1, 2, 0.55, 1e-11)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("case", RANKS_NONLINEAR)
+@pytest.mark.parametrize("case", [*long(*(case for case in RANKS_NONLINEAR if case != SLOWEST)), *longest(SLOWEST)])
 def test_other_ranks_more_nonlinear(run_in, folder, case):
     """At most 8e-13 was seen. A compliance and secants that are found anew made it 4.6e-10 (cut steps) to 4.5e-9 (implicit) on one rank and two."""
     goes_on(run_in, folder, *RANKS_NONLINEAR[case], 1e-11)

@@ -27,9 +27,18 @@ UNLIKE = "-exact characteristics -right_density 3000 -right_youngs_modulus 2e9"
 FRAMES = {"as-is": "", "inside": INSIDE, "moving": MOVING, "moving-inside": f"{MOVING} {INSIDE}"}
 
 
+def marked(mark, cases):
+    return [pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=mark) for case in cases]
+
+
 def long(*cases):
-    """Values of a test's parameters that `make test` leaves to `make test-all`."""
-    return [pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.long) for case in cases]
+    """Values of a test's parameters that `make test` leaves to `make test-long`."""
+    return marked(pytest.mark.long, cases)
+
+
+def longest(*cases):
+    """Those that it leaves to `make test-longest`."""
+    return marked(pytest.mark.longest, cases)
 
 
 def joined(*parts):

@@ -6,6 +6,7 @@ proportion to -contact_slip_bound; now both are off by what the step leaves, of 
 """
 
 import pytest
+from cases import long, longest
 
 DISCS = "-options_file options/discs.opts"
 IMPLICIT = "-a_ts_type alpha2 -b_ts_type alpha2"
@@ -39,8 +40,7 @@ def test_second_order(shared_run):
     assert 3 <= lost[1] / lost[0] <= 5
 
 
-@pytest.mark.parametrize("more", ["", IMPLICIT], ids=["EE", "II"])
-@pytest.mark.long
+@pytest.mark.parametrize("more", [*long(""), *longest(IMPLICIT)], ids=["EE", "II"])
 def test_balls(more, shared_run):
     momentum, angular, energy = errors(shared_run(f"{DISCS} {BALLS} {more} -time_step 5e-7 -time_end 4.6e-4"))
     assert momentum <= (2e-11 if more else 1e-12)  # II: 3.4e-12
