@@ -20,25 +20,6 @@
 /* An iteration whose residual falls by less in a sweep tells nothing of what comes */
 #define FALLS 0.25
 
-/* Forces and gaps at the end of the controller step, from the bodies' traces */
-PetscErrorCode SchwarzComputeEnd(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair     = &contact->pairs[p];
-    const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
-    PetscScalar       *end;
-    PetscInt           levels;
-
-    PetscCall(TraceGetSizes(reaction, NULL, &levels));
-    PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++)
-      contact->end.force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
-  }
-  PetscCall(ContactComputeGaps(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The group of a pair's body on one side; of an obstacle that of the other */
 static PetscInt GroupOfPair(Contact contact, PetscInt p, PetscInt side)
 {

@@ -270,6 +270,7 @@ PETSC_INTERN PetscBool      SchwarzPairMoves(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzCopyResidual(Contact, PetscScalar[]);
 PETSC_INTERN PetscBool      SchwarzPairTells(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode SchwarzSettleGroups(Contact, PetscReal[2]);
+PETSC_INTERN PetscErrorCode SchwarzGetForces(Contact, PetscScalar[]);
 PETSC_INTERN PetscErrorCode SchwarzComputeEnd(Contact);
 PETSC_INTERN PetscErrorCode SchwarzLeaveGroups(Contact);
 PETSC_INTERN PetscErrorCode SchwarzTakeMargins(Contact);

@@ -57,6 +57,33 @@ static PetscErrorCode Iterate(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces of this rank's rows at the end of the controller step, from the bodies' traces [N] */
+PetscErrorCode SchwarzGetForces(Contact contact, PetscScalar force[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair     = &contact->pairs[p];
+    const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
+    PetscScalar       *end;
+    PetscInt           levels;
+
+    PetscCall(TraceGetSizes(reaction, NULL, &levels));
+    PetscCall(TraceGetLevel(reaction, levels, &end));
+    for (PetscInt i = pair->begin; i < pair->end; i++)
+      force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forces and gaps at the end of the controller step */
+PetscErrorCode SchwarzComputeEnd(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(SchwarzGetForces(contact, contact->end.force));
+  PetscCall(ContactComputeGaps(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* That iteration, then forces and gaps */
 static PetscErrorCode SolveActive(Contact contact)
 {

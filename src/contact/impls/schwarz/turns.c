@@ -208,17 +208,7 @@ PetscErrorCode SchwarzCompareTurns(Contact contact, PetscScalar f[])
 
   PetscFunctionBegin;
   if (!contact->turns.n) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair     = &contact->pairs[p];
-    const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
-    PetscScalar       *end;
-    PetscInt           levels;
-
-    PetscCall(TraceGetSizes(reaction, NULL, &levels));
-    PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++)
-      force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
-  }
+  PetscCall(SchwarzGetForces(contact, force));
   PetscCall(SumTurns(contact, force, sums));
   for (PetscInt p = 0; p < contact->n_pairs && schwarz->turns.offset >= 0; p++) {
     const PetscInt   n    = contact->turns.begin[p + 1] - contact->turns.begin[p];
