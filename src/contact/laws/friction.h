@@ -17,14 +17,23 @@ typedef struct {
   PetscScalar   *force; /* at the end of the step: a guess comes in, the solution goes out [N] */
   FrictionState *state; /* per node: the same */
   PetscReal      still; /* slips of nodes that nothing moves are none up to this [m] */
+  PetscInt       room;  /* rows that there is room for */
+  /* of the last sweep: the change of forces [N], and what rows open by for it, by S and by the bodies [m] */
+  PetscScalar *change, *told, *answer;
 } FrictionProblem;
+
+PETSC_INTERN PetscErrorCode FrictionProblemResize(FrictionProblem *, PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode FrictionProblemDestroy(FrictionProblem *);
+PETSC_INTERN PetscErrorCode FrictionProblemKeepForces(FrictionProblem *, PetscReal, PetscBool *);
+PETSC_INTERN PetscReal      FrictionProblemGetResidual(const FrictionProblem *);
+PETSC_INTERN PetscBool      FrictionProblemIsAmbiguous(const FrictionProblem *);
 
 typedef struct _n_FrictionSolver *FrictionSolver;
 
 PETSC_INTERN PetscErrorCode FrictionSolverCreate(FrictionSolver *);
 PETSC_INTERN PetscErrorCode FrictionSolverSolve(FrictionSolver, const FrictionProblem *, PetscBool *, PetscBool *);
 PETSC_INTERN PetscErrorCode FrictionSolverDestroy(FrictionSolver *);
-PETSC_INTERN void           FrictionLearn(FrictionProblem *, const PetscScalar[], const PetscScalar[], const PetscScalar[]);
+PETSC_INTERN void           FrictionLearn(FrictionProblem *);
 PETSC_INTERN PetscErrorCode FrictionSolveNode(PetscInt, const PetscReal[], const PetscReal[], const PetscReal[], PetscReal[]);
 
 PETSC_INTERN PetscErrorCode ContactLawCreate_Coulomb(Contact, ContactFrictionLaw *);

@@ -17,11 +17,13 @@
 /* Where bodies answer to a change by less than this part of what S says, along it, something else is going on */
 #define LEAST_ANSWER 1e-3
 
-/* Corrects S by the change of all forces, what S has told for it and what the bodies have answered [m]; the same on every rank */
-void FrictionLearn(FrictionProblem *problem, const PetscScalar change[], const PetscScalar told[], const PetscScalar answer[])
+/* Corrects S by what it has told for the change of all forces in the last sweep, and what the bodies have answered; the same on every rank
+ */
+void FrictionLearn(FrictionProblem *problem)
 {
-  const PetscInt n     = problem->n;
-  PetscReal      tells = 0, answers = 0, differs = 0, size = 0;
+  const PetscInt     n      = problem->n;
+  const PetscScalar *change = problem->change, *told = problem->told, *answer = problem->answer;
+  PetscReal          tells = 0, answers = 0, differs = 0, size = 0;
 
   for (PetscInt i = 0; i < n; i++) {
     tells += PetscRealPart(change[i] * told[i]);

@@ -4,11 +4,8 @@
    which the law holds at the end of the step; and the bodies are integrated under these. For linear bodies that is the step. For others S
    is not exact, and both are repeated until what rows open by is what S has told.
 */
-#include "friction.h"
+#include "frictionstep.h"
 #include <contact/compliance/augmentation.h>
-#include <contact/compliance/forces.h>
-#include <contact/compliance/interfaceoperator.h>
-#include <checkpoint/checkpoint.h>
 #include <solver/densefactor.h>
 
 /* Rows of nodes that may touch in one step, on each rank; dense matrices of that order */
@@ -19,100 +16,6 @@
 #define ROUND_OFF 1e-14
 /* By how many times that may the forces that have been found miss the law */
 #define RESIDUAL_MOST 100
-
-typedef struct {
-  Forces            forces;
-  InterfaceOperator S;
-  InterfaceMark    *marks; /* of this rank's rows */
-  PetscScalar      *mine;  /* work space, a number for each */
-  FrictionSolver    solver;
-  FrictionProblem   problem;
-  PetscInt          room; /* rows that the problem has room for */
-  /* of the last sweep: the change of forces, and what rows open by for it, by S and by the bodies */
-  PetscScalar *force_change, *told, *answer;
-  PetscReal    atol; /* what S tells and what bodies do may differ by this [m] */
-  /* springs between both sides of each row, which make it give by flexibility (force - multiplier); all are 0 where there are none */
-  ContactFrictionSprings springs;
-  PetscBool              has_springs;
-  PetscReal             *flexibility; /* [m/N] */
-  PetscReal             *multiplier;  /* [N] */
-  PetscReal             *change;      /* work space of augmentations, a number for each row */
-} FrictionStep;
-
-/* Stiffness of springs from the areas of the rows as they are */
-static PetscErrorCode SetUpSprings(Contact contact)
-{
-  FrictionStep *step = (FrictionStep *)contact->data;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs && step->has_springs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscReal          parameter, scale;
-
-    PetscCall((*step->springs.getparameter)(contact, pair, step->springs.penalty, step->springs.scale, &parameter, &scale));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscReal stiffness = parameter * contact->rows.area[i] * contact->resultants.cross_section[p];
-
-      step->flexibility[i] = stiffness > 0 ? 1 / stiffness : 0;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Energy of the spring of a row [J]. One across the normal has no gap, and its force tells; a gap below 0 of it is how far it is stretched.
- */
-static PetscReal StoredEnergy(Contact contact, PetscInt i, PetscReal gap)
-{
-  const FrictionStep *step = (const FrictionStep *)contact->data;
-
-  if (!(step->flexibility[i] > 0)) return 0;
-  if (gap < 0) return 0.5 * PetscSqr(gap) / step->flexibility[i];
-  return ContactRowRubs(contact, i) ? 0.5 * step->flexibility[i] * PetscSqr(contact->end.force[i]) : 0;
-}
-
-/* By how much a spring has given since it had the force of the multiplier [m] */
-static PetscReal Give(Contact contact, PetscInt i)
-{
-  const FrictionStep *step = (const FrictionStep *)contact->data;
-
-  return step->flexibility[i] * (contact->end.force[i] - step->multiplier[i]);
-}
-
-/* Slips over the controller step of what springs across the normals hold on to */
-static PetscErrorCode ComputeSlips(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactComputeSlips(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (ContactRowRubs(contact, i)) contact->friction.slip[i] += Give(contact, i);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FreeProblem(FrictionStep *step)
-{
-  FrictionProblem *problem = &step->problem;
-
-  PetscFunctionBegin;
-  PetscCall(PetscFree3(step->force_change, step->told, step->answer));
-  PetscCall(PetscFree6(problem->S, problem->opened, problem->base, problem->limit, problem->force, problem->state));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Room for n rows */
-static PetscErrorCode MakeRoom(FrictionStep *step, PetscInt n, PetscInt most)
-{
-  FrictionProblem *problem = &step->problem;
-
-  PetscFunctionBegin;
-  problem->n = n;
-  if (n <= step->room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FreeProblem(step));
-  step->room = n = PetscMax(n, PetscMin(2 * step->room, most));
-  PetscCall(
-      PetscMalloc6(n * n, &problem->S, n, &problem->opened, n, &problem->base, n, &problem->limit, n, &problem->force, n, &problem->state));
-  PetscCall(PetscMalloc3(n, &step->force_change, n, &step->told, n, &step->answer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Marks the rows of nodes that penetrate as some that may touch; whether there are any that were not marked. Collective. */
 static PetscErrorCode MarkPenetrating(Contact contact, PetscBool *any)
@@ -144,7 +47,7 @@ static PetscErrorCode ListRows(Contact contact)
              "-contact_law %s solves for the forces of all nodes in contact at once, and %" PetscInt_FMT
              " of them touch, with %d rows each; there may be %d rows: choose coarser contact surfaces, or -contact_law frictionless",
              contact->friction.name, n / contact->dim, (int)contact->dim, MOST_ROWS);
-  PetscCall(MakeRoom(step, n, contact->rows.n_all));
+  PetscCall(FrictionProblemResize(&step->problem, n, contact->rows.n_all));
   PetscCall(InterfaceOperatorAssemble(step->S, INTERFACE_GAP, step->problem.S));
   for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = step->flexibility[i];
   PetscCall(InterfaceOperatorGather(step->S, step->mine, step->problem.opened));
@@ -166,7 +69,7 @@ static PetscErrorCode GatherOpened(Contact contact, PetscScalar opened[])
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    step->mine[i] = i % contact->dim ? contact->friction.slip[i] : contact->end.gap[i] + Give(contact, i);
+    step->mine[i] = i % contact->dim ? contact->friction.slip[i] : contact->end.gap[i] + FrictionGive(contact, i);
   PetscCall(InterfaceOperatorGather(step->S, step->mine, opened));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -178,7 +81,7 @@ static PetscErrorCode Integrate(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ForcesIntegrate(contact, &step->forces, contact->end.force, 1));
-  if (!ContactFailed(contact)) PetscCall(ComputeSlips(contact));
+  if (!ContactFailed(contact)) PetscCall(FrictionComputeSlips(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -192,18 +95,18 @@ static PetscErrorCode Compare(Contact contact, PetscReal *mismatch, PetscReal *r
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < problem->n; i++) {
-    step->force_change[i] = problem->force[i] - problem->base[i];
-    step->told[i]         = 0;
+    problem->change[i] = problem->force[i] - problem->base[i];
+    problem->told[i]   = 0;
   }
-  PetscCall(DenseMultiplyAdd(problem->n, problem->n, problem->S, 1, step->force_change, step->told));
-  PetscCall(GatherOpened(contact, step->answer));
+  PetscCall(DenseMultiplyAdd(problem->n, problem->n, problem->S, 1, problem->change, problem->told));
+  PetscCall(GatherOpened(contact, problem->answer));
   *mismatch = 0;
   for (PetscInt i = 0; i < problem->n; i++) {
-    const PetscScalar opened  = step->answer[i];
-    const PetscReal   differs = PetscAbsScalar(opened - (problem->opened[i] + step->told[i]));
+    const PetscScalar opened  = problem->answer[i];
+    const PetscReal   differs = PetscAbsScalar(opened - (problem->opened[i] + problem->told[i]));
 
     *mismatch = differs > *mismatch || PetscIsInfOrNanReal(differs) ? differs : *mismatch;
-    step->answer[i] -= problem->opened[i];
+    problem->answer[i] -= problem->opened[i];
     problem->opened[i] = opened;
     problem->base[i]   = problem->force[i];
   }
@@ -274,76 +177,6 @@ static PetscErrorCode TakeForces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By how much nodes miss the law [m]: de Saxce's residual. With the slip s of a node, v = (g + r|s|, s) and the compliance c of its normal
-   row that is c |f - P(f - v/c)|, P being the projection onto the forces that the law admits. */
-static PetscReal GetResidual(const FrictionProblem *problem)
-{
-  const PetscInt dim  = problem->dim;
-  PetscReal      most = 0;
-
-  for (PetscInt first = 0; first < problem->n; first += dim) {
-    const PetscReal c = PetscRealPart(problem->S[first * (problem->n + 1)]), cohesion = PetscRealPart(problem->limit[first]);
-    const PetscReal mu   = PetscRealPart(problem->limit[first + 1]);
-    PetscReal       slip = 0, f[3] = {0}, t[3] = {0}, size = 0, normal, bound, square = 0;
-
-    if (!(c > 0) || cohesion != 0) continue;
-    for (PetscInt k = 1; k < dim; k++) slip += PetscSqr(PetscRealPart(problem->opened[first + k]));
-    slip = PetscSqrtReal(slip);
-    for (PetscInt k = 0; k < dim; k++) {
-      f[k] = PetscRealPart(problem->force[first + k]);
-      t[k] = f[k] - (PetscRealPart(problem->opened[first + k]) + (k ? 0 : mu * slip)) / c;
-      if (k) size += PetscSqr(t[k]);
-    }
-    size   = PetscSqrtReal(size);
-    normal = t[0];
-    bound  = size;
-    if (size > mu * t[0]) { /* outside the cone: onto its side, or its tip */
-      normal = PetscMax((t[0] + mu * size) / (1 + mu * mu), 0);
-      bound  = mu * normal;
-    }
-    square = PetscSqr(f[0] - normal);
-    for (PetscInt k = 1; k < dim; k++) square += PetscSqr(f[k] - (size > 0 ? bound / size * t[k] : 0));
-    most = PetscMax(most, c * PetscSqrtReal(square));
-  }
-  return most;
-}
-
-/* Whether a node in contact could be in another state under the same loads. One that slides answers to its normal force by a gap of
-   S_NN - mu S_NT.e, e being the way of its force: with mu |S_NT| >= S_NN more force may open it less, or nothing (Klarbring 1990). */
-static PetscBool IsAmbiguous(const FrictionProblem *problem)
-{
-  for (PetscInt first = 0; first < problem->n; first += problem->dim) {
-    const PetscScalar *column   = &problem->S[first * problem->n + first];
-    PetscReal          coupling = 0;
-
-    if (problem->state[first / problem->dim] == FRICTION_OPEN) continue;
-    for (PetscInt k = 1; k < problem->dim; k++) coupling += PetscSqr(PetscRealPart(column[k]));
-    if (PetscRealPart(problem->limit[first + 1]) * PetscSqrtReal(coupling) >= PetscRealPart(column[0])) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* Keeps the forces as they were where the law holds for them: with nothing that changes any more all nodes are at the brink of another
-   state, and their states go round */
-static PetscErrorCode KeepForces(FrictionStep *step, PetscBool *kept)
-{
-  const FrictionProblem *problem = &step->problem;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
-  *kept = (PetscBool)(GetResidual(problem) <= step->atol);
-  for (PetscInt first = 0; first < problem->n && *kept; first += problem->dim) {
-    const PetscReal bound  = PetscRealPart(problem->limit[first] + problem->limit[first + 1] * problem->force[first]);
-    PetscReal       square = 0;
-
-    for (PetscInt k = 1; k < problem->dim; k++) square += PetscSqr(PetscRealPart(problem->force[first + k]));
-    problem->state[first / problem->dim] = PetscRealPart(problem->force[first]) <= 0 ? FRICTION_OPEN
-                                           : square < PetscSqr(bound)                ? FRICTION_STICKS
-                                                                                     : FRICTION_SLIDES;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Forces of the listed rows for which the law holds, as far as S tells */
 static PetscErrorCode Solve(Contact contact)
 {
@@ -353,7 +186,7 @@ static PetscErrorCode Solve(Contact contact)
   PetscFunctionBegin;
   PetscCall(FrictionSolverSolve(step->solver, &step->problem, &solved, &by_nodes));
   if (by_nodes) contact->counts.set_cycles++;
-  if (!solved) PetscCall(KeepForces(step, &solved));
+  if (!solved) PetscCall(FrictionProblemKeepForces(&step->problem, step->atol, &solved));
   if (!solved) PetscCall(Fail(contact, PETSC_FALSE, 0));
   PetscCall(TakeForces(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -398,13 +231,13 @@ static PetscErrorCode Settle(Contact contact)
       contact->counts.set_changes++;
       PetscCall(StartProblem(contact));
     } else if (mismatch <= PetscMax(step->atol, round_off)) {
-      const PetscReal residual = GetResidual(&step->problem);
+      const PetscReal residual = FrictionProblemGetResidual(&step->problem);
 
       /* what solves the problem is checked by the law itself */
       if (residual > RESIDUAL_MOST * PetscMax(step->atol, round_off)) PetscCall(Fail(contact, PETSC_FALSE, 0));
       contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, residual);
       PetscFunctionReturn(PETSC_SUCCESS);
-    } else FrictionLearn(&step->problem, step->force_change, step->told, step->answer);
+    } else FrictionLearn(&step->problem);
   }
   PetscCall(Fail(contact, PETSC_TRUE, mismatch));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -421,12 +254,12 @@ static PetscErrorCode Augment(Contact contact)
   PetscCall(PetscArrayzero(augmentation.last, contact->rows.n));
   for (PetscInt k = 0; k < step->springs.max_it; k++) {
     worst = 0;
-    for (PetscInt i = 0; i < contact->rows.n; i++) worst = PetscMax(worst, PetscAbsReal(Give(contact, i)));
+    for (PetscInt i = 0; i < contact->rows.n; i++) worst = PetscMax(worst, PetscAbsReal(FrictionGive(contact, i)));
     if (contact->ranks.size > 1)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
     if (worst <= step->springs.tolerance) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(AugmentationTakeForces(contact, &augmentation, step->multiplier));
-    PetscCall(ComputeSlips(contact));
+    PetscCall(FrictionComputeSlips(contact));
     PetscCall(Settle(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -436,19 +269,6 @@ static PetscErrorCode Augment(Contact contact)
                            " augmentations gaps and slips are off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or "
                            "loosen -contact_augmentation_tolerance",
                            (double)time, step->springs.max_it, (double)worst));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What springs hold at the end of the step [J] */
-static PetscErrorCode SumStored(Contact contact)
-{
-  PetscReal energy = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) energy += (*contact->ops->stored)(contact, i, contact->end.gap[i]);
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  contact->resultants.penalty_energy = energy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -475,48 +295,13 @@ static PetscErrorCode Step(Contact contact)
   }
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (in_contact) PetscCall(Integrate(contact));
-  else PetscCall(ComputeSlips(contact)); /* of the free trial */
+  else PetscCall(FrictionComputeSlips(contact)); /* of the free trial */
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Settle(contact));
   if (!ContactFailed(contact) && step->springs.max_it) PetscCall(Augment(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!contact->energy.again && IsAmbiguous(&step->problem)) contact->counts.ambiguous_steps++;
-  PetscCall(SumStored(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Nothing is remembered from step to step but what contact itself has in a checkpoint, and springs as the rows had them */
-static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
-{
-  FrictionStep *step = (FrictionStep *)contact->data;
-
-  PetscFunctionBegin;
-  if (step->has_springs) PetscCall(CheckpointVisitReals(checkpoint, "flexibility", contact->rows.n, step->flexibility));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RowsChanged(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(SetUpSprings(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Springs, and by how much they may be stretched in the end */
-static PetscErrorCode ViewSprings(Contact contact, PetscViewer viewer)
-{
-  const FrictionStep *step = (const FrictionStep *)contact->data;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscReal parameter, scale;
-
-    PetscCall((*step->springs.getparameter)(contact, &contact->pairs[p], step->springs.penalty, step->springs.scale, &parameter, &scale));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g N/m^3, along the normals and across them\n",
-                                     contact->pairs[p].name, (double)parameter));
-  }
-  if (step->springs.max_it)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until gaps and slips are within %g m\n", (double)step->springs.tolerance));
+  if (!contact->energy.again && FrictionProblemIsAmbiguous(&step->problem)) contact->counts.ambiguous_steps++;
+  PetscCall(FrictionSumStored(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -527,7 +312,7 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(PetscViewerASCIIPrintf(viewer, "  contact forces at the end of the step from the compliance of the interface, to %g m\n",
                                    (double)step->atol));
-  if (step->has_springs) PetscCall(ViewSprings(contact, viewer));
+  if (step->has_springs) PetscCall(FrictionViewSprings(contact, viewer));
   if (contact->friction.law.view) PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -540,7 +325,7 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(ForcesDestroy(&step->forces));
   PetscCall(InterfaceOperatorDestroy(&step->S));
   PetscCall(FrictionSolverDestroy(&step->solver));
-  PetscCall(FreeProblem(step));
+  PetscCall(FrictionProblemDestroy(&step->problem));
   PetscCall(PetscFree5(step->marks, step->mine, step->flexibility, step->multiplier, step->change));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -587,10 +372,10 @@ PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprin
   contact->friction.steps = PETSC_TRUE;
   contact->data           = step;
   contact->ops->step      = Step;
-  contact->ops->stored    = springs && !given.max_it ? StoredEnergy : ContactStoresNothing;
+  contact->ops->stored    = springs && !given.max_it ? FrictionStoredEnergy : ContactStoresNothing;
   contact->ops->view      = View;
   contact->ops->destroy   = Destroy;
-  contact->ops->visit     = Visit;
+  contact->ops->visit     = FrictionVisitSprings;
   step->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
   step->problem.dim       = contact->dim;
   step->problem.still     = step->atol;
@@ -601,7 +386,7 @@ PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprin
                          &step->multiplier, contact->rows.n, &step->change));
   step->springs     = given;
   step->has_springs = (PetscBool)(springs != NULL);
-  if (step->has_springs) contact->ops->rowschanged = RowsChanged;
-  PetscCall(SetUpSprings(contact));
+  if (step->has_springs) contact->ops->rowschanged = FrictionSetUpSprings;
+  PetscCall(FrictionSetUpSprings(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -40,7 +40,8 @@ static void Fill(Problem *p, PetscInt dim, PetscReal coefficient, unsigned seed)
     p->force[i]  = p->base[i];
     p->limit[i]  = i % dim == 1 ? coefficient : 0;
   }
-  p->problem = (FrictionProblem){dim, n, p->S, p->opened, p->base, p->limit, p->force, p->state, 0};
+  p->problem = (FrictionProblem){
+      .dim = dim, .n = n, .S = p->S, .opened = p->opened, .base = p->base, .limit = p->limit, .force = p->force, .state = p->state};
   for (PetscInt node = 0; node < NODES; node++) p->state[node] = FRICTION_OPEN;
 }
 
@@ -218,6 +219,9 @@ static void sweeps_correct_the_compliance(void **state)
   (void)state;
   Fill(&bodies, 2, 0.3, 1);
   Fill(&guess, 2, 0.3, 2);
+  guess.problem.change = change;
+  guess.problem.told   = told;
+  guess.problem.answer = answer;
   for (PetscInt k = 0; k < n; k++) {
     PetscScalar square = 0;
 
@@ -236,7 +240,7 @@ static void sweeps_correct_the_compliance(void **state)
     memcpy(conjugate[k], change, sizeof(change));
     Multiply(n, guess.S, change, told);
     Multiply(n, bodies.S, change, answer);
-    FrictionLearn(&guess.problem, change, told, answer);
+    FrictionLearn(&guess.problem);
     Multiply(n, guess.S, change, told);
     for (PetscInt i = 0; i < n; i++) {
       near(told[i], answer[i], 1e-12);
@@ -258,12 +262,15 @@ static void what_is_no_compliance_is_not_learnt(void **state)
 
   (void)state;
   Fill(&guess, 3, 0.3, 3);
+  guess.problem.change = change;
+  guess.problem.told   = told;
+  guess.problem.answer = answer;
   memcpy(&before, &guess, sizeof(guess));
   for (PetscInt k = 0; k < 4; k++) {
     for (PetscInt i = 0; i < n; i++) change[i] = k == 1 ? 0 : guess.base[i];
     Multiply(n, guess.S, change, told);
     for (PetscInt i = 0; i < n; i++) answer[i] = k == 0 ? told[i] * (1 + 1e-10) : k == 1 ? 1 : k == 2 ? 1e-6 * told[i] : -told[i];
-    FrictionLearn(&guess.problem, change, told, answer);
+    FrictionLearn(&guess.problem);
     assert_memory_equal(guess.S, before.S, sizeof(guess.S));
   }
 }
