@@ -151,9 +151,12 @@ test: ## unit tests on 1 to 3 ranks and regression tests, without the long ones;
 test-all: ## all tests
 test-long: ## the tests that `make test` leaves out, but for the longest
 test-longest: ## those that take more than 40 s each
+test: marked := $(if $(filter file,$(origin TESTS)),-m "not long")
+test-long: marked := -m "long and not longest"
+test-longest: marked := -m longest
 test test-all test-long test-longest: $(BUILD)/impakt $(units) $(replays)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(if $(filter $@$(origin TESTS),testfile),-m "not long") $(if $(filter $@,test-long),-m "long and not longest") $(if $(filter $@,test-longest),-m longest)
+	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(marked)
 
 # BENCH="--largest 10000" makes it shorter
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yardstick_solids ## time and memory, beside plain C yardsticks: a report in out/bench
