@@ -33,8 +33,13 @@ def on_terminal(command, columns, stdout=subprocess.DEVNULL):
         yield leader
     finally:
         process.terminate()
-        process.wait()
-        os.close(leader)
+        # mpiexec heeds the signal only while somebody reads what it writes: a full terminal that is waited beside keeps it for ever
+        try:
+            read_until(leader, lambda _: process.poll() is not None, 20)
+        finally:
+            process.kill()
+            process.wait()
+            os.close(leader)
 
 
 def read_until(leader, found, seconds=60):
