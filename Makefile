@@ -154,9 +154,10 @@ test-longest: ## those that take more than 40 s each
 test: marked := $(if $(filter file,$(origin TESTS)),-m "not long")
 test-long: marked := -m "long and not longest"
 test-longest: marked := -m longest
+# No test may hang for ever: one that does not end within 1500 s (the longest takes 180 s) fails, and shows where it was
 test test-all test-long test-longest: $(BUILD)/impakt $(units) $(replays)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal -p no:cacheprovider --rootdir=. $(TESTS) $(marked)
+	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal --timeout 1500 -p no:cacheprovider --rootdir=. $(TESTS) $(marked)
 
 # BENCH="--largest 10000" makes it shorter
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yardstick_solids ## time and memory, beside plain C yardsticks: a report in out/bench
