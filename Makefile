@@ -7,6 +7,7 @@
 #   INDICES=64              PETSc with indices of 64 bits, for more than 2^31 unknowns, in build/indices-64 (.setup/petsc --indices-64)
 #   COVERAGE=1              counts the lines that run, in build/coverage
 #   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
+#   WITHIN=3600             tests that have not begun after so many seconds are skipped, and counted as skipped
 #   PREFIX=/usr/local       where `make install` puts program, library and headers; DESTDIR=stage puts them under a stage
 
 cores := $(shell nproc)
@@ -157,7 +158,7 @@ test-longest: marked := -m longest
 # No test may hang for ever: one that does not end within 1500 s (the longest takes 180 s) fails, and shows where it was
 test test-all test-long test-longest: $(BUILD)/impakt $(units) $(replays)
 	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal --timeout 1500 -p no:cacheprovider --rootdir=. $(TESTS) $(marked)
+	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal --timeout 1500 -p no:cacheprovider --rootdir=. $(if $(WITHIN),--begin-within $(WITHIN)) $(TESTS) $(marked)
 
 # BENCH="--largest 10000" makes it shorter
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yardstick_solids ## time and memory, beside plain C yardsticks: a report in out/bench
