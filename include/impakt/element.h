@@ -22,6 +22,7 @@ typedef struct _p_Element *Element;
 #define ELEMENT_MEAN_DILATATION "mean_dilatation"
 #define ELEMENT_ENHANCED        "enhanced"
 #define ELEMENT_REDUCED         "reduced"
+#define ELEMENT_COMPOSITE       "composite"
 
 PETSC_EXTERN PetscClassId ELEMENT_CLASSID;
 

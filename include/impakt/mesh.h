@@ -3,6 +3,8 @@
 #include <petscdmplex.h>
 
 PETSC_EXTERN PetscErrorCode MeshCreate(MPI_Comm, const char[], const char[], DM *);
+PETSC_EXTERN PetscErrorCode MeshCreateComposite(DM, DM *);
+PETSC_EXTERN PetscErrorCode MeshIsComposite(DM, PetscBool *);
 PETSC_EXTERN PetscErrorCode MeshGetSurface(DM, const char[], PetscInt *, PetscInt **);
 PETSC_EXTERN PetscErrorCode MeshGetBlock(DM, const char[], PetscInt *, PetscInt **);
 PETSC_EXTERN PetscErrorCode MeshHasBlock(DM, const char[], PetscBool *);

@@ -202,7 +202,7 @@ static PetscErrorCode CheckAxisymmetric(Element element)
 . -<body>_thickness h               - of plane elements [m], default 1
 . -<body>_plane_stress (true|false) - of plane elements, default false
 . -<body>_axisymmetric (true|false) - of plane elements, default false
-- -<body>_element_formulation (full|mean_dilatation|enhanced|reduced) - see `ElementSetFormulation()`
+- -<body>_element_formulation (full|mean_dilatation|enhanced|reduced|composite) - see `ElementSetFormulation()`
 
   Level: developer
 
@@ -284,6 +284,7 @@ PetscErrorCode ElementDuplicateOn(Element element, MPI_Comm comm, Material mater
   (*duplicate)->cross_section_dim = element->cross_section_dim;
   (*duplicate)->plane_stress      = element->plane_stress;
   (*duplicate)->axisymmetric      = element->axisymmetric;
+  if (element->composite) PetscCall(ElementSetComposite(*duplicate));
   PetscCall(ElementSetFormulation(*duplicate, element->formulation));
   PetscTryTypeMethod(element, copy, *duplicate);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -55,6 +55,8 @@ PetscErrorCode ElementRegisterAll(void)
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_ENHANCED, ElementCreate_Enhanced));
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_REDUCED, ElementCreate_Quad4_Reduced));
   PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_REDUCED, ElementCreate_Hex8_Reduced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_TRIANGLE, ELEMENT_COMPOSITE, ElementCreate_Tri6));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_TETRAHEDRON, ELEMENT_COMPOSITE, ElementCreate_Tet10));
   PetscCall(ElementRegisterAxisymmetric(DM_POLYTOPE_TRIANGLE, ELEMENT_FULL, ElementCreate_Tri3_Axisymmetric));
   PetscCall(ElementRegisterAxisymmetric(DM_POLYTOPE_QUADRILATERAL, ELEMENT_FULL, ElementCreate_Quad4_Axisymmetric));
   PetscCall(

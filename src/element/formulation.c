@@ -69,7 +69,7 @@ PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char 
 - formulation - one of the names below, or one of `ElementRegisterFormulation()`; `NULL`: the default
 
   Options Database Key:
-. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced) - the formulation
+. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced|composite) - the formulation
 
   Level: intermediate
 
@@ -86,6 +86,10 @@ PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char 
   `ELEMENT_REDUCED` has one point of integration, for explicit bodies: more than twice as fast as the full hexahedron. What that point does
   not see is held by the stiffness of linear elasticity; `hourglass_energy` of history and summary is what it stores, which should be small
   against the potential energy where elements do not bend. Quadrilaterals and hexahedra have it.
+
+  `ELEMENT_COMPOSITE` makes one element of six or ten nodes of 4 triangles or 8 tetrahedra into which a cell has been divided, with
+  gradients that are linear over it and one mean change of volume. It does not lock. Meshes of such elements, which `MeshCreateComposite()` and files
+  of six-node triangles or ten-node tetrahedra make, have it by default.
 
 .seealso: `Element`, `ElementGetFormulation()`, `BodySetElementFormulation()`, `ElementRegisterFormulation()`
 @*/
@@ -120,6 +124,21 @@ PetscErrorCode ElementGetFormulation(Element element, const char *formulation[])
   PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
   PetscAssertPointer(formulation, 2);
   *formulation = element->formulation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ElementSetComposite - makes triangles and tetrahedra elements of six and ten nodes, before ElementSetUp() */
+PetscErrorCode ElementSetComposite(Element element)
+{
+  PetscFunctionBegin;
+  PetscCheck(element->cell_type == DM_POLYTOPE_TRIANGLE || element->cell_type == DM_POLYTOPE_TETRAHEDRON,
+             PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_INCOMP, "-%selement_formulation composite: elements of shape '%s' have none",
+             Prefix(element), DMPolytopeTypes[element->cell_type]);
+  PetscCheck(!element->axisymmetric, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
+             "-%saxisymmetric true: rings of six-node triangles are not supported; use quadrilaterals, or -%selement_formulation full",
+             Prefix(element), Prefix(element));
+  element->composite = PETSC_TRUE;
+  element->nodes     = element->dim == 2 ? 6 : 10;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,6 +198,10 @@ static PetscErrorCode ChooseFormulation(Element element)
   char      key[128];
 
   PetscFunctionBegin;
+  if (element->composite) {
+    PetscCall(PetscStrallocpy(ELEMENT_COMPOSITE, &element->formulation));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(GetPoissonsRatio(element, &ratio));
   PetscCall(HasHistory(element, &flows));
   PetscCall(GetKey(element->cell_type, element->axisymmetric, ELEMENT_MEAN_DILATATION, sizeof(key), key));
@@ -192,7 +215,7 @@ static PetscErrorCode ChooseFormulation(Element element)
 PetscErrorCode ElementApplyFormulation(Element element)
 {
   PetscErrorCode (*create)(Element);
-  PetscBool full, mean, flows, enhanced, rubber;
+  PetscBool full, mean, composite, flows, enhanced, rubber;
   char      key[128];
 
   PetscFunctionBegin;
@@ -210,8 +233,12 @@ PetscErrorCode ElementApplyFormulation(Element element)
             element->axisymmetric ? "axisymmetric " : "", DMPolytopeTypes[element->cell_type], names);
   }
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_MEAN_DILATATION, &mean));
+  PetscCall(PetscStrcmp(element->formulation, ELEMENT_COMPOSITE, &composite));
+  PetscCheck(composite == element->composite, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_INCOMP,
+             "-%selement_formulation %s: the elements have %" PetscInt_FMT " nodes%s", Prefix(element), element->formulation, element->nodes,
+             composite ? "; make the mesh by MeshCreate() or MeshCreateComposite()" : "");
   PetscCall(HasHistory(element, &flows));
-  PetscCheck(full || mean || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
+  PetscCheck(full || mean || composite || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
              "-%selement_formulation %s: it keeps no history of plastic flow; use mean_dilatation or full", Prefix(element),
              element->formulation);
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_ENHANCED, &enhanced));
@@ -255,8 +282,9 @@ PetscErrorCode ElementWarnOfLocking(Element element)
   else
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,
                            "impakt: warning: body '%s' with %s: elements of shape '%s' lock where materials flow or Poisson's ratio "
-                           "is larger than %g, and are too stiff; use a mesh of quadrilaterals or hexahedra\n",
+                           "is larger than %g, and are too stiff; use a mesh of quadrilaterals or hexahedra%s%s%s\n",
                            ((PetscObject)element)->name ? ((PetscObject)element)->name : "", material, DMPolytopeTypes[element->cell_type],
-                           LOCKING_RATIO));
+                           LOCKING_RATIO, element->axisymmetric ? "" : ", or -", element->axisymmetric ? "" : Prefix(element),
+                           element->axisymmetric ? "" : "element_formulation composite, which files of 6-node triangles and 10-node tetrahedra have by default"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,7 +5,8 @@
      dF' = r (dF + g F) with g = (d theta / theta - D) / 3,
    and the second derivative of F' adds, with pi = P' : F',
      r (P' : d1F g2 + P' : d2F g1) + pi g1 g2 + pi / 3 (d2theta / theta - d1theta d2theta / theta^2 + T)
-   where T is the trace of F^-1 d1F F^-1 d2F, and d2theta the sum of w J (D1 D2 - T) / V.
+   where T is the trace of F^-1 d1F F^-1 d2F, and d2theta the sum of w J (D1 D2 - T) / V. A share of the mean less than 1, which composite
+   elements have, is the factor of 1/3 wherever it stands.
 */
 #include <impakt/private/solid.h>
 
@@ -13,7 +14,7 @@ enum { MAX_DOFS = SOLID_MAX_NODES * 3 };
 
 /* A point of integration, with what the displacement of each degree of freedom makes there */
 typedef struct {
-  PetscReal weight, J, ratio, third;                  /* ratio: r; third: pi / 3 */
+  PetscReal weight, J, ratio, pi, third;              /* ratio: r; third: pi / 3 times the share */
   PetscReal F[9], inverse[9], H[9], P[9];             /* F, F^-T, F' - 1, P' */
   PetscReal gradient[MAX_DOFS];                       /* of the shape functions, nodes x dim */
   PetscReal D[MAX_DOFS], g[MAX_DOFS], work[MAX_DOFS]; /* F^-T : dF; g; P' : dF */
@@ -44,14 +45,11 @@ static PetscReal Invert(const PetscReal F[9], PetscReal inverse[9])
 /* `finite`: with regard to rotations and changes of volume; else F is 1 in all but H */
 static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool finite, const PetscScalar u[], Point *point)
 {
-  const Solid      *solid = (const Solid *)element->data;
-  const SolidShape *shape = solid->shape;
-  const PetscInt   *nodes = element->connectivity + e * element->nodes;
-  const PetscInt    dim   = element->dim;
-  PetscReal         N[SOLID_MAX_NODES];
+  const Solid    *solid = (const Solid *)element->data;
+  const PetscInt *nodes = element->connectivity + e * element->nodes;
+  const PetscInt  dim   = element->dim;
 
-  point->weight = SolidGetShape(element, e, shape->points + dim * g, N, point->gradient) * element->cross_section * shape->volume /
-                  shape->n_points;
+  point->weight = (*solid->point)(element, e, g, point->gradient);
   for (PetscInt i = 0; i < 9; i++) point->F[i] = point->H[i] = 0;
   for (PetscInt a = 0; a < element->nodes; a++)
     for (PetscInt i = 0; i < dim; i++)
@@ -71,7 +69,8 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
 {
   const Solid   *solid  = (const Solid *)element->data;
   const PetscInt n      = element->nodes * element->dim;
-  PetscReal      volume = 0, theta = 0;
+  const PetscReal third = solid->mean_share / 3;
+  PetscReal       volume = 0, theta = 0;
 
   for (PetscInt i = 0; i < n; i++) dtheta[i] = 0;
   for (PetscInt g = 0; g < n_points; g++) {
@@ -85,21 +84,22 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
     Point    *point = &points[g];
     PetscReal F[9];
 
-    point->ratio = finite ? PetscPowReal(theta / point->J, 1. / 3) : 1; /* NaN where the point is inverted */
+    point->ratio = finite ? PetscPowReal(theta / point->J, third) : 1; /* NaN where the point is inverted */
     if (finite)
       for (PetscInt i = 0; i < 9; i++) point->H[i] = point->ratio * point->F[i] - (i % 4 ? 0 : 1);
     else {
-      const PetscReal change = (theta - (point->H[0] + point->H[4] + point->H[8])) / 3;
+      const PetscReal change = third * (theta - (point->H[0] + point->H[4] + point->H[8]));
 
       for (PetscInt i = 0; i < 9; i += 4) point->H[i] += change;
     }
     SolidPointStress(solid, e, g, point->H, point->P);
     for (PetscInt i = 0; i < 9; i++) F[i] = (i % 4 ? 0 : 1) + point->H[i];
-    point->third = Contract(point->P, F) / 3;
+    point->pi    = Contract(point->P, F);
+    point->third = third * point->pi;
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal *gradient = point->gradient + i / element->dim * element->dim;
 
-      point->g[i]    = (dtheta[i] / (finite ? theta : 1) - point->D[i]) / 3;
+      point->g[i]    = third * (dtheta[i] / (finite ? theta : 1) - point->D[i]);
       point->work[i] = 0;
       for (PetscInt j = 0; j < element->dim; j++) point->work[i] += point->P[3 * (i % element->dim) + j] * gradient[j];
     }
@@ -141,7 +141,7 @@ static void AddGeometricPart(Element element, const Point *point, PetscReal thet
       const PetscReal trace = point->D[i / dim * dim + j % dim] * point->D[j / dim * dim + i % dim]; /* T */
 
       K[i * n + j] += weight * (point->ratio * (point->work[i] * point->g[j] + point->g[i] * point->work[j]) +
-                                3 * third * point->g[i] * point->g[j] + third * (trace - dtheta[i] * dtheta[j] / (theta * theta)) +
+                                point->pi * point->g[i] * point->g[j] + third * (trace - dtheta[i] * dtheta[j] / (theta * theta)) +
                                 pressure * point->J * (point->D[i] * point->D[j] - trace));
     }
 }
@@ -196,6 +196,7 @@ PetscErrorCode ElementCreate_Solid_MeanDilatation(Element element)
              "-%selement_formulation mean_dilatation: bodies in plane stress have a thickness that is free to change, so that their volume "
              "does not lock; use full or enhanced",
              ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "");
+  ((Solid *)element->data)->mean_share = 1;
   element->ops->stiffness = ElementStiffness_MeanDilatation;
   element->ops->viscosity = ElementViscosity_MeanDilatation;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -146,7 +146,8 @@ static PetscLogDouble CountFlops(const SolidShape *shape, PetscBool linear)
                           shape->nodes * dim * (3 * dim + 1));
 }
 
-static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordinates[])
+/* The part of the set-up that asks the material, and takes the coordinates */
+PetscErrorCode SolidSetUpMaterial(Element element, const PetscReal coordinates[])
 {
   Solid *solid = (Solid *)element->data;
 
@@ -163,6 +164,15 @@ static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordi
   PetscCheck(solid->kernels.n_history <= SOLID_MAX_HISTORY, PETSC_COMM_SELF, PETSC_ERR_SUP,
              "The material has %" PetscInt_FMT " numbers of history for each point; at most %d", solid->kernels.n_history,
              SOLID_MAX_HISTORY);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordinates[])
+{
+  const Solid *solid = (const Solid *)element->data;
+
+  PetscFunctionBegin;
+  PetscCall(SolidSetUpMaterial(element, coordinates));
   element->flops = CountFlops(solid->shape, solid->linear);
   PetscCall(CheckElements(element));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -225,6 +235,16 @@ void SolidPointStress(const Solid *solid, PetscInt e, PetscInt g, const PetscRea
   for (PetscInt i = 0; i < 9; i++) P[i] = all_P[i][0];
 }
 
+/* A point of integration of the shape */
+static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gradient[])
+{
+  const SolidShape *shape = ((const Solid *)element->data)->shape;
+  PetscReal         N[SOLID_MAX_NODES];
+
+  return SolidGetShape(element, e, shape->points + element->dim * g, N, gradient) * element->cross_section * shape->volume /
+         shape->n_points;
+}
+
 /* K_(a i)(b k) = sum over the points of w dN_a/dX_j (dP_ij/dH_kl) dN_b/dX_l; `viscous`: of the stress F C : dE/dt, by the velocity */
 static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
@@ -236,9 +256,8 @@ static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool vi
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(K, n * n));
   for (PetscInt g = 0; g < shape->n_points; g++) {
-    PetscReal       N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3], H[9] = {0}, tangent[81];
-    const PetscReal weight = SolidGetShape(element, e, shape->points + dim * g, N, gradient) * element->cross_section * shape->volume /
-                             shape->n_points;
+    PetscReal       gradient[SOLID_MAX_NODES * 3], H[9] = {0}, tangent[81];
+    const PetscReal weight = (*solid->point)(element, e, g, gradient);
 
     for (PetscInt a = 0; a < element->nodes; a++)
       for (PetscInt i = 0; i < dim; i++)
@@ -339,6 +358,7 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   PetscFunctionBegin;
   PetscCall(PetscNew(&solid));
   solid->shape = shape;
+  solid->point = GetPoint;
   for (PetscInt g = 0; g < shape->n_load_points; g++)
     (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, gradient);
   solid->history               = &element->history;

@@ -293,7 +293,7 @@ PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char nam
   if (!error && grid.missing > 0 && !ball.keep_volume)
     PetscCall(PetscPrintf(comm, "body '%s' has %.2g %% less volume than the ball of its radius (-%sball_keep_volume false)\n", name,
                           (double)(100 * grid.missing), prefix));
-  if (!error) error = MeshBuild(comm, &file, where, dm);
+  if (!error) error = MeshBuild(comm, &file, where, dm, NULL);
   PetscCall(PetscFree(grid.rim));
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);

@@ -224,7 +224,7 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const MeshBox *box, const 
   PetscCall(MeshFileInitialize(&file, NULL));
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_box_faces", name, prefix));
   error = MeshOnFirstRank(comm, DivideBox, &division, where);
-  if (!error) error = MeshBuild(comm, &file, where, dm);
+  if (!error) error = MeshBuild(comm, &file, where, dm, NULL);
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);
   PetscCall(DMCreateLabel(*dm, "marker"));

@@ -50,12 +50,14 @@ static PetscErrorCode LabelGroups(void *ctx)
   Labelling *labelling = (Labelling *)ctx;
 
   PetscFunctionBegin;
+  PetscCall(MeshFileFindEdges(labelling->file, labelling->dm));
   PetscCall(MeshFileLabel(labelling->file, labelling->dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A DMPlex, all of it on the first rank, from a file that a reader has filled there. Frees the file's arrays. */
-PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *dm)
+/* A DMPlex, all of it on the first rank, from a file that a reader has filled there; and where the nodes in the middle of edges are, where
+   there can be some. Frees the file's arrays. */
+PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *dm, MeshMiddles *middles)
 {
   PetscInt    sizes[2];
   Labelling   labelling;
@@ -74,29 +76,42 @@ PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *
                                           file->vertices, dm));
   PetscCall(PetscFree(file->cells));
   PetscCall(PetscFree(file->vertices));
-  PetscCall(PetscFree(file->coordinates));
   labelling.file = file;
   labelling.dm   = *dm;
   PetscCall(MeshOnFirstRank(comm, LabelGroups, &labelling, where));
+  if (middles) PetscCall(MeshFileGetMiddles(file, *dm, middles));
+  PetscCall(PetscFree(file->coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The label with the name of a group; NULL if the group has no name */
 static PetscErrorCode NameLabel(DM dm, const MeshGroup *group, DMLabel *label)
 {
-  const char *const reserved[] = {"depth", "celltype", "Cell Sets", "Face Sets", "Vertex Sets"};
+  const char *const reserved[] = {"depth", "celltype", "Cell Sets", "Face Sets", "Vertex Sets", MESH_COMPOSITE};
   PetscBool         same;
 
   PetscFunctionBegin;
   *label = NULL;
   if (!group->name[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < 5; i++) {
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reserved); i++) {
     PetscCall(PetscStrcasecmp(group->name, reserved[i], &same));
     PetscCheck(!same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "group %" PetscInt_FMT " is named '%s', a word that PETSc uses itself: rename it", group->number, group->name);
+               "group %" PetscInt_FMT " is named '%s', a word that PETSc or Impakt uses itself: rename it", group->number, group->name);
   }
   PetscCall(DMCreateLabel(dm, group->name));
   PetscCall(DMGetLabel(dm, group->name, label));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The label of the edges that have nodes of node sets in their middle */
+static PetscErrorCode MiddlesLabel(DM dm, const char of[], DMLabel *label)
+{
+  char name[MESH_NAME_LENGTH + 32];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, sizeof(name), MESH_MIDDLES "%s", of));
+  PetscCall(DMCreateLabel(dm, name));
+  PetscCall(DMGetLabel(dm, name, label));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,14 +144,14 @@ static PetscErrorCode FindFace(const MeshFile *file, DM dm, PetscInt vstart, Pet
 
 /* Marks the elements of a run in the labels of one of its groups. `first_cell` is the first cell of the run, if its elements are cells. */
 static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, const MeshGroup *group, PetscInt first_cell,
-                               DMLabel numbers, DMLabel name)
+                               DMLabel numbers, DMLabel name, DMLabel middles[2])
 {
   PetscInt vstart;
 
   PetscFunctionBegin;
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, NULL));
   for (PetscInt e = 0; e < run->n; e++) {
-    const PetscInt *nodes = file->element_nodes + run->first_node + e * run->corners;
+    const PetscInt *nodes = file->element_nodes + run->first_node + e * run->nodes;
     PetscInt        point;
 
     switch (group->kind) {
@@ -153,7 +168,11 @@ static PetscErrorCode LabelRun(const MeshFile *file, DM dm, const MeshRun *run, 
       if (point < 0) continue;
       break;
     default:
-      for (PetscInt k = 0; k < run->corners; k++) {
+      for (PetscInt k = 0; k < run->nodes; k++) {
+        if (file->edge_of_node && file->edge_of_node[nodes[k]] >= 0) {
+          PetscCall(DMLabelSetValue(middles[0], file->edge_of_node[nodes[k]], group->number));
+          if (name) PetscCall(DMLabelSetValue(middles[1], file->edge_of_node[nodes[k]], 1));
+        }
         if (file->vertex_of_node[nodes[k]] < 0) continue;
         point = vstart + file->vertex_of_node[nodes[k]];
         PetscCall(DMLabelSetValue(numbers, point, group->number));
@@ -180,13 +199,17 @@ PetscErrorCode MeshFileLabel(const MeshFile *file, DM dm)
 
     for (PetscInt g = 0; g < run->n_groups; g++) {
       const MeshGroup *group = &file->groups[file->run_groups[run->first_group + g]];
-      DMLabel          numbers, name;
+      DMLabel          numbers, name, middles[2] = {NULL, NULL};
 
       if (group->kind == MESH_BLOCK && !run->chosen) continue;
       PetscCall(DMCreateLabel(dm, sets[group->kind]));
       PetscCall(DMGetLabel(dm, sets[group->kind], &numbers));
       PetscCall(NameLabel(dm, group, &name));
-      PetscCall(LabelRun(file, dm, run, group, cell, numbers, name));
+      if (file->edge_of_node && group->kind == MESH_NODE_SET) {
+        PetscCall(MiddlesLabel(dm, sets[group->kind], &middles[0]));
+        if (name) PetscCall(MiddlesLabel(dm, group->name, &middles[1]));
+      }
+      PetscCall(LabelRun(file, dm, run, group, cell, numbers, name, middles));
     }
     if (run->chosen) cell += run->n;
   }

@@ -47,8 +47,9 @@ static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscIn
       {"HEXAHEDRON", DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE},
   };
   char   stem[64];
-  size_t length;
-  long   said;
+  PetscInt corners;
+  size_t   length;
+  long     said;
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(stem, type, sizeof(stem)));
@@ -65,10 +66,12 @@ static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscIn
     block->shell = types[i].shell;
   }
   if (block->shape == DM_POLYTOPE_QUADRILATERAL && block->shell && nodes == 3) block->shape = DM_POLYTOPE_TRIANGLE;
-  PetscCheck(block->shape != DM_POLYTOPE_UNKNOWN && DMPolytopeTypeGetNumVertices(block->shape) == nodes, PETSC_COMM_SELF,
-             PETSC_ERR_USER_INPUT,
+  block->nodes = nodes;
+  corners      = block->shape == DM_POLYTOPE_UNKNOWN ? 0 : DMPolytopeTypeGetNumVertices(block->shape);
+  PetscCheck(corners && (nodes == corners || (DMPolytopeTypeGetDim(block->shape) == corners - 1 && nodes == corners * (corners + 1) / 2)),
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "block %" PetscInt_FMT " has elements of type '%s' with %" PetscInt_FMT
-             " nodes, which are not supported; supported are first-order elements: BAR2, TRI3, QUAD4, TETRA4, HEX8",
+             " nodes, which are not supported; supported are first-order elements, BAR2, TRI3, QUAD4, TETRA4, HEX8, and TRI6 and TETRA10",
              block->number, type, nodes);
   if (DMPolytopeTypeGetDim(block->shape) == 2 && exodus->dim == 3) block->shell = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -95,7 +98,7 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
   MeshFile  *file  = exodus->file;
   Block     *block = &exodus->blocks[i];
   char       name[MESH_NAME_LENGTH], type[64];
-  PetscInt   corners, group;
+  PetscInt   n_nodes, group;
   PetscBool  wanted;
   const int *connected;
 
@@ -110,18 +113,19 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
   PetscCall(PetscStrncpy(file->groups[group].name, name, MESH_NAME_LENGTH));
   PetscCall(MeshFileWants(file, block->number, name, &wanted));
   if (!block->n || !wanted) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ExodusGetDimensionOf(exodus, "num_nod_per_el", i + 1, &corners));
+  PetscCall(ExodusGetDimensionOf(exodus, "num_nod_per_el", i + 1, &n_nodes));
   PetscCall(ReadType(exodus, i, type));
-  PetscCall(FindShape(exodus, type, corners, block));
-  PetscCall(ExodusReadInts(exodus, "connect", i + 1, block->n * corners, 0, &connected));
-  PetscCall(MeshFileAddRun(file, block->shape, 1, &group));
+  PetscCall(FindShape(exodus, type, n_nodes, block));
+  PetscCall(ExodusReadInts(exodus, "connect", i + 1, block->n * n_nodes, 0, &connected));
+  if (n_nodes > DMPolytopeTypeGetNumVertices(block->shape)) PetscCall(MeshFileAddSecondOrderRun(file, block->shape, 1, &group));
+  else PetscCall(MeshFileAddRun(file, block->shape, 1, &group));
   block->first_node = file->n_element_nodes;
   for (PetscInt e = 0; e < block->n; e++) {
     PetscInt *nodes;
 
     PetscCall(MeshFileAddElement(file, block->first + e + 1, &nodes));
-    for (PetscInt k = 0; k < corners; k++) {
-      const int node = connected[e * corners + k];
+    for (PetscInt k = 0; k < n_nodes; k++) {
+      const int node = connected[e * n_nodes + k];
 
       PetscCheck(node >= 1 && node <= file->n_nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                  "element %" PetscInt_FMT " (block %" PetscInt_FMT ") names node %d; the file has nodes 1 to %" PetscInt_FMT,
@@ -195,8 +199,7 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
                DMPolytopeTypes[exodus->blocks[b].shape], exodus->blocks[b].shell ? "edge" : "side");
     PetscCall(MeshFileAddRun(file, shapes[n_corners], 1, &group));
     PetscCall(MeshFileAddElement(file, element, &nodes));
-    cell = file->element_nodes + exodus->blocks[b].first_node +
-           (element - 1 - exodus->blocks[b].first) * DMPolytopeTypeGetNumVertices(exodus->blocks[b].shape);
+    cell = file->element_nodes + exodus->blocks[b].first_node + (element - 1 - exodus->blocks[b].first) * exodus->blocks[b].nodes;
     for (PetscInt k = 0; k < n_corners; k++) nodes[k] = cell[corners[k] - 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,6 +18,7 @@ typedef struct {
   PetscInt       number, n, first; /* number of elements, and of the first of them, from 0, in the order of the file */
   PetscInt       first_node;       /* where their nodes begin in `element_nodes`; -1: they are not of this body */
   DMPolytopeType shape;
+  PetscInt       nodes; /* of an element: those of its corners, and of the middle of its edges where there are some */
   PetscBool      shell; /* sides 1 and 2 are the faces of the element */
 } Block;
 

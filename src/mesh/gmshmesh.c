@@ -67,20 +67,25 @@ PetscErrorCode GmshReadNodes41(Gmsh *gmsh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FindShape(Gmsh *gmsh, PetscInt64 type, PetscInt64 element, DMPolytopeType *shape)
+/* Second-order elements have a node in the middle of each edge */
+static PetscErrorCode FindShape(Gmsh *gmsh, PetscInt64 type, PetscInt64 element, DMPolytopeType *shape, PetscBool *second_order)
 {
   PetscFunctionBegin;
+  *second_order = (PetscBool)(type == 8 || type == 9 || type == 11);
   switch (type) {
   case 1:
+  case 8:
     *shape = DM_POLYTOPE_SEGMENT;
     break;
   case 2:
+  case 9:
     *shape = DM_POLYTOPE_TRIANGLE;
     break;
   case 3:
     *shape = DM_POLYTOPE_QUADRILATERAL;
     break;
   case 4:
+  case 11:
     *shape = DM_POLYTOPE_TETRAHEDRON;
     break;
   case 5:
@@ -101,25 +106,45 @@ static PetscErrorCode FindShape(Gmsh *gmsh, PetscInt64 type, PetscInt64 element,
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
             "element %" PetscInt64_FMT " has Gmsh's type %" PetscInt64_FMT
             ", which is not supported; supported are first-order elements: lines, triangles, quadrilaterals, tetrahedra, hexahedra (gmsh "
-            "-order 1)",
+            "-order 1), and triangles and tetrahedra of second order (gmsh -order 2)",
             element, type);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds an element, whose nodes are given by their numbers in the file */
-static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt corners, const PetscInt64 numbers[])
+static PetscInt CountNodes(DMPolytopeType shape, PetscBool second_order)
 {
-  PetscInt element, *nodes;
+  const PetscInt corners = DMPolytopeTypeGetNumVertices(shape);
+
+  return second_order ? corners * (corners + 1) / 2 : corners;
+}
+
+static PetscErrorCode AddRun(Gmsh *gmsh, DMPolytopeType shape, PetscBool second_order, PetscInt n_groups, const PetscInt groups[])
+{
+  PetscFunctionBegin;
+  if (second_order) PetscCall(MeshFileAddSecondOrderRun(gmsh->file, shape, n_groups, groups));
+  else PetscCall(MeshFileAddRun(gmsh->file, shape, n_groups, groups));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds an element, whose nodes are given by their numbers in the file */
+static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt n, const PetscInt64 numbers[])
+{
+  PetscInt element, *nodes, last;
 
   PetscFunctionBegin;
   PetscCall(GmshCheckNumber(gmsh, number, &element));
   PetscCall(MeshFileAddElement(gmsh->file, element, &nodes));
-  for (PetscInt k = 0; k < corners; k++) {
+  for (PetscInt k = 0; k < n; k++) {
     nodes[k] = -1;
     if (numbers[k] >= 0 && numbers[k] < PETSC_INT_MAX) PetscCall(MeshFileFindNode(gmsh->file, (PetscInt)numbers[k], &nodes[k]));
     GmshCheck(gmsh, nodes[k] >= 0, "element %" PetscInt_FMT " names node %" PetscInt64_FMT ", which is not in the file", element,
               numbers[k]);
+  }
+  if (n == 10) { /* Gmsh has the middle of edge 23 before that of edge 13 */
+    last     = nodes[9];
+    nodes[9] = nodes[8];
+    nodes[8] = last;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,8 +158,9 @@ PetscErrorCode GmshReadElements22(Gmsh *gmsh)
   PetscFunctionBegin;
   PetscCall(GmshReadCount(gmsh, "elements", gmsh->binary ? 8 : 6, &n));
   while (done < n) {
-    PetscInt64     header[3], count = 1, number = 0, values[8], tag = 0;
+    PetscInt64     header[3], count = 1, number = 0, values[10], tag = 0;
     DMPolytopeType shape;
+    PetscBool      second_order;
 
     if (gmsh->binary) {
       PetscCall(GmshReadInts(gmsh, 3, header));
@@ -144,14 +170,14 @@ PetscErrorCode GmshReadElements22(Gmsh *gmsh)
       PetscCall(GmshReadInts(gmsh, 1, header));
       PetscCall(GmshReadInts(gmsh, 1, header + 2));
     }
-    PetscCall(FindShape(gmsh, header[0], gmsh->binary ? done + 1 : number, &shape));
+    PetscCall(FindShape(gmsh, header[0], gmsh->binary ? done + 1 : number, &shape, &second_order));
     GmshCheck(gmsh, count > 0 && count <= n - done,
               "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced",
               count, n - done, n);
     GmshCheck(gmsh, header[2] >= 0 && header[2] < 1000, "an element has %" PetscInt64_FMT " tags", header[2]);
     for (PetscInt i = 0; i < count; i++) {
-      const PetscInt corners = DMPolytopeTypeGetNumVertices(shape);
-      PetscInt       group   = 0;
+      const PetscInt nodes = CountNodes(shape, second_order);
+      PetscInt       group = 0;
 
       if (gmsh->binary) PetscCall(GmshReadInts(gmsh, 1, &number));
       for (PetscInt t = 0; t < header[2]; t++) {
@@ -160,13 +186,13 @@ PetscErrorCode GmshReadElements22(Gmsh *gmsh)
         PetscCall(GmshReadInts(gmsh, 1, &value));
         if (!t) tag = value < 0 ? -value : value;
       }
-      PetscCall(GmshReadInts(gmsh, corners, values));
+      PetscCall(GmshReadInts(gmsh, nodes, values));
       if (tag) {
         PetscCall(GmshCheckNumber(gmsh, tag, &group));
         PetscCall(MeshFileAddGroup(gmsh->file, MESH_UNDECIDED, DMPolytopeTypeGetDim(shape), group, &group));
       }
-      PetscCall(MeshFileAddRun(gmsh->file, shape, tag ? 1 : 0, &group));
-      PetscCall(AddElement(gmsh, number, corners, values));
+      PetscCall(AddRun(gmsh, shape, second_order, tag ? 1 : 0, &group));
+      PetscCall(AddElement(gmsh, number, nodes, values));
     }
     done += (PetscInt)count;
   }
@@ -176,7 +202,7 @@ PetscErrorCode GmshReadElements22(Gmsh *gmsh)
 /* Reads elements in blocks, each of one entity */
 PetscErrorCode GmshReadElements41(Gmsh *gmsh)
 {
-  PetscInt64 header[4], entity[3], count, values[9];
+  PetscInt64 header[4], entity[3], count, values[11];
   PetscInt   n_blocks, n, done = 0;
 
   PetscFunctionBegin;
@@ -185,26 +211,27 @@ PetscErrorCode GmshReadElements41(Gmsh *gmsh)
   PetscCall(GmshCheckCount(gmsh, "elements", header[1], gmsh->binary ? 8 : 4, &n));
   for (PetscInt b = 0; b < n_blocks; b++) {
     DMPolytopeType shape;
-    PetscInt       corners, e = 0;
+    PetscBool      second_order;
+    PetscInt       nodes, e = 0;
 
     PetscCall(GmshReadInts(gmsh, 3, entity));
     PetscCall(GmshReadWords(gmsh, 1, &count));
     GmshCheck(gmsh, count >= 0 && count <= n - done,
               "a block has %" PetscInt64_FMT " elements, where %" PetscInt_FMT " are left of the %" PetscInt_FMT " that were announced",
               count, n - done, n);
-    PetscCall(FindShape(gmsh, entity[2], done + 1, &shape));
-    corners = DMPolytopeTypeGetNumVertices(shape);
+    PetscCall(FindShape(gmsh, entity[2], done + 1, &shape, &second_order));
+    nodes = CountNodes(shape, second_order);
     GmshCheck(gmsh, entity[0] == DMPolytopeTypeGetDim(shape),
               "elements of type %" PetscInt64_FMT " on an entity of dimension %" PetscInt64_FMT, entity[2], entity[0]);
     while (e < gmsh->n_entities && (gmsh->entities[e][0] != entity[0] || gmsh->entities[e][1] != entity[1])) e++;
     GmshCheck(gmsh, e < gmsh->n_entities || !gmsh->entities,
               "elements of an entity %" PetscInt64_FMT " of dimension %" PetscInt64_FMT ", which is not in $Entities", entity[1],
               entity[0]);
-    if (gmsh->entities) PetscCall(MeshFileAddRun(gmsh->file, shape, gmsh->entities[e][3], gmsh->groups + gmsh->entities[e][2]));
-    else PetscCall(MeshFileAddRun(gmsh->file, shape, 0, NULL));
+    if (gmsh->entities) PetscCall(AddRun(gmsh, shape, second_order, gmsh->entities[e][3], gmsh->groups + gmsh->entities[e][2]));
+    else PetscCall(AddRun(gmsh, shape, second_order, 0, NULL));
     for (PetscInt i = 0; i < count; i++) {
-      PetscCall(GmshReadWords(gmsh, corners + 1, values));
-      PetscCall(AddElement(gmsh, values[0], corners, values + 1));
+      PetscCall(GmshReadWords(gmsh, nodes + 1, values));
+      PetscCall(AddElement(gmsh, values[0], nodes, values + 1));
     }
     done += (PetscInt)count;
   }

@@ -11,6 +11,8 @@ PetscErrorCode MeshLabelIsInternal(const char name[], PetscBool *internal)
   PetscCall(PetscStrcmp(name, "depth", internal));
   PetscCall(PetscStrcmp(name, "celltype", &same));
   *internal = (PetscBool)(*internal || same);
+  PetscCall(PetscStrcmp(name, MESH_COMPOSITE, &same));
+  *internal = (PetscBool)(*internal || same);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -55,8 +55,8 @@ static PetscErrorCode ReadWanted(const char prefix[], MeshFile *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The mesh of a file, all of it on the first rank */
-PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char name[], const char path[], DM *dm)
+/* The mesh of a file, all of it on the first rank, and where the nodes in the middle of its edges are */
+PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char name[], const char path[], DM *dm, MeshMiddles *middles)
 {
   MeshFile       file;
   Reading        reading = {.file = &file};
@@ -72,7 +72,7 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscCall(FindReader(path, &reading.read));
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', mesh file '%s'", name, path));
   error = MeshOnFirstRank(comm, ReadFile, &reading, where);
-  if (!error) error = MeshBuild(comm, &file, where, dm);
+  if (!error) error = MeshBuild(comm, &file, where, dm, middles);
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);
   PetscCall(DMGetDimension(*dm, &dim));
@@ -170,7 +170,8 @@ elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   char      path[PETSC_MAX_PATH_LEN];
-  PetscBool from_file, blocks, ball = PETSC_FALSE, rod = PETSC_FALSE, whole = PETSC_TRUE;
+  PetscBool from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE, whole = PETSC_TRUE;
+  MeshMiddles middles = {NULL, NULL};
 
   PetscFunctionBegin;
   PetscAssertPointer(dm, 4);
@@ -181,7 +182,7 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
              prefix);
   if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
   if (!from_file) PetscCall(MeshIsRod(prefix, &rod));
-  if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm));
+  if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm, &middles));
   else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, dm));
   else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm));
   else PetscCall(MeshCreateBox(comm, prefix, name, dm, &whole));
@@ -190,9 +191,13 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
 #if defined(PETSC_HAVE_PTSCOTCH)
   SCOTCH_randomReset(); /* what it draws goes on from one mesh to the next: a body's parts would hang on what was divided before it */
 #endif
-  PetscCall(DMSetFromOptions(*dm)); /* distributes it */
+  if (middles.section) PetscCall(MeshDistributeWithMiddles(dm, prefix, &middles));
+  else PetscCall(DMSetFromOptions(*dm)); /* distributes it */
   PetscCall(PetscObjectSetName((PetscObject)*dm, name));
   if (!from_file) PetscCall(MeshMarkSides(*dm));
+  PetscCall(MeshWantsComposite(prefix, &composite));
+  if (composite || middles.section) PetscCall(MeshMakeComposite(dm, prefix, name, &middles));
+  PetscCall(MeshMiddlesDestroy(&middles));
   PetscCall(MeshCheckContact(*dm, prefix));
   PetscCall(MeshPlace(*dm, prefix, name));
   PetscCall(DMViewFromOptions(*dm, NULL, "-dm_view"));

@@ -27,6 +27,8 @@ PetscErrorCode MeshFileDestroy(MeshFile *file)
   PetscCall(PetscFree(file->cell_numbers));
   PetscCall(PetscFree(file->vertex_of_node));
   PetscCall(PetscFree(file->vertices));
+  PetscCall(PetscFree(file->edges));
+  PetscCall(PetscFree(file->edge_of_node));
   PetscCall(PetscFree(file->text));
   PetscCall(PetscMemzero(file, sizeof(*file)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -62,13 +64,13 @@ PetscErrorCode MeshFileAddGroup(MeshFile *file, MeshGroupKind kind, PetscInt dim
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins a run: elements that are added from now on have this shape and are in these groups */
-PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_groups, const PetscInt groups[])
+static PetscErrorCode AddRun(MeshFile *file, DMPolytopeType shape, PetscInt middles, PetscInt n_groups, const PetscInt groups[])
 {
-  MeshRun *run = file->n_runs ? &file->runs[file->n_runs - 1] : NULL;
+  const PetscInt corners = DMPolytopeTypeGetNumVertices(shape);
+  MeshRun       *run     = file->n_runs ? &file->runs[file->n_runs - 1] : NULL;
 
   PetscFunctionBegin;
-  if (run && run->shape == shape && run->n_groups == n_groups) {
+  if (run && run->shape == shape && run->nodes == corners + middles && run->n_groups == n_groups) {
     PetscInt same = 0;
 
     while (same < n_groups && file->run_groups[run->first_group + same] == groups[same]) same++;
@@ -79,7 +81,8 @@ PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_g
   run              = &file->runs[file->n_runs++];
   run->shape       = shape; /* NOLINT(clang-analyzer-core.NullDereference): Reserve() has set runs, through a void pointer */
   run->dim         = DMPolytopeTypeGetDim(shape);
-  run->corners     = DMPolytopeTypeGetNumVertices(shape);
+  run->corners     = corners;
+  run->nodes       = corners + middles;
   run->n           = 0;
   run->first       = file->n_elements;
   run->first_node  = file->n_element_nodes;
@@ -90,6 +93,24 @@ PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_g
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Begins a run: elements that are added from now on have this shape and are in these groups */
+PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_groups, const PetscInt groups[])
+{
+  PetscFunctionBegin;
+  PetscCall(AddRun(file, shape, 0, n_groups, groups));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of elements with a node in the middle of each edge, after their corners: lines, triangles, tetrahedra */
+PetscErrorCode MeshFileAddSecondOrderRun(MeshFile *file, DMPolytopeType shape, PetscInt n_groups, const PetscInt groups[])
+{
+  const PetscInt dim = DMPolytopeTypeGetDim(shape);
+
+  PetscFunctionBegin;
+  PetscCall(AddRun(file, shape, dim * (dim + 1) / 2, n_groups, groups));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds an element to the last run. The caller fills in its nodes. */
 PetscErrorCode MeshFileAddElement(MeshFile *file, PetscInt number, PetscInt *nodes[])
 {
@@ -97,10 +118,10 @@ PetscErrorCode MeshFileAddElement(MeshFile *file, PetscInt number, PetscInt *nod
 
   PetscFunctionBegin;
   PetscCall(Reserve(&file->numbers, sizeof(*file->numbers), file->n_elements + 1, &file->max_elements));
-  PetscCall(Reserve(&file->element_nodes, sizeof(*file->element_nodes), file->n_element_nodes + run->corners, &file->max_element_nodes));
+  PetscCall(Reserve(&file->element_nodes, sizeof(*file->element_nodes), file->n_element_nodes + run->nodes, &file->max_element_nodes));
   file->numbers[file->n_elements++] = number;
   *nodes                            = file->element_nodes + file->n_element_nodes;
-  file->n_element_nodes += run->corners;
+  file->n_element_nodes += run->nodes;
   run->n++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,6 +3,8 @@
 #include <impakt/mesh.h>
 
 #define MESH_NAME_LENGTH 256
+/* The label of meshes of composite elements; it has no points */
+#define MESH_COMPOSITE "composite"
 
 /* What a group of a mesh file means to the body */
 typedef enum {
@@ -23,6 +25,7 @@ typedef struct {
 typedef struct {
   DMPolytopeType shape;
   PetscInt       dim, corners;
+  PetscInt       nodes; /* corners, and the nodes in the middle of the edges where there are some, in VTK's order */
   PetscInt       n, first, first_node; /* number of elements; where those of the first begin in `numbers` and in `element_nodes` */
   PetscInt       n_groups, first_group;
   PetscBool      chosen; /* they are cells of this body */
@@ -57,9 +60,22 @@ typedef struct {
   PetscInt      *cells, *cell_numbers; /* vertices of each cell; its number in the file */
   PetscInt      *vertex_of_node;       /* < 0: not the body's */
   PetscReal     *vertices;
+  /* of a body of six-node triangles or ten-node tetrahedra: the ends of all edges of all cells and the node in the middle, 3 numbers; none: 0 */
+  PetscInt  n_edges;
+  PetscInt *edges;
+  PetscInt *edge_of_node; /* point of the DMPlex; -1: the node is in the middle of none. NULL without such cells */
   /* memory of a reader, which is freed with the file if reading ends with an error */
   char *text;
 } MeshFile;
+
+/* Where the nodes in the middle of the edges of second-order cells are [m]; NULL: there are none */
+typedef struct {
+  PetscSection section; /* of the edges */
+  Vec          positions;
+} MeshMiddles;
+
+/* What the label of the edges with the middle nodes of a node set is named, before its name */
+#define MESH_MIDDLES "middles of "
 
 /* A box as its options describe it */
 typedef struct {
@@ -77,6 +93,7 @@ PETSC_INTERN PetscErrorCode MeshFileInitialize(MeshFile *, const char[]);
 PETSC_INTERN PetscErrorCode MeshFileDestroy(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshFileAddGroup(MeshFile *, MeshGroupKind, PetscInt, PetscInt, PetscInt *);
 PETSC_INTERN PetscErrorCode MeshFileAddRun(MeshFile *, DMPolytopeType, PetscInt, const PetscInt[]);
+PETSC_INTERN PetscErrorCode MeshFileAddSecondOrderRun(MeshFile *, DMPolytopeType, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode MeshFileAddElement(MeshFile *, PetscInt, PetscInt *[]);
 PETSC_INTERN PetscErrorCode MeshFileNumberNodes(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshFileFindNode(MeshFile *, PetscInt, PetscInt *);
@@ -87,8 +104,15 @@ PETSC_INTERN PetscErrorCode MeshFileLabel(const MeshFile *, DM);
 PETSC_INTERN PetscErrorCode MeshReadGmsh(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshReadExodus(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshCheckNetCDFSize(const char[]);
+PETSC_INTERN PetscErrorCode MeshFileCollectEdges(MeshFile *);
+PETSC_INTERN PetscErrorCode MeshFileFindEdges(MeshFile *, DM);
+PETSC_INTERN PetscErrorCode MeshFileGetMiddles(const MeshFile *, DM, MeshMiddles *);
+PETSC_INTERN PetscErrorCode MeshMiddlesDestroy(MeshMiddles *);
+PETSC_INTERN PetscErrorCode MeshDistributeWithMiddles(DM *, const char[], MeshMiddles *);
+PETSC_INTERN PetscErrorCode MeshMakeComposite(DM *, const char[], const char[], MeshMiddles *);
+PETSC_INTERN PetscErrorCode MeshWantsComposite(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshOnFirstRank(MPI_Comm, PetscErrorCode (*)(void *), void *, const char[]);
-PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *);
+PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], DM *, PetscBool *);
 PETSC_INTERN PetscInt       MeshBoxSideNumber(PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode MeshHasSurface(DM, const char[], PetscBool *);
@@ -104,7 +128,7 @@ PETSC_INTERN PetscErrorCode MeshCreateRod(MPI_Comm, const char[], const char[], 
 PETSC_INTERN PetscErrorCode MeshIsBall(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBall(MPI_Comm, const char[], const char[], DM *);
 PETSC_INTERN PetscErrorCode MeshReadNumbers(MPI_Comm, const char[], const char[], PetscInt, const char[], PetscReal[], PetscBool *);
-PETSC_INTERN PetscErrorCode MeshBuild(MPI_Comm, MeshFile *, const char[], DM *);
+PETSC_INTERN PetscErrorCode MeshBuild(MPI_Comm, MeshFile *, const char[], DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshMarkSides(DM);
 PETSC_INTERN PetscErrorCode MeshPlace(DM, const char[], const char[]);
 PETSC_INTERN PetscErrorCode MeshLabelHasPoints(DM, DMLabel, PetscInt, PetscInt, PetscBool *);

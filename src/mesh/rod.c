@@ -153,7 +153,7 @@ PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name
   rod.file = &file;
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape rod", name, prefix));
   error = MeshOnFirstRank(comm, FillRod, &rod, where);
-  if (!error) error = MeshBuild(comm, &file, where, dm);
+  if (!error) error = MeshBuild(comm, &file, where, dm, NULL);
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);

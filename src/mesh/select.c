@@ -77,9 +77,15 @@ static PetscErrorCode CollectCells(MeshFile *file)
                "it mixes shapes: element %" PetscInt_FMT " is a %s, element %" PetscInt_FMT
                " a %s; a body must have elements of one shape (-mesh_blocks chooses blocks of a file)",
                file->numbers[first->first], DMPolytopeTypes[first->shape], file->numbers[run->first], DMPolytopeTypes[run->shape]);
+    PetscCheck(run->nodes == first->nodes, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "it mixes orders: element %" PetscInt_FMT " (%s) has %" PetscInt_FMT " nodes, element %" PetscInt_FMT " has %" PetscInt_FMT
+               "; a body must have elements of one order (-mesh_blocks chooses blocks of a file)",
+               file->numbers[first->first], DMPolytopeTypes[first->shape], first->nodes, file->numbers[run->first], run->nodes);
     file->n_cells += run->n;
   }
   PetscCheck(first, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "the blocks that -mesh_blocks names have no elements");
+  PetscCheck(first->dim > 1 || first->nodes == first->corners, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "element %" PetscInt_FMT " is a line with three nodes; bars have two", file->numbers[first->first]);
   file->shape   = first->shape;
   file->corners = first->corners;
   PetscCall(PetscMalloc1(file->n_cells * file->corners, &file->cells));
@@ -89,7 +95,8 @@ static PetscErrorCode CollectCells(MeshFile *file)
     const MeshRun *run = &file->runs[r];
 
     if (!run->chosen) continue;
-    PetscCall(PetscArraycpy(file->cells + cell * file->corners, file->element_nodes + run->first_node, run->n * file->corners));
+    for (PetscInt e = 0; e < run->n; e++)
+      PetscCall(PetscArraycpy(file->cells + (cell + e) * file->corners, file->element_nodes + run->first_node + e * run->nodes, file->corners));
     PetscCall(PetscArraycpy(file->cell_numbers + cell, file->numbers + run->first, run->n));
     cell += run->n;
   }
@@ -257,5 +264,6 @@ PetscErrorCode MeshFileSelect(MeshFile *file)
       }
     }
   PetscCall(CheckCells(file));
+  PetscCall(MeshFileCollectEdges(file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,11 +6,13 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t data[], size_t size)
 {
-  char path[64];
-  DM   dm = NULL;
+  char        path[64];
+  DM          dm      = NULL;
+  MeshMiddles middles = {NULL, NULL};
 
   FuzzWrite(data, size, ".g", path, sizeof(path));
-  FUZZ_IGNORE(MeshCreateFromFile(PETSC_COMM_WORLD, "body_", "body", path, &dm));
+  FUZZ_IGNORE(MeshCreateFromFile(PETSC_COMM_WORLD, "body_", "body", path, &dm, &middles));
+  FUZZ_IGNORE(MeshMiddlesDestroy(&middles));
   FUZZ_IGNORE(DMDestroy(&dm));
   (void)unlink(path);
   return 0;

@@ -316,7 +316,7 @@ static void bad_gmsh_files(void **state)
       {GMSH_BEGIN "1\n1 3 2 0 1 1 2 3 4 5\n" GMSH_END, "$Elements|$EndElements"},
       {GMSH_BEGIN "2\n1 3 2 0 1 1 2 3 4\n" GMSH_END, "whole number|line 16"},
       {GMSH_BEGIN "1\n1 99999 2 0 1 1 2 3 4\n" GMSH_END, "type 99999"},
-      {GMSH_BEGIN "1\n1 9 2 0 1 1 2 3 4 5 6\n" GMSH_END, "element 1|type 9|first-order"},
+      {GMSH_BEGIN "1\n1 16 2 0 1 1 2 3 4 5 6 7 8\n" GMSH_END, "element 1|type 16|first-order"},
       {GMSH_BEGIN "1\n1 6 2 0 1 1 2 3 4 5 6\n" GMSH_END, "element 1|prism"},
       {GMSH_BEGIN "2\n1 3 2 0 1 1 2 3 4\n2 2 2 0 1 2 5 6\n" GMSH_END, "mixes|element 1 is a quadrilateral, element 2 a triangle"},
       {GMSH_BEGIN "2\n1 3 2 0 1 1 4 3 2\n2 3 2 0 1 2 5 6 3\n" GMSH_END, "1 of 2 elements is inverted|element 1 at (0.5, 0.5)|area -1"},

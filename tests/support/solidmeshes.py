@@ -5,18 +5,31 @@ import itertools
 import meshio
 import numpy as np
 
-SHAPES = {"tri3": "triangle", "quad4": "quad", "tet4": "tetra", "hex8": "hexahedron"}
+SHAPES = {"tri3": "triangle", "quad4": "quad", "tet4": "tetra", "hex8": "hexahedron", "tri6": "triangle6", "tet10": "tetra10"}
+LINEAR = {"tri6": "tri3", "tet10": "tet4"}
+EDGES = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]  # VTK's order
 # six tetrahedra about the diagonal from corner 0 to corner 6
 SIXTHS = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
 HALVES = [(0, 1, 2), (0, 2, 3)]
 
 
 def dim_of(shape):
-    return 3 if shape in ("tet4", "hex8") else 2
+    return 3 if shape in ("tet4", "tet10", "hex8") else 2
+
+
+def add_middles(points, cells):
+    """Nodes in the middle of the edges of triangles or tetrahedra, and elements with these after their corners."""
+    edges = EDGES[: 3 if cells.shape[1] == 3 else 6]
+    pairs = np.sort(np.stack([cells[:, edge] for edge in edges], axis=1), axis=2)
+    unique, at = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
+    middles = points[unique].mean(axis=1)
+    return np.vstack([points, middles]), np.hstack([cells, len(points) + at.reshape(len(cells), -1)])
 
 
 def box(shape, faces, size, distortion=0.0):
     """Points and elements. Inner nodes are moved along each axis by up to `distortion` of an element's edge, those on the boundary stay."""
+    if shape in LINEAR:
+        return add_middles(*box(LINEAR[shape], faces, size, distortion))
     dim = dim_of(shape)
     nodes = np.array(list(itertools.product(*(range(n + 1) for n in faces[::-1]))))[:, ::-1]  # x runs fastest
     edges = np.array(size[:dim]) / np.array(faces[:dim])

@@ -3,7 +3,8 @@
 #include <impakt/element.h>
 #include <petsc/private/petscimpl.h>
 
-#define ELEMENT_MAX_DOFS 24
+#define ELEMENT_MAX_DOFS   30
+#define ELEMENT_MAX_POINTS 48 /* load points of an element */
 
 typedef struct _n_ElementBlocks *ElementBlocks;
 
@@ -63,6 +64,7 @@ struct _p_Element {
   PetscInt       cross_section_dim; /* dimension of the elements that the program has set it for; 0: it has not */
   PetscBool      plane_stress;      /* else plane strain */
   PetscBool      axisymmetric;      /* of plane elements: rings about x = 0, which x is the distance from */
+  PetscBool      composite;         /* triangles of six nodes, or tetrahedra of ten: each of 4 or 8 cells of the mesh */
   char          *formulation;       /* NULL: the default, which the set-up finds */
   /* set by the constructor of the shape */
   PetscInt         dim, nodes; /* space dimension; nodes of one element */
@@ -93,10 +95,13 @@ PETSC_INTERN PetscErrorCode ElementCreate_Hex8_MeanDilatation(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Enhanced(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Reduced(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Hex8_Reduced(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Tri6(Element);
+PETSC_INTERN PetscErrorCode ElementCreate_Tet10(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Tri3_Axisymmetric(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_AxisymmetricMeanDilatation(Element);
 PETSC_INTERN PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
+PETSC_INTERN PetscErrorCode ElementSetComposite(Element);
 PETSC_INTERN PetscErrorCode ElementSetBlocks(Element, PetscInt, const Material[], PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode ElementSetUpBlocks(Element, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementBlocksDestroy(ElementBlocks *);

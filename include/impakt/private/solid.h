@@ -1,10 +1,10 @@
-/* Solid elements in two and three dimensions: what tri3, quad4, tet4 and hex8 share. Total Lagrangian: everything is integrated over the
+/* Solid elements in two and three dimensions: what tri3, quad4, tet4, hex8 and those made of them share. Total Lagrangian: everything is integrated over the
    undeformed element. */
 #pragma once
 #include <impakt/private/elementimpl.h>
 #include <impakt/private/simd.h>
 
-#define SOLID_MAX_NODES   8
+#define SOLID_MAX_NODES   10
 #define SOLID_MAX_POINTS  8
 #define SOLID_MAX_HISTORY 32 /* numbers of a point */
 
@@ -26,6 +26,9 @@ typedef struct {
   MaterialKernels       unconstrained; /* of the same material when not in plane stress */
   PetscBool             plane_stress, linear;
   PetscBool             mean_dilatation; /* of axisymmetric elements */
+  PetscReal             mean_share; /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */
+  PetscReal (*point)(Element, PetscInt, PetscInt, PetscReal[]); /* weight of a point of an element with the thickness, and the gradients of
+                                                                   the shape functions there, nodes x dim */
   PetscReal             load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
   SolidShape            reduced; /* the shape with another rule, where a formulation has one */
   void                 *own;     /* of the formulation */
@@ -69,6 +72,7 @@ SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, con
 
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid_MeanDilatation(Element);
+PETSC_INTERN PetscErrorCode SolidSetUpMaterial(Element, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementCreate_Solid_Axisymmetric(Element, PetscBool);
 PETSC_EXTERN PetscReal      SolidGetShape(Element, PetscInt, const PetscReal xi[], PetscReal N[], PetscReal gradient[]);
 PETSC_INTERN PetscErrorCode ElementPoints_Solid(Element, PetscInt, PetscReal[], PetscReal[]);

@@ -78,6 +78,7 @@ PetscErrorCode BodyDestroyBlocks(Body body)
     PetscCall(MaterialDestroy(&blocks->materials[k]));
   }
   PetscCall(PetscFree2(blocks->names, blocks->materials));
+  if (blocks->of_element != blocks->of_cell) PetscCall(PetscFree(blocks->of_element));
   PetscCall(PetscFree(blocks->of_cell));
   PetscCall(PetscFree(blocks->material_name));
   PetscCall(PetscFree(blocks->mass));
@@ -281,7 +282,7 @@ PetscErrorCode BodyComputeBlockMass(Body body)
   for (PetscInt e = 0; e < element->count; e++) {
     PetscCall((*element->ops->mass)(element, e, M));
     for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < n; b++) blocks->mass[blocks->of_cell[e]] += PetscRealPart(M[a * dim * n * dim + b * dim]);
+      for (PetscInt b = 0; b < n; b++) blocks->mass[blocks->of_element[e]] += PetscRealPart(M[a * dim * n * dim + b * dim]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, blocks->mass, (PetscMPIInt)blocks->n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -310,7 +311,7 @@ static PetscErrorCode FindTouching(Body body, int touching[])
   for (PetscInt k = 0; k < blocks->n; k++) touching[k] = 0;
   for (PetscInt e = 0; e < body->model.element->count; e++)
     for (PetscInt a = 0; a < nodes; a++)
-      if (body->layer.contains[body->mesh.connectivity[e * nodes + a]]) touching[blocks->of_cell[e]] = 1;
+      if (body->layer.contains[body->mesh.connectivity[e * nodes + a]]) touching[blocks->of_element[e]] = 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, touching, (PetscMPIInt)blocks->n, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)body)));
   for (PetscInt k = 0; k < blocks->n; k++) any = (PetscBool)(any || touching[k]);
   for (PetscInt k = 0; k < blocks->n && !any; k++) touching[k] = 1;

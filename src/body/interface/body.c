@@ -310,7 +310,8 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(PetscFree(b->mass.factor));
   PetscCall(PetscFree(b->layer.dofs));
   PetscCall(PetscFree(b->layer.contains));
-  PetscCall(PetscFree(b->mesh.connectivity));
+  if (b->mesh.connectivity != b->mesh.cell_connectivity) PetscCall(PetscFree(b->mesh.connectivity));
+  PetscCall(PetscFree(b->mesh.cell_connectivity));
   PetscCall(PetscFree(b->mesh.coordinates));
   PetscCall(PetscFree(b->mesh.on_axis));
   PetscCall(PetscFree(b->mesh.ghost_dofs));

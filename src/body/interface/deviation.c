@@ -29,7 +29,7 @@ PetscErrorCode BodyComputeDeviation(Body body, const Expression exact[], PetscRe
   const Element      element = body->model.element;
   const PetscInt     n = element->nodes, dim = body->mesh.dim;
   const PetscScalar *u;
-  PetscReal          x[ELEMENT_MAX_DOFS], weight[ELEMENT_MAX_DOFS], sums[2] = {0, 0};
+  PetscReal          x[ELEMENT_MAX_POINTS * 3], weight[ELEMENT_MAX_POINTS], sums[2] = {0, 0};
   Vec                local;
 
   PetscFunctionBegin;

@@ -21,15 +21,15 @@ static void GetElementKey(Body body, PetscInt e, PetscReal key[TABLES_KEY])
   }
 }
 
-/* The point of the element as it was packed that has become point g. Elements with several points have one for each node, in the same
-   order; `places`: of the nodes as they were packed. */
+/* The point of the element as it was packed that has become point g. Elements with several points have one for each corner, in the
+   same order; `places`: of the nodes as they were packed. */
 static PetscInt FindPoint(Body body, PetscInt e, PetscInt g, const PetscReal places[])
 {
-  const PetscInt   n = body->model.element->nodes, dim = body->mesh.dim;
+  const PetscInt   n = body->model.element->nodes, dim = body->mesh.dim, points = body->model.element->history.points;
   const PetscReal *x = body->mesh.coordinates + body->mesh.connectivity[e * n + g] * dim;
 
-  if (body->model.element->history.points != n) return g;
-  for (PetscInt a = 0; a < n; a++) {
+  if (points == 1) return g;
+  for (PetscInt a = 0; a < points; a++) {
     PetscBool same = PETSC_TRUE;
 
     for (PetscInt d = 0; d < dim; d++) same = (PetscBool)(same && places[a * dim + d] == x[d]);

@@ -178,7 +178,7 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 @*/
 PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
 {
-  const PetscInt nodes   = body->model.element->nodes;
+  const PetscInt nodes   = body->mesh.cell_nodes;
   PetscReal      sums[2] = {0, 0};
   PetscBool      simplex;
   PetscInt       dim, cstart, cend;
@@ -195,7 +195,7 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
     PetscBool touches = PETSC_FALSE;
     PetscReal measure;
 
-    for (PetscInt a = 0; a < nodes && !touches; a++) touches = body->layer.contains[body->mesh.connectivity[e * nodes + a]];
+    for (PetscInt a = 0; a < nodes && !touches; a++) touches = body->layer.contains[body->mesh.cell_connectivity[e * nodes + a]];
     if (!touches) continue;
     PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cstart + e, &measure, NULL, NULL));
     sums[0] += measure;

@@ -21,6 +21,9 @@ typedef struct {
   PetscInt       vertex_start;   /* point of the first vertex in the DM */
   PetscInt      *node_of_vertex; /* of the vertices in their order */
   PetscInt      *connectivity;   /* nodes of the elements, element by element */
+  /* the cells of the DM, which are the elements but for composite ones: each of these is made of several cells that follow each other */
+  PetscInt  n_cells, cell_nodes, cells_of_element;
+  PetscInt *cell_connectivity; /* `connectivity`, where cells are elements */
   PetscReal     *coordinates;    /* local_nodes x dim: reference positions [m] */
   PetscInt      *ghost_dofs;     /* global numbers */
   Vec            positions;      /* reference positions of owned nodes, laid out as displacements [m] */
@@ -36,6 +39,7 @@ typedef struct {
   Material  *materials;
   PetscReal *mass;          /* of each, once there are elements [kg] */
   PetscInt  *of_cell;       /* the block of each cell of this rank; NULL until they have been looked for */
+  PetscInt  *of_element;    /* the block of each element, once there are elements; `of_cell`, where cells are elements */
   char      *material_name; /* of all together: what a history belongs to */
 } BodyBlocks;
 

@@ -3,3 +3,5 @@
 #include <impakt/body.h>
 
 PETSC_INTERN PetscErrorCode BodySetUpCells(Body);
+PETSC_INTERN PetscErrorCode BodyFindComposite(Body);
+PETSC_INTERN PetscErrorCode BodySetUpComposite(Body);

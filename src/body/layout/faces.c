@@ -22,17 +22,17 @@ static PetscErrorCode AddFace(Body body, PetscInt face, PetscInt cstart, PetscIn
     if (closure[2 * p] >= body->mesh.vertex_start && closure[2 * p] < vend)
       nodes[n++] = body->mesh.node_of_vertex[closure[2 * p] - body->mesh.vertex_start];
   PetscCall(DMPlexRestoreTransitiveClosure(body->mesh.dm, face, PETSC_TRUE, &n_points, &closure));
-  /* outward is away from the mean of the nodes of the element behind */
+  /* outward is away from the mean of the nodes of the cell behind */
   PetscCall(DMPlexGetSupport(body->mesh.dm, face, &support));
-  cell                      = body->mesh.connectivity + (support[0] - cstart) * body->model.element->nodes;
+  cell                      = body->mesh.cell_connectivity + (support[0] - cstart) * body->mesh.cell_nodes;
   faces->side[faces->count] = 1;
   PetscCall(BodyFacesGetPoints(body, faces, faces->count, points, weights));
   for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscReal way = 0;
 
     for (PetscInt g = 0; g < faces->n_points; g++) way += points[g].x[d] / faces->n_points;
-    for (PetscInt a = 0; a < body->model.element->nodes; a++)
-      way -= body->mesh.coordinates[cell[a] * body->mesh.dim + d] / body->model.element->nodes;
+    for (PetscInt a = 0; a < body->mesh.cell_nodes; a++)
+      way -= body->mesh.coordinates[cell[a] * body->mesh.dim + d] / (PetscReal)body->mesh.cell_nodes;
     out += way * points[0].n[d];
   }
   if (out < 0) faces->side[faces->count] = -1;

@@ -111,29 +111,46 @@ PetscErrorCode BodySetUpCells(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+/* The nodes of all cells, from DMPLEX's order of vertices to the usual one */
+static PetscErrorCode SetUpConnectivity(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
 {
-  PetscInt cstart, cend;
+  BodyMesh *mesh = &body->mesh;
+  PetscInt  cstart, cend;
 
   PetscFunctionBegin;
-  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
-  PetscCall(PetscMalloc1((cend - cstart) * body->model.element->nodes, &body->mesh.connectivity));
+  PetscCall(DMPlexGetHeightStratum(mesh->dm, 0, &cstart, &cend));
+  mesh->n_cells    = cend - cstart;
+  mesh->cell_nodes = DMPolytopeTypeGetNumVertices(mesh->cell_shape);
+  PetscCall(PetscMalloc1(mesh->n_cells * mesh->cell_nodes, &mesh->cell_connectivity));
   for (PetscInt c = cstart; c < cend; c++) {
-    PetscInt *closure = NULL, n_points, nodes = 0;
+    PetscInt *closure = NULL, n_points, nodes = 0, *of_cell = mesh->cell_connectivity + (c - cstart) * mesh->cell_nodes;
 
-    PetscCall(DMPlexGetTransitiveClosure(body->mesh.dm, c, PETSC_TRUE, &n_points, &closure));
+    PetscCall(DMPlexGetTransitiveClosure(mesh->dm, c, PETSC_TRUE, &n_points, &closure));
     for (PetscInt p = 0; p < n_points; p++)
-      if (closure[2 * p] >= vstart && closure[2 * p] < vend)
-        body->mesh.connectivity[(c - cstart) * body->model.element->nodes + nodes++] = node_of_vertex[closure[2 * p] - vstart];
-    PetscCall(DMPlexRestoreTransitiveClosure(body->mesh.dm, c, PETSC_TRUE, &n_points, &closure));
-    PetscCall(DMPlexInvertCell(body->mesh.cell_shape,
-                               body->mesh.connectivity +
-                                   (c - cstart) * body->model.element->nodes)); /* from DMPLEX's order of vertices to the usual one */
+      if (closure[2 * p] >= vstart && closure[2 * p] < vend) of_cell[nodes++] = node_of_vertex[closure[2 * p] - vstart];
+    PetscCall(DMPlexRestoreTransitiveClosure(mesh->dm, c, PETSC_TRUE, &n_points, &closure));
+    PetscCall(DMPlexInvertCell(mesh->cell_shape, of_cell));
   }
-  if (body->model.blocks.n)
-    PetscCall(ElementSetBlocks(body->model.element, body->model.blocks.n, body->model.blocks.materials, cend - cstart,
-                               body->model.blocks.of_cell));
-  PetscCall(ElementSetUp(body->model.element, cend - cstart, body->mesh.connectivity, body->mesh.coordinates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
+{
+  BodyBlocks *blocks = &body->model.blocks;
+  PetscInt    count;
+
+  PetscFunctionBegin;
+  PetscCall(SetUpConnectivity(body, vstart, vend, node_of_vertex));
+  PetscCall(BodyFindComposite(body));
+  if (body->model.element->composite) PetscCall(BodySetUpComposite(body));
+  else {
+    body->mesh.cells_of_element = 1;
+    body->mesh.connectivity     = body->mesh.cell_connectivity;
+    blocks->of_element          = blocks->of_cell;
+  }
+  count = body->mesh.n_cells / body->mesh.cells_of_element;
+  if (blocks->n) PetscCall(ElementSetBlocks(body->model.element, blocks->n, blocks->materials, count, blocks->of_element));
+  PetscCall(ElementSetUp(body->model.element, count, body->mesh.connectivity, body->mesh.coordinates));
   PetscCall(ElementWarnOfLocking(body->model.element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -268,13 +285,13 @@ PetscErrorCode BodyRestoreLocalSum(Body body, Vec vec, Vec *local, PetscScalar *
   Level: intermediate
 
   Note:
-  Global node k is the k-th block of `dim` displacements in the vectors of `BodyGetSolution()`.
+  A composite element is the cells that it is made of. Global node k is the k-th block of `dim` displacements in the vectors of `BodyGetSolution()`.
 
 .seealso: `Body`, `BodyGetReferencePositions()`, `BodyComputeStress()`
 @*/
 PetscErrorCode BodyGetCells(Body body, DMPolytopeType *shape, PetscInt *n_cells, PetscInt *n_nodes, PetscInt *cells[])
 {
-  const PetscInt n = body->model.element->count * body->model.element->nodes;
+  const PetscInt n = body->mesh.n_cells * body->mesh.cell_nodes;
   PetscInt       rstart;
 
   PetscFunctionBegin;
@@ -286,14 +303,14 @@ PetscErrorCode BodyGetCells(Body body, DMPolytopeType *shape, PetscInt *n_cells,
   PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
   PetscCall(PetscMalloc1(n, cells));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt node = body->mesh.connectivity[i];
+    const PetscInt node = body->mesh.cell_connectivity[i];
 
     (*cells)[i] = (node < body->mesh.owned_nodes ? rstart + node * body->mesh.dim
                                                  : body->mesh.ghost_dofs[(node - body->mesh.owned_nodes) * body->mesh.dim]) /
                   body->mesh.dim;
   }
   *shape   = body->mesh.cell_shape;
-  *n_cells = body->model.element->count;
-  *n_nodes = body->model.element->nodes;
+  *n_cells = body->mesh.n_cells;
+  *n_nodes = body->mesh.cell_nodes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -206,8 +206,11 @@ PetscErrorCode BodyComputeForwardCompliance(Body body, Mat *matrix)
    shape functions on lines, simplices, and products of lines */
 static PetscReal LeastMass(const struct _p_Body *body)
 {
-  const PetscBool simplex = (PetscBool)(body->model.element->nodes == body->mesh.dim + 1);
-  const PetscReal least   = simplex ? 1.0 / (body->mesh.dim + 2) : PetscPowRealInt(3, -body->mesh.dim);
+  const PetscBool simplex = (PetscBool)(body->mesh.cell_nodes == body->mesh.dim + 1);
+  /* the node in the middle of composite tetrahedra is a mean: its mass on the others, at most half of theirs where parts have equal
+     volumes, counts for nothing where these cancel in it */
+  const PetscReal middle = body->model.element->composite && body->mesh.dim == 3 ? 0.5 : 1;
+  const PetscReal least  = simplex ? middle / (body->mesh.dim + 2) : PetscPowRealInt(3, -body->mesh.dim);
 
   return body->mass.type == BODY_MASS_AVERAGED ? 0.5 * (1 + least) : least;
 }

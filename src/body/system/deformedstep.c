@@ -19,12 +19,12 @@
    a factor that depends on the shape [1/m] */
 static PetscReal GetThinness(Body body, const Corners *corners, const PetscScalar u[])
 {
-  const PetscInt   n = body->model.element->nodes, dim = body->mesh.dim;
+  const PetscInt   n = body->mesh.cell_nodes, dim = body->mesh.dim;
   const PetscReal *x       = body->mesh.coordinates;
   PetscReal        largest = 0;
 
-  for (PetscInt e = 0; e < body->model.element->count; e++) {
-    const PetscInt *nodes = body->mesh.connectivity + e * n;
+  for (PetscInt e = 0; e < body->mesh.n_cells; e++) {
+    const PetscInt *nodes = body->mesh.cell_connectivity + e * n;
 
     for (PetscInt c = 0; c < corners->corners; c++) {
       PetscReal edge[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, cofactor[3][3], determinant, rows = 0, columns = 0;

@@ -31,15 +31,15 @@ static PetscReal Jacobian(PetscInt dim, const PetscInt nodes[], PetscInt corner,
    those of the corners' Jacobians, scaled so that their sum is the volume of the body, with thickness and cross section. */
 static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscReal *energy)
 {
-  const PetscInt n   = body->model.element->nodes;
+  const PetscInt n   = body->mesh.cell_nodes;
   PetscReal      sum = 0, least = PETSC_MAX_REAL, modulus, density;
   const char    *formulation;
   PetscBool      full;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < body->model.element->count; e++)
+  for (PetscInt e = 0; e < body->mesh.n_cells; e++)
     for (PetscInt c = 0; c < shape->corners; c++) {
-      const PetscReal jacobian = Jacobian(body->mesh.dim, body->mesh.connectivity + e * n, c, shape->ends[c], body->mesh.coordinates, NULL);
+      const PetscReal jacobian = Jacobian(body->mesh.dim, body->mesh.cell_connectivity + e * n, c, shape->ends[c], body->mesh.coordinates, NULL);
 
       sum += jacobian / (PetscReal)shape->corners;
       if (jacobian > 0) least = PetscMin(least, jacobian);
@@ -81,7 +81,7 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscR
 PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number, PetscReal centre[3])
 {
   const Corners     *shape = BodyFindCorners(body);
-  const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim;
+  const PetscInt     n = body->mesh.cell_nodes, dim = body->mesh.dim;
   PetscInt           found = -1;
   PetscMPIInt        first;
   Vec                local;
@@ -96,8 +96,8 @@ PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number,
   if (!body->model.least_inverting) PetscCall(ComputeLeastEnergy(body, shape, &body->model.least_inverting));
   if (!(potential >= body->model.least_inverting)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  for (PetscInt e = 0; e < body->model.element->count; e++) {
-    const PetscInt *nodes  = body->mesh.connectivity + e * n;
+  for (PetscInt e = 0; e < body->mesh.n_cells; e++) {
+    const PetscInt *nodes  = body->mesh.cell_connectivity + e * n;
     PetscBool       inside = PETSC_FALSE;
 
     for (PetscInt c = 0; c < shape->corners && !inside; c++)
@@ -108,6 +108,6 @@ PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number,
   }
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, number, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  if (*number) PetscCall(BodyFindFirstElement(body, found, &first, centre));
+  if (*number) PetscCall(BodyFindFirstElement(body, found < 0 ? -1 : found / body->mesh.cells_of_element, &first, centre));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -199,6 +199,15 @@ PetscErrorCode BodyGetStiffness(Body body, Mat *K)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* From values of each element to those of each cell, in place */
+static void SpreadOverCells(Body body, PetscInt n, PetscReal values[])
+{
+  const PetscInt cells = body->mesh.cells_of_element;
+
+  for (PetscInt c = body->mesh.n_cells - 1; c >= 0 && cells > 1; c--)
+    for (PetscInt i = 0; i < n; i++) values[n * c + i] = values[n * (c / cells) + i];
+}
+
 /*@
   BodyComputeStress - mean Cauchy stress of each element at the current displacement
 
@@ -224,12 +233,13 @@ PetscErrorCode BodyComputeStress(Body body, PetscReal stress[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   if (!body->integrator->deforms) {
-    PetscCall(PetscArrayzero(stress, 6 * body->model.element->count));
+    PetscCall(PetscArrayzero(stress, 6 * body->mesh.n_cells));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   BodyHistoryLook(body, &before);
   PetscCall((*body->model.element->ops->stress)(body->model.element, u, stress));
+  SpreadOverCells(body, 6, stress);
   BodyHistoryLookBack(body, &before);
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -260,10 +270,11 @@ PetscErrorCode BodyComputePlasticStrain(Body body, PetscReal strain[], PetscReal
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(work, 3);
   *work = 0;
-  if (strain) PetscCall(PetscArrayzero(strain, element->count));
+  if (strain) PetscCall(PetscArrayzero(strain, body->mesh.n_cells));
   if (!body->history || !element->ops->plastic) PetscFunctionReturn(PETSC_SUCCESS);
   BodyHistoryLook(body, &before);
   PetscCall((*element->ops->plastic)(element, work, strain));
+  if (strain) SpreadOverCells(body, 1, strain);
   BodyHistoryLookBack(body, &before);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
