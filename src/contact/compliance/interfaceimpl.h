@@ -57,6 +57,7 @@ PETSC_INTERN PetscErrorCode InterfaceFactorVisit(InterfaceOperator, Checkpoint);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorCreateProducts(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceDirectCreate(InterfaceOperator, InterfaceDirect *);

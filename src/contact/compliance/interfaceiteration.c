@@ -113,6 +113,16 @@ static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What products take, and what preconditions */
+PetscErrorCode InterfaceOperatorCreateProducts(InterfaceOperator op)
+{
+  PetscFunctionBegin;
+  if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
+  if (op->settings.precondition && !op->matrix && op->contact->rows.n_all > op->settings.dense_limit)
+    PetscCall(InterfacePreconditionerCreate(op, &op->preconditioner));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* In the set-up, so that its options are read there */
 PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator op)
 {
@@ -122,7 +132,7 @@ PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator op)
   PC            pc;
 
   PetscFunctionBegin;
-  if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
+  PetscCall(InterfaceOperatorCreateProducts(op));
   PetscCall(MatCreateShell(comm, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all, op, &shell));
   PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))Multiply));
   PetscCall(MatShellSetOperation(shell, MATOP_GET_DIAGONAL, (void (*)(void))GetDiagonal));
@@ -131,8 +141,6 @@ PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator op)
   PetscCall(KSPSetOperators(op->iterative, shell, shell));
   PetscCall(KSPSetType(op->iterative, KSPCG));
   PetscCall(KSPGetPC(op->iterative, &pc));
-  if (op->settings.precondition && !op->matrix && contact->rows.n_all > op->settings.dense_limit)
-    PetscCall(InterfacePreconditionerCreate(op, &op->preconditioner));
   if (op->preconditioner) {
     PetscCall(PCSetType(pc, PCSHELL));
     PetscCall(PCShellSetContext(pc, op));

@@ -17,7 +17,10 @@ PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings 
   PetscCall(PetscCalloc1(contact->n_bodies + 1, &op->block_begin));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
   if (settings->direct) PetscCall(InterfaceDirectCreate(op, &op->direct));
-  if (contact->rows.n_all > PetscMin(settings->few, settings->dense_limit)) PetscCall(InterfaceOperatorCreateIterative(op));
+  if (contact->rows.n_all > PetscMin(settings->few, settings->dense_limit)) {
+    if (settings->products) PetscCall(InterfaceOperatorCreateProducts(op));
+    else PetscCall(InterfaceOperatorCreateIterative(op));
+  }
   *operator= op;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -89,7 +92,7 @@ PetscErrorCode InterfaceOperatorGather(InterfaceOperator op, const PetscScalar m
 }
 
 /* Values on the rows that are solved for, back on this rank's rows; zero on others */
-static void Scatter(InterfaceOperator op, const PetscScalar all[], PetscScalar mine[])
+void InterfaceOperatorScatter(InterfaceOperator op, const PetscScalar all[], PetscScalar mine[])
 {
   for (PetscInt i = 0; i < op->contact->rows.n; i++) mine[i] = 0;
   for (PetscInt i = 0; i < op->n; i++) {
@@ -112,7 +115,7 @@ static PetscErrorCode Solve(InterfaceOperator op, const PetscScalar x[], PetscSc
   }
   PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
   PetscCall(InterfaceOperatorSolveListed(op, op->listed[0]));
-  Scatter(op, op->listed[0], y);
+  InterfaceOperatorScatter(op, op->listed[0], y);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,7 +139,7 @@ PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map,
     PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
     PetscCall(PetscArrayzero(op->listed[1], op->n));
     PetscCall(InterfaceOperatorMultiplyListed(op, map, 0, 1, op->listed[0], op->listed[1]));
-    Scatter(op, op->listed[1], y);
+    InterfaceOperatorScatter(op, op->listed[1], y);
   } else {
     const PetscScalar *moved;
     PetscScalar       *force;

@@ -30,9 +30,10 @@ typedef struct {
   PetscReal   at_once;     /* the same where they cost no more than so many products */
   PetscBool   warm;        /* conjugate gradients begin with what the solution is before */
   PetscBool
-      precondition; /* conjugate gradients by what the Dirichlet sides answer with, where these are linear and rows beyond dense_limit */
-  PetscBool sparse; /* factors of S may be sparse, with more rows than dense_limit, where the bodies are many */
-  PetscBool direct; /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
+      precondition;   /* conjugate gradients by what the Dirichlet sides answer with, where these are linear and rows beyond dense_limit */
+  PetscBool sparse;   /* factors of S may be sparse, with more rows than dense_limit, where the bodies are many */
+  PetscBool products; /* where matrices are not dense S is multiplied with alone, and nothing is iterated for here */
+  PetscBool direct;   /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
 } InterfaceSettings;
 
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreate(Contact, const InterfaceSettings *, InterfaceOperator *);
@@ -46,12 +47,17 @@ PETSC_INTERN PetscBool      InterfaceOperatorWantsDense(InterfaceOperator);
 /* on the listed rows of all ranks, where matrices are dense */
 PETSC_INTERN PetscErrorCode InterfaceOperatorSum(InterfaceOperator, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorGather(InterfaceOperator, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN void           InterfaceOperatorScatter(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorSolveListed(InterfaceOperator, PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorMultiplyListed(InterfaceOperator, InterfaceMap, PetscInt, PetscReal, const PetscScalar[],
                                                             PetscScalar[]);
 /* on the rows of this rank, dense or not */
 PETSC_INTERN PetscErrorCode InterfaceOperatorSolve(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator, InterfaceMap, const PetscScalar[], PetscScalar[]);
+/* on the rows of this rank, where S is only multiplied with: what preconditions it */
+PETSC_INTERN PetscBool      InterfaceOperatorHasPreconditioner(InterfaceOperator);
+PETSC_INTERN PetscErrorCode InterfaceOperatorChoose(InterfaceOperator, const PetscBool[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorPrecondition(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 
 PETSC_INTERN void           ContactMarkActive(Contact, InterfaceMark[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorVisit(InterfaceOperator, Checkpoint);

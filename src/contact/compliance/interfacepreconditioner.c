@@ -365,3 +365,26 @@ PetscErrorCode InterfacePreconditionerApply(PC pc, Vec x, Vec y)
   PetscCall(VecRestoreArrayRead(x, &in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Whether P is there, for some row */
+PetscBool InterfaceOperatorHasPreconditioner(InterfaceOperator op)
+{
+  return (PetscBool)(op->preconditioner != NULL);
+}
+
+/* From now on P is for the rows of this rank that are `in`, with the matrices of the bodies as they are */
+PetscErrorCode InterfaceOperatorChoose(InterfaceOperator op, const PetscBool in[])
+{
+  PetscFunctionBegin;
+  PetscCall(InterfaceOperatorFactor(op, in, NULL));
+  PetscCall(InterfacePreconditionerUpdate(op));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = P x on these; elsewhere, and where the Dirichlet side has no part in P, y stays as it comes in */
+PetscErrorCode InterfaceOperatorPrecondition(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; op->preconditioner && k < op->preconditioner->n; k++) PetscCall(AddSlab(op, &op->preconditioner->slabs[k], x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -52,6 +52,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   (*contact)->options.tie_distance     = TIE_DISTANCE;
   (*contact)->options.friction         = -1;
   (*contact)->options.friction_kinetic = -1;
+  (*contact)->options.friction_dense   = FRICTION_DENSE_LIMIT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

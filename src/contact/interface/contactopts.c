@@ -196,6 +196,7 @@ static PetscErrorCode ReadRowSides(Contact contact)
 . -contact_law (frictionless|tied|bonded|coulomb)               - what the surfaces do to each other
 . -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
 . -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)
+. -contact_friction_dense_limit n                               - rows up to which steps with friction have dense matrices
 . -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do

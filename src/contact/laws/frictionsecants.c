@@ -8,7 +8,8 @@
      S <- S - S d (S d)' / (d' S d) + y y' / (d' y),
 
    after which S d = y (Broyden 1970, Fletcher 1970, Goldfarb 1970, Shanno 1970, here for a compliance in place of a Hessian). It holds for
-   the step under way alone: the next one begins with the bodies' own S, and needs no memory.
+   the step under way alone: the next one begins with the bodies' own S, and needs no memory. Where S is no matrix, the vectors of these
+   corrections are kept in its place.
 */
 #include "friction.h"
 
@@ -32,6 +33,17 @@ void FrictionLearn(FrictionProblem *problem)
     size    = PetscMax(size, PetscAbsScalar(told[i]));
   }
   if (differs <= EXACT * size || !(tells > 0) || !(answers > LEAST_ANSWER * tells)) return;
+  if (!problem->S) {
+    PetscScalar *secants = problem->secants + 2 * problem->n_secants * n;
+
+    if (problem->n_secants == FRICTION_SECANTS) return;
+    for (PetscInt i = 0; i < n; i++) {
+      secants[i]     = answer[i] / PetscSqrtReal(answers);
+      secants[n + i] = told[i] / PetscSqrtReal(tells);
+    }
+    problem->n_secants++;
+    return;
+  }
   for (PetscInt j = 0; j < n; j++) {
     const PetscScalar out = told[j] / tells, in = answer[j] / answers;
 

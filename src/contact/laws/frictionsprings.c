@@ -64,13 +64,15 @@ PetscErrorCode FrictionSumStored(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nothing is remembered from step to step but what contact itself has in a checkpoint, and springs as the rows had them */
-PetscErrorCode FrictionVisitSprings(Contact contact, Checkpoint checkpoint)
+/* Nothing is remembered from step to step but what contact itself has in a checkpoint, springs as the rows had them, and what is known of
+   the compliance of rows that are too many for a matrix */
+PetscErrorCode FrictionVisit(Contact contact, Checkpoint checkpoint)
 {
   FrictionStep *step = (FrictionStep *)contact->data;
 
   PetscFunctionBegin;
   if (step->has_springs) PetscCall(CheckpointVisitReals(checkpoint, "flexibility", contact->rows.n, step->flexibility));
+  PetscCall(CheckpointVisitReals(checkpoint, "compliance", contact->rows.n, step->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

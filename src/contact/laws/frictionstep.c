@@ -6,12 +6,9 @@
 */
 #include "frictionstep.h"
 #include <contact/compliance/augmentation.h>
-#include <solver/densefactor.h>
 
-/* Rows of nodes that may touch in one step, on each rank; dense matrices of that order */
-#define MOST_ROWS 4000
 /* Integrations of all bodies in a step */
-#define MOST_SWEEPS 60
+#define MOST_SWEEPS FRICTION_SECANTS
 /* Round-off of what rows open by, in parts of the displacements that this is the difference of */
 #define ROUND_OFF 1e-14
 /* By how many times that may the forces that have been found miss the law */
@@ -34,44 +31,13 @@ static PetscErrorCode MarkPenetrating(Contact contact, PetscBool *any)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows that are marked, their compliance and the bounds that the law has for them */
-static PetscErrorCode ListRows(Contact contact)
-{
-  FrictionStep *step = (FrictionStep *)contact->data;
-  PetscInt      n;
-
-  PetscFunctionBegin;
-  PetscCall(InterfaceOperatorSetRows(step->S, step->marks, 1));
-  InterfaceOperatorGetRows(step->S, &n, NULL, NULL);
-  PetscCheck(n <= MOST_ROWS, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law %s solves for the forces of all nodes in contact at once, and %" PetscInt_FMT
-             " of them touch, with %d rows each; there may be %d rows: choose coarser contact surfaces, or -contact_law frictionless",
-             contact->friction.name, n / contact->dim, (int)contact->dim, MOST_ROWS);
-  PetscCall(FrictionProblemResize(&step->problem, n, contact->rows.n_all));
-  PetscCall(InterfaceOperatorAssemble(step->S, INTERFACE_GAP, step->problem.S));
-  for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = step->flexibility[i];
-  PetscCall(InterfaceOperatorGather(step->S, step->mine, step->problem.opened));
-  for (PetscInt i = 0; i < n; i++) step->problem.S[i * (n + 1)] += step->problem.opened[i];
-  for (PetscInt i = 0; i < contact->rows.n; i += contact->dim) {
-    PetscReal limit[2];
-
-    (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &limit[0], &limit[1]);
-    for (PetscInt k = 0; k < contact->dim; k++) step->mine[i + k] = k < 2 ? limit[k] : 0;
-  }
-  PetscCall(InterfaceOperatorGather(step->S, step->mine, step->problem.limit));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What rows open by at the end of the step as the bodies have made it: gaps along normals, slips across them */
-static PetscErrorCode GatherOpened(Contact contact, PetscScalar opened[])
+/* Marks the rows of nodes that have a force */
+static void MarkForces(Contact contact)
 {
   FrictionStep *step = (FrictionStep *)contact->data;
 
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    step->mine[i] = i % contact->dim ? contact->friction.slip[i] : contact->end.gap[i] + FrictionGive(contact, i);
-  PetscCall(InterfaceOperatorGather(step->S, step->mine, opened));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i += contact->dim)
+    for (PetscInt k = 0; k < contact->dim && contact->end.force[i] != 0; k++) step->marks[i + k] = INTERFACE_SOLVED;
 }
 
 /* Integrates all bodies under the forces; gaps and slips */
@@ -94,12 +60,9 @@ static PetscErrorCode Compare(Contact contact, PetscReal *mismatch, PetscReal *r
   PetscReal        largest = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < problem->n; i++) {
-    problem->change[i] = problem->force[i] - problem->base[i];
-    problem->told[i]   = 0;
-  }
-  PetscCall(DenseMultiplyAdd(problem->n, problem->n, problem->S, 1, problem->change, problem->told));
-  PetscCall(GatherOpened(contact, problem->answer));
+  for (PetscInt i = 0; i < problem->n; i++) problem->change[i] = problem->force[i] - problem->base[i];
+  PetscCall(FrictionProblemMultiply(problem, problem->change, problem->told));
+  PetscCall(FrictionGatherOpened(contact, problem->answer));
   *mismatch = 0;
   for (PetscInt i = 0; i < problem->n; i++) {
     const PetscScalar opened  = problem->answer[i];
@@ -154,29 +117,6 @@ static PetscErrorCode Fail(Contact contact, PetscBool solved, PetscReal mismatch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces that have been found, on this rank's rows */
-static PetscErrorCode TakeForces(Contact contact)
-{
-  FrictionStep          *step    = (FrictionStep *)contact->data;
-  const FrictionProblem *problem = &step->problem;
-  const PetscInt        *rows;
-
-  PetscFunctionBegin;
-  InterfaceOperatorGetRows(step->S, NULL, &rows, NULL);
-  PetscCall(PetscArrayzero(contact->end.force, contact->rows.n));
-  PetscCall(PetscArrayzero(contact->end.active, contact->rows.n));
-  PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
-  for (PetscInt i = 0; i < problem->n; i++) {
-    const PetscInt mine = rows[i] - contact->rows.begin;
-
-    if (mine < 0 || mine >= contact->rows.n) continue;
-    contact->end.force[mine]       = PetscRealPart(problem->force[i]);
-    contact->end.active[mine]      = (PetscBool)(problem->state[i / problem->dim] != FRICTION_OPEN);
-    contact->friction.slides[mine] = (PetscBool)(problem->state[i / problem->dim] == FRICTION_SLIDES);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Forces of the listed rows for which the law holds, as far as S tells */
 static PetscErrorCode Solve(Contact contact)
 {
@@ -188,23 +128,7 @@ static PetscErrorCode Solve(Contact contact)
   if (by_nodes) contact->counts.set_cycles++;
   if (!solved) PetscCall(FrictionProblemKeepForces(&step->problem, step->atol, &solved));
   if (!solved) PetscCall(Fail(contact, PETSC_FALSE, 0));
-  PetscCall(TakeForces(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The problem of the rows that are listed now, from the bodies as they are under the forces `end` */
-static PetscErrorCode StartProblem(Contact contact)
-{
-  FrictionStep    *step    = (FrictionStep *)contact->data;
-  FrictionProblem *problem = &step->problem;
-
-  PetscFunctionBegin;
-  PetscCall(ListRows(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++) step->mine[i] = contact->end.force[i];
-  PetscCall(InterfaceOperatorGather(step->S, step->mine, problem->base));
-  PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
-  PetscCall(GatherOpened(contact, problem->opened));
-  for (PetscInt node = 0; node < problem->n / problem->dim; node++) problem->state[node] = FRICTION_OPEN;
+  PetscCall(FrictionTakeForces(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,7 +141,7 @@ static PetscErrorCode Settle(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(MarkPenetrating(contact, &more));
-  PetscCall(StartProblem(contact));
+  PetscCall(FrictionStartProblem(contact));
   for (PetscInt sweep = 0; sweep < MOST_SWEEPS; sweep++) {
     PetscCall(Solve(contact));
     if (!ContactFailed(contact)) PetscCall(Integrate(contact));
@@ -229,9 +153,9 @@ static PetscErrorCode Settle(Contact contact)
     if (PetscIsInfOrNanReal(mismatch)) break;
     if (more) {
       contact->counts.set_changes++;
-      PetscCall(StartProblem(contact));
+      PetscCall(FrictionStartProblem(contact));
     } else if (mismatch <= PetscMax(step->atol, round_off)) {
-      const PetscReal residual = FrictionProblemGetResidual(&step->problem);
+      const PetscReal residual = FrictionProblemGetResidual(&step->problem, step->problem.opened);
 
       /* what solves the problem is checked by the law itself */
       if (residual > RESIDUAL_MOST * PetscMax(step->atol, round_off)) PetscCall(Fail(contact, PETSC_FALSE, 0));
@@ -275,7 +199,7 @@ static PetscErrorCode Augment(Contact contact)
 static PetscErrorCode Step(Contact contact)
 {
   FrictionStep *step = (FrictionStep *)contact->data;
-  PetscBool     in_contact;
+  PetscBool     in_contact, ambiguous = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(step->marks, contact->rows.n));
@@ -288,11 +212,13 @@ static PetscErrorCode Step(Contact contact)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
+    /* the guess; where the step is made again that is what it has ended with before */
+    if (!contact->energy.again) contact->end.force[i] = contact->start.force[i];
     if (contact->start.active[i]) step->marks[i] = INTERFACE_SOLVED;
-    contact->end.force[i] = contact->start.force[i];
     /* springs along normals without multipliers push by how deep they are; those across them go on from where they are */
     step->multiplier[i] = step->springs.max_it || ContactRowRubs(contact, i) ? contact->start.force[i] : 0;
   }
+  if (contact->energy.again) MarkForces(contact);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (in_contact) PetscCall(Integrate(contact));
   else PetscCall(FrictionComputeSlips(contact)); /* of the free trial */
@@ -300,7 +226,8 @@ static PetscErrorCode Step(Contact contact)
   PetscCall(Settle(contact));
   if (!ContactFailed(contact) && step->springs.max_it) PetscCall(Augment(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!contact->energy.again && FrictionProblemIsAmbiguous(&step->problem)) contact->counts.ambiguous_steps++;
+  if (!contact->energy.again) PetscCall(FrictionProblemIsAmbiguous(&step->problem, &ambiguous));
+  if (!contact->energy.again && ambiguous) contact->counts.ambiguous_steps++;
   PetscCall(FrictionSumStored(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -326,6 +253,7 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(InterfaceOperatorDestroy(&step->S));
   PetscCall(FrictionSolverDestroy(&step->solver));
   PetscCall(FrictionProblemDestroy(&step->problem));
+  PetscCall(FrictionDestroyProducts(contact));
   PetscCall(PetscFree5(step->marks, step->mine, step->flexibility, step->multiplier, step->change));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -353,12 +281,25 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Some rows have new entries */
+static PetscErrorCode RowsChanged(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) step->compliance[i] = -1;
+  PetscCall(FrictionSetUpSprings(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes controller steps with friction: takes the place of a method that would close gaps by the same forces without it, or hold them by
    springs (`NULL`: there are none) */
 PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprings *springs)
 {
-  /* all of S is wanted as a matrix */
-  const InterfaceSettings      settings = {.prefix = "friction_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
+  const InterfaceSettings      settings = {.dense_limit  = contact->options.friction_dense,
+                                           .few          = contact->options.friction_dense,
+                                           .products     = PETSC_TRUE,
+                                           .precondition = PETSC_TRUE};
   const ContactFrictionSprings given    = springs ? *springs : (ContactFrictionSprings){0};
   FrictionStep                *step;
 
@@ -369,16 +310,17 @@ PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprin
   PetscCall(Check(contact));
   if (contact->friction.law.setup) PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(PetscNew(&step));
-  contact->friction.steps = PETSC_TRUE;
-  contact->data           = step;
-  contact->ops->step      = Step;
-  contact->ops->stored    = springs && !given.max_it ? FrictionStoredEnergy : ContactStoresNothing;
-  contact->ops->view      = View;
-  contact->ops->destroy   = Destroy;
-  contact->ops->visit     = FrictionVisitSprings;
-  step->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
-  step->problem.dim       = contact->dim;
-  step->problem.still     = step->atol;
+  contact->friction.steps   = PETSC_TRUE;
+  contact->data             = step;
+  contact->ops->step        = Step;
+  contact->ops->stored      = springs && !given.max_it ? FrictionStoredEnergy : ContactStoresNothing;
+  contact->ops->view        = View;
+  contact->ops->destroy     = Destroy;
+  contact->ops->visit       = FrictionVisit;
+  contact->ops->rowschanged = RowsChanged;
+  step->atol                = CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  step->problem.dim         = contact->dim;
+  step->problem.still       = step->atol;
   PetscCall(ForcesCreate(contact, &step->forces));
   PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
   PetscCall(FrictionSolverCreate(&step->solver));
@@ -386,7 +328,7 @@ PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprin
                          &step->multiplier, contact->rows.n, &step->change));
   step->springs     = given;
   step->has_springs = (PetscBool)(springs != NULL);
-  if (step->has_springs) contact->ops->rowschanged = FrictionSetUpSprings;
-  PetscCall(FrictionSetUpSprings(contact));
+  PetscCall(FrictionCreateProducts(contact));
+  PetscCall(RowsChanged(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,7 +11,13 @@ typedef struct {
   PetscScalar      *mine;  /* work space, a number for each */
   FrictionSolver    solver;
   FrictionProblem   problem;
-  PetscReal         atol; /* what S tells and what bodies do may differ by this [m] */
+  FrictionProducts  products;   /* S where it is no matrix, and, for each row of this rank: */
+  PetscReal        *compliance; /* about what S has on the diagonal [m/N]; less than 0: not known */
+  PetscReal        *largest;    /* work space: the largest displacement that probes have had */
+  PetscScalar      *in, *out;   /* work space: forces and what rows open by */
+  PetscBool        *chosen;     /* rows that are preconditioned */
+  PetscReal        *sums;       /* work space, per pair */
+  PetscReal         atol;       /* what S tells and what bodies do may differ by this [m] */
   /* springs between both sides of each row, which make it give by flexibility (force - multiplier); all are 0 where there are none */
   ContactFrictionSprings springs;
   PetscBool              has_springs;
@@ -20,10 +26,16 @@ typedef struct {
   PetscReal             *change;      /* work space of augmentations, a number for each row */
 } FrictionStep;
 
+PETSC_INTERN PetscErrorCode FrictionStartProblem(Contact);
+PETSC_INTERN PetscErrorCode FrictionGatherOpened(Contact, PetscScalar[]);
+PETSC_INTERN PetscErrorCode FrictionTakeForces(Contact);
+PETSC_INTERN PetscErrorCode FrictionCreateProducts(Contact);
+PETSC_INTERN PetscErrorCode FrictionDestroyProducts(Contact);
+PETSC_INTERN PetscErrorCode FrictionFindDiagonal(Contact);
 PETSC_INTERN PetscErrorCode FrictionSetUpSprings(Contact);
 PETSC_INTERN PetscReal      FrictionStoredEnergy(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscReal      FrictionGive(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode FrictionComputeSlips(Contact);
 PETSC_INTERN PetscErrorCode FrictionSumStored(Contact);
-PETSC_INTERN PetscErrorCode FrictionVisitSprings(Contact, Checkpoint);
+PETSC_INTERN PetscErrorCode FrictionVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode FrictionViewSprings(Contact, PetscViewer);

@@ -16,10 +16,39 @@ static PetscReal Random(void *state)
 }
 
 typedef struct {
-  PetscScalar     S[ROWS * ROWS], opened[ROWS], base[ROWS], limit[ROWS], force[ROWS], open[ROWS];
-  FrictionState   state[NODES];
-  FrictionProblem problem;
+  PetscScalar      S[ROWS * ROWS], opened[ROWS], base[ROWS], limit[ROWS], force[ROWS], open[ROWS], diagonal[ROWS];
+  FrictionState    state[NODES];
+  FrictionProblem  problem;
+  FrictionProducts products;
+  PetscInt         count; /* of products */
 } Problem;
+
+static PetscErrorCode Multiply(void *data, const PetscScalar x[], PetscScalar y[])
+{
+  Problem       *p = (Problem *)data;
+  const PetscInt n = p->problem.n;
+
+  PetscFunctionBegin;
+  p->count++;
+  for (PetscInt i = 0; i < n; i++) {
+    y[i] = 0;
+    for (PetscInt j = 0; j < n; j++) y[i] += p->S[j * n + i] * x[j];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From now on S is no matrix for the solver: it has products, and the diagonal for what it is about */
+static void UseProducts(Problem *p)
+{
+  const PetscInt n = p->problem.n;
+
+  p->products = (FrictionProducts){.data = p, .multiply = Multiply};
+  for (PetscInt i = 0; i < n; i++) p->diagonal[i] = p->S[i * (n + 1)] > 0 ? 1.5 : 0;
+  p->count            = 0;
+  p->problem.S        = NULL;
+  p->problem.products = &p->products;
+  p->problem.diagonal = p->diagonal;
+}
 
 /* A compliance that is symmetric and positive definite, of the size of one per newton, and nodes that are pressed by about a metre and
  * moved across */
@@ -80,14 +109,13 @@ static FrictionState CheckNode(const Problem *p, PetscInt node)
   return FRICTION_SLIDES;
 }
 
-static void law_holds(void **state)
+static void law_holds(PetscBool products)
 {
   const PetscReal coefficients[] = {0, 0.1, 0.3, 0.6, 1};
   FrictionSolver  solver;
   Problem         p;
   PetscInt        seen[3] = {0, 0, 0};
 
-  (void)state;
   ok(FrictionSolverCreate(&solver));
   for (PetscInt dim = 2; dim <= 3; dim++)
     for (size_t c = 0; c < PETSC_STATIC_ARRAY_LENGTH(coefficients); c++)
@@ -95,6 +123,7 @@ static void law_holds(void **state)
         PetscBool solved, by_nodes;
 
         Fill(&p, dim, coefficients[c], seed);
+        if (products) UseProducts(&p);
         ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
         assert_true(solved);
         Open(&p);
@@ -105,14 +134,13 @@ static void law_holds(void **state)
 }
 
 /* Every third node is held across its normal, and dragged past its partner by what nothing changes */
-static void law_holds_where_nodes_are_held(void **state)
+static void law_holds_where_nodes_are_held(PetscBool products)
 {
   FrictionSolver solver;
   Problem        p;
   PetscInt       seen[3] = {0, 0, 0};
   PetscBool      solved, by_nodes;
 
-  (void)state;
   ok(FrictionSolverCreate(&solver));
   for (PetscInt dim = 2; dim <= 3; dim++)
     for (unsigned seed = 1; seed <= 40; seed++) {
@@ -122,6 +150,7 @@ static void law_holds_where_nodes_are_held(void **state)
       for (PetscInt node = 0; node < NODES; node += 3)
         for (PetscInt i = node * dim + 1; i < (node + 1) * dim; i++)
           for (PetscInt j = 0; j < n; j++) p.S[i * n + j] = p.S[j * n + i] = 0;
+      if (products) UseProducts(&p);
       ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
       assert_true(solved);
       Open(&p);
@@ -133,6 +162,7 @@ static void law_holds_where_nodes_are_held(void **state)
   for (PetscInt j = 0; j < 2 * NODES; j++) p.S[2 * NODES + j] = p.S[j * 2 * NODES + 1] = 0;
   p.opened[0] = -1;
   p.opened[1] = p.problem.still = 1e-12;
+  if (products) UseProducts(&p);
   ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
   assert_true(solved && p.force[0] > 0 && p.force[1] == 0 && p.state[0] == FRICTION_STICKS);
   ok(FrictionSolverDestroy(&solver));
@@ -140,7 +170,7 @@ static void law_holds_where_nodes_are_held(void **state)
 
 /* Every third node is held in one of two directions across its normal, as in a plane of symmetry: dragged there in every second problem,
    and without friction there in the others */
-static void law_holds_where_nodes_are_held_in_one_direction(void **state)
+static void law_holds_where_nodes_are_held_in_one_direction(PetscBool products)
 {
   const PetscInt dim = 3, n = dim * NODES;
   FrictionSolver solver;
@@ -148,7 +178,6 @@ static void law_holds_where_nodes_are_held_in_one_direction(void **state)
   PetscInt       seen[2][3] = {{0}};
   PetscBool      solved, by_nodes;
 
-  (void)state;
   ok(FrictionSolverCreate(&solver));
   for (unsigned seed = 1; seed <= 80; seed++) {
     const PetscInt dragged = seed % 2;
@@ -160,6 +189,7 @@ static void law_holds_where_nodes_are_held_in_one_direction(void **state)
       for (PetscInt j = 0; j < n; j++) p.S[i * n + j] = p.S[j * n + i] = 0;
       if (!dragged) p.opened[i] = 0;
     }
+    if (products) UseProducts(&p);
     ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
     assert_true(solved);
     Open(&p);
@@ -170,6 +200,47 @@ static void law_holds_where_nodes_are_held_in_one_direction(void **state)
   }
   assert_true(seen[0][FRICTION_SLIDES] > 20 && seen[0][FRICTION_STICKS] > 20);
   assert_true(seen[1][FRICTION_SLIDES] > 40 && seen[1][FRICTION_STICKS] == 0);
+  ok(FrictionSolverDestroy(&solver));
+}
+
+static void law_holds_by_factors(void **state)
+{
+  (void)state;
+  law_holds(PETSC_FALSE);
+  law_holds_where_nodes_are_held(PETSC_FALSE);
+  law_holds_where_nodes_are_held_in_one_direction(PETSC_FALSE);
+}
+
+static void law_holds_by_products(void **state)
+{
+  (void)state;
+  law_holds(PETSC_TRUE);
+  law_holds_where_nodes_are_held(PETSC_TRUE);
+  law_holds_where_nodes_are_held_in_one_direction(PETSC_TRUE);
+}
+
+/* With coefficients for which there is one solution: LU factors and GMRES find the same forces, to what the latter leaves of the law */
+static void both_ways_find_the_same(void **state)
+{
+  FrictionSolver solver;
+  Problem        p;
+  PetscScalar    force[ROWS];
+
+  (void)state;
+  ok(FrictionSolverCreate(&solver));
+  for (PetscInt dim = 2; dim <= 3; dim++)
+    for (unsigned seed = 1; seed <= 40; seed++)
+      for (PetscInt products = 0; products < 2; products++) {
+        PetscBool solved, by_nodes;
+
+        Fill(&p, dim, 0.2, seed);
+        if (products) UseProducts(&p);
+        ok(FrictionSolverSolve(solver, &p.problem, &solved, &by_nodes));
+        assert_true(solved);
+        for (PetscInt i = 0; i < p.problem.n && products; i++) near(p.force[i], force[i], 1e-10);
+        memcpy(force, p.force, sizeof(force));
+        assert_true(!products || (p.count > 0 && p.count < 400));
+      }
   ok(FrictionSolverDestroy(&solver));
 }
 
@@ -200,7 +271,7 @@ static void law_holds_at_a_node(void **state)
     }
 }
 
-static void Multiply(PetscInt n, const PetscScalar S[], const PetscScalar x[], PetscScalar y[])
+static void MultiplyMatrix(PetscInt n, const PetscScalar S[], const PetscScalar x[], PetscScalar y[])
 {
   for (PetscInt i = 0; i < n; i++) {
     y[i] = 0;
@@ -230,7 +301,7 @@ static void sweeps_correct_the_compliance(void **state)
     for (PetscInt l = 0; l < k; l++) {
       PetscScalar product = 0, of = 0;
 
-      Multiply(n, bodies.S, conjugate[l], answer);
+      MultiplyMatrix(n, bodies.S, conjugate[l], answer);
       for (PetscInt i = 0; i < n; i++) {
         product += answer[i] * (i == k);
         of += answer[i] * conjugate[l][i];
@@ -238,10 +309,10 @@ static void sweeps_correct_the_compliance(void **state)
       for (PetscInt i = 0; i < n; i++) change[i] -= product / of * conjugate[l][i];
     }
     memcpy(conjugate[k], change, sizeof(change));
-    Multiply(n, guess.S, change, told);
-    Multiply(n, bodies.S, change, answer);
+    MultiplyMatrix(n, guess.S, change, told);
+    MultiplyMatrix(n, bodies.S, change, answer);
     FrictionLearn(&guess.problem);
-    Multiply(n, guess.S, change, told);
+    MultiplyMatrix(n, guess.S, change, told);
     for (PetscInt i = 0; i < n; i++) {
       near(told[i], answer[i], 1e-12);
       square += change[i] * told[i];
@@ -268,7 +339,7 @@ static void what_is_no_compliance_is_not_learnt(void **state)
   memcpy(&before, &guess, sizeof(guess));
   for (PetscInt k = 0; k < 4; k++) {
     for (PetscInt i = 0; i < n; i++) change[i] = k == 1 ? 0 : guess.base[i];
-    Multiply(n, guess.S, change, told);
+    MultiplyMatrix(n, guess.S, change, told);
     for (PetscInt i = 0; i < n; i++) answer[i] = k == 0 ? told[i] * (1 + 1e-10) : k == 1 ? 1 : k == 2 ? 1e-6 * told[i] : -told[i];
     FrictionLearn(&guess.problem);
     assert_memory_equal(guess.S, before.S, sizeof(guess.S));
@@ -277,12 +348,10 @@ static void what_is_no_compliance_is_not_learnt(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(law_holds),
-                                     cmocka_unit_test(law_holds_where_nodes_are_held),
-                                     cmocka_unit_test(law_holds_where_nodes_are_held_in_one_direction),
-                                     cmocka_unit_test(law_holds_at_a_node),
-                                     cmocka_unit_test(sweeps_correct_the_compliance),
-                                     cmocka_unit_test(what_is_no_compliance_is_not_learnt)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(law_holds_by_factors),          cmocka_unit_test(law_holds_by_products),
+      cmocka_unit_test(both_ways_find_the_same),       cmocka_unit_test(law_holds_at_a_node),
+      cmocka_unit_test(sweeps_correct_the_compliance), cmocka_unit_test(what_is_no_compliance_is_not_learnt)};
 
   return impakt_main(argc, argv, tests);
 }
