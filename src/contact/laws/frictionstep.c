@@ -317,7 +317,8 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(Contact contact)
+/* All that has to do with the rows there are */
+static PetscErrorCode Reset(Contact contact)
 {
   FrictionStep *step = (FrictionStep *)contact->data;
 
@@ -327,6 +328,32 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(FrictionSolverDestroy(&step->solver));
   PetscCall(FrictionProblemDestroy(&step->problem));
   PetscCall(PetscFree5(step->marks, step->mine, step->flexibility, step->multiplier, step->change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for the rows that there are now */
+static PetscErrorCode SetUp(Contact contact)
+{
+  /* all of S is wanted as a matrix */
+  const InterfaceSettings settings = {.prefix = "friction_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
+  FrictionStep           *step     = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  if (contact->friction.law.setup) PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
+  step->problem = (FrictionProblem){.dim = contact->dim, .still = step->atol};
+  PetscCall(ForcesCreate(contact, &step->forces));
+  PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
+  PetscCall(FrictionSolverCreate(&step->solver));
+  PetscCall(PetscCalloc5(contact->rows.n, &step->marks, contact->rows.n, &step->mine, contact->rows.n, &step->flexibility, contact->rows.n,
+                         &step->multiplier, contact->rows.n, &step->change));
+  PetscCall(FrictionSetUpSprings(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(Reset(contact));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -357,9 +384,7 @@ static PetscErrorCode Check(Contact contact)
    springs (`NULL`: there are none) */
 PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprings *springs)
 {
-  /* all of S is wanted as a matrix */
-  const InterfaceSettings      settings = {.prefix = "friction_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
-  const ContactFrictionSprings given    = springs ? *springs : (ContactFrictionSprings){0};
+  const ContactFrictionSprings given = springs ? *springs : (ContactFrictionSprings){0};
   FrictionStep                *step;
 
   PetscFunctionBegin;
@@ -367,26 +392,20 @@ PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprin
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
   contact->data = NULL;
   PetscCall(Check(contact));
-  if (contact->friction.law.setup) PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(PetscNew(&step));
   contact->friction.steps = PETSC_TRUE;
   contact->data           = step;
   contact->ops->step      = Step;
   contact->ops->stored    = springs && !given.max_it ? FrictionStoredEnergy : ContactStoresNothing;
   contact->ops->view      = View;
+  contact->ops->setup     = SetUp;
+  contact->ops->reset     = Reset;
   contact->ops->destroy   = Destroy;
   contact->ops->visit     = FrictionVisitSprings;
   step->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
-  step->problem.dim       = contact->dim;
-  step->problem.still     = step->atol;
-  PetscCall(ForcesCreate(contact, &step->forces));
-  PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
-  PetscCall(FrictionSolverCreate(&step->solver));
-  PetscCall(PetscCalloc5(contact->rows.n, &step->marks, contact->rows.n, &step->mine, contact->rows.n, &step->flexibility, contact->rows.n,
-                         &step->multiplier, contact->rows.n, &step->change));
-  step->springs     = given;
-  step->has_springs = (PetscBool)(springs != NULL);
+  step->springs           = given;
+  step->has_springs       = (PetscBool)(springs != NULL);
   if (step->has_springs) contact->ops->rowschanged = FrictionSetUpSprings;
-  PetscCall(FrictionSetUpSprings(contact));
+  PetscCall(SetUp(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
